@@ -1,0 +1,25 @@
+# What every jostle library shares. Numbers must be the same on every machine: no contraction of
+# a * b + c into one rounding, no value-changing optimisation.
+add_library(jostle_options INTERFACE)
+target_compile_features(jostle_options INTERFACE cxx_std_20)
+target_compile_options(jostle_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+if(JOSTLE_WARNINGS_AS_ERRORS)
+  target_compile_options(jostle_options INTERFACE -Werror)
+endif()
+
+# jostle_library(engine SOURCES a.cpp ... DEPENDS jostle_x ...): one folder, one library, installed
+# as jostle::engine. Link only what the arrows allow: engine <- structure <- ensemble; config and
+# results stand on those; cli joins them.
+function(jostle_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
+  add_library(jostle_${name} STATIC ${arg_SOURCES})
+  add_library(jostle::${name} ALIAS jostle_${name})
+  set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(jostle_${name} PUBLIC cxx_std_20)
+  target_link_libraries(jostle_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
+                                       $<BUILD_INTERFACE:jostle_options>)
+  target_include_directories(
+    jostle_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle>)
+  set_property(GLOBAL APPEND PROPERTY jostle_libraries jostle_${name})
+endfunction()

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "engine/packing.hpp"
+#include "engine/random.hpp"
+#include "engine/stops.hpp"
+
+// How the packing begins, tap 0. Lengths in diameters.
+namespace jostle {
+
+/// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
+/// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the
+/// container, whatever its sides.
+struct SteepestDescentPour {
+  bool operator==(const SteepestDescentPour&) const = default;
+};
+
+/// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
+/// sides, then random moves that never increase the total overlap with the walls, until it is zero.
+/// The relaxation that follows it is the scene's own. A residue after `max_sweeps` is an error.
+struct FittedPour {
+  double max_step = 0.05;
+  std::uint64_t max_sweeps = 100'000;
+  bool operator==(const FittedPour&) const = default;
+};
+
+/// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap.
+/// Rosato et al. 2010, sec. II.
+struct RandomSettle {
+  double dilute_fraction = 0.1;  // at most 0.25
+  bool operator==(const RandomSettle&) const = default;
+};
+
+enum class Lattice { hcp, fcc };
+
+/// A close-packed crystal on the floor, filled layer by layer from below. hcp: layers parallel to
+/// the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even. fcc: (100) layers at
+/// z = 1/2 + k / sqrt(2), footprint n x m. Any other footprint is an error that names the two
+/// nearest, unless `stretch`, which spaces the rows out to the footprint. Rosato et al. 2010, sec. II.
+struct Crystal {
+  Lattice lattice = Lattice::hcp;
+  bool stretch = false;
+  bool operator==(const Crystal&) const = default;
+};
+
+/// Random points whose diameters grow by Monte Carlo until the spheres of diameter 1 fill the fully
+/// periodic box; at most solids fraction 0.64.
+struct Grow {
+  std::uint64_t max_sweeps = 1'000'000;
+  bool operator==(const Grow&) const = default;
+};
+
+/// A packing read from a file: [n_spheres] centres.
+struct GivenPacking {
+  std::shared_ptr<const std::vector<Vec3>> centres;
+  bool operator==(const GivenPacking&) const = default;
+};
+
+using Start =
+    std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
+
+/// A start that cannot fit; what() says what, why and what to do.
+class StartError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Builds the starting packing, before any relaxation. Throws StartError where the start does not
+/// suit the container or the spheres do not fit; never hangs.
+Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
+                   RandomStream& random);
+
+/// Whether tap 0 is recorded only after a relaxation without a tap (RandomSettle and FittedPour).
+bool relaxes_before_recording(const Start& start);
+
+}  // namespace jostle

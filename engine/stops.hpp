@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+// When the relaxation after a tap ends. A sweep is n_spheres trials.
+namespace jostle {
+
+/// Between two heights above the floor, diameters.
+struct HeightWindow {
+  double low = 0, high = 2;
+  bool operator==(const HeightWindow&) const = default;
+};
+
+/// Between two quantiles of the heights of the centres of the starting packing; fixed for the run.
+struct QuantileWindow {
+  double low = 0.2, high = 0.8;
+  bool operator==(const QuantileWindow&) const = default;
+};
+
+using Window = std::variant<HeightWindow, QuantileWindow>;
+
+/// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height.
+/// The first value is taken right after the tap. Philippe & Bideau 2001, sec. II, which publishes
+/// neither eta nor the interval.
+struct MeanHeightStop {
+  double eta = 1e-5;
+  std::uint64_t every_sweeps = 100;
+  bool operator==(const MeanHeightStop&) const = default;
+};
+
+/// Stop when the solids fraction in `window` changes by at most `change` between two measurements
+/// `every_trials` apart, `times` times in a row. Rosato et al. 2010, sec. II: change = 0.001,
+/// 1e6 trials, twice. It can stop a bed in mid-air (docs/accuracy of the rule: see the scenes).
+struct BulkFractionStop {
+  double change = 1e-3;
+  std::uint64_t every_trials = 1'000'000;
+  std::uint32_t times = 2;
+  bool measure_start = true;  // whether the state right after the tap counts as a measurement
+  Window window = QuantileWindow{};
+  bool operator==(const BulkFractionStop&) const = default;
+};
+
+/// Stop after a fixed number of sweeps.
+struct SweepsStop {
+  std::uint64_t sweeps = 1000;
+  bool operator==(const SweepsStop&) const = default;
+};
+
+using StopRule = std::variant<MeanHeightStop, BulkFractionStop, SweepsStop>;
+
+/// A rule and the cap that ends a relaxation which never meets it. A capped relaxation is reported.
+struct Stop {
+  StopRule rule = MeanHeightStop{};
+  std::uint64_t max_sweeps = 1'000'000;
+  bool operator==(const Stop&) const = default;
+};
+
+}  // namespace jostle

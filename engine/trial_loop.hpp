@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "engine/moves.hpp"
+#include "engine/packing.hpp"
+#include "engine/random.hpp"
+
+namespace jostle {
+
+/// Where the trials of a realization stand; with the positions, all that the next trial depends on.
+struct MoveState {
+  std::uint64_t next_trial = 0;      // number of the next trial of the realization: Philox's counter
+  double step = 0;                   // Metropolis: the current largest displacement, diameters
+  std::uint64_t window_trials = 0;   // trials counted since the last adaptation of the step
+  std::uint64_t window_base = 0;     // of them, those the share is taken of
+  std::uint64_t window_accepted = 0;
+  bool operator==(const MoveState&) const = default;
+};
+
+/// Counts since the loop was made; they steer nothing that is stored.
+struct TrialTally {
+  std::uint64_t trials = 0;
+  std::uint64_t accepted = 0;
+  std::uint64_t distance_tests = 0;
+  std::uint64_t list_rebuilds = 0;
+};
+
+enum class InstructionSet { baseline, avx2, avx512 };
+
+std::string_view name(InstructionSet set);
+/// The widest instruction set of this machine, or what the environment variable
+/// JOSTLE_INSTRUCTION_SET (baseline, avx2, avx512) asks for. All give the same bits.
+InstructionSet best_instruction_set();
+
+/// Trial moves of hard spheres: proposes, tests for overlap, accepts or refuses. The container and
+/// the move are chosen once, here; the loop inside is compiled for that pair.
+class TrialLoop {
+ public:
+  virtual ~TrialLoop() = default;
+
+  /// Takes over the centres of a packing in the loop's container.
+  virtual void load(const Packing& packing) = 0;
+  /// Writes the centres back: packing.centres, [n_spheres], in the order they were loaded.
+  virtual void store(Packing& packing) const = 0;
+  /// Makes `n_trials` trials. The trajectory does not depend on how trials are split over calls.
+  virtual void run(std::uint64_t n_trials) = 0;
+  /// Begins the relaxation of a tap: resets the Metropolis step where the move asks for it.
+  virtual void begin_tap() = 0;
+
+  virtual double mean_height() const = 0;
+  virtual std::uint32_t n_spheres() const = 0;
+  virtual const MoveState& state() const = 0;
+  virtual void restore(const MoveState& state) = 0;
+  virtual const TrialTally& tally() const = 0;
+  /// Bytes held, positions and neighbour lists included.
+  virtual std::size_t bytes() const = 0;
+};
+
+/// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials.
+/// Without gravity (FullyPeriodicBox) the move must be Metropolis: throws std::invalid_argument.
+std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
+                                           StreamKey key,
+                                           InstructionSet set = best_instruction_set());
+
+}  // namespace jostle

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+namespace jostle {
+
+/// Mean and spread of one observable at one tap over realizations, folded one value at a time in
+/// the order of realizations (Welford 1962), so that small fluctuations on a large mean keep their
+/// digits. NaN values (failed realizations) are skipped.
+class Moments {
+ public:
+  void add(double value);
+
+  std::uint64_t count() const { return count_; }
+  /// NaN without values.
+  double mean() const;
+  /// Population deviation, 1/M: sigma of Rosato et al. 2010. NaN without values.
+  double sigma() const;
+  /// Standard error of the mean, sqrt(sum of squares / (M (M - 1))). NaN below two values.
+  double standard_error() const;
+
+ private:
+  std::uint64_t count_ = 0;
+  double mean_ = 0;
+  double sum_of_squares_ = 0;
+};
+
+}  // namespace jostle

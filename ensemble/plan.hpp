@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/container.hpp"
+#include "engine/moves.hpp"
+#include "engine/starts.hpp"
+#include "engine/stops.hpp"
+#include "engine/taps.hpp"
+#include "structure/observables.hpp"
+
+namespace jostle {
+
+/// `count` taps of the same kind and strength.
+struct Stage {
+  Tap tap;
+  std::uint64_t count = 0;
+  bool operator==(const Stage&) const = default;
+};
+
+/// What is kept at chosen taps (tap 0 is the start).
+struct Snapshots {
+  std::vector<std::uint64_t> taps;  // ascending, each at most the number of taps
+  bool positions = true;
+  bool coordination = true;
+  double contact_cut = 1.05;        // diameters
+  bool height_histogram = true;
+  double bin_width = 0.1;           // diameters
+  bool operator==(const Snapshots&) const = default;
+};
+
+/// Whether every sweep point draws its own random numbers, or start and tap streams are the same at
+/// all points, so that points are compared on paired packings.
+enum class Streams { independent, matched };
+
+/// All that one sweep point of a study needs: what is simulated, what is measured, which numbers
+/// are drawn. Realizations differ only in their index.
+struct Plan {
+  std::string label;                // "epsilon = 0.005", for people; empty without a sweep
+  std::vector<std::pair<std::string, std::string>> sweep_values;  // JSON pointer, JSON value
+  std::uint64_t point_id = 0;       // hash of sweep_values: 0 without a sweep
+  std::uint64_t seed = 1;
+  Streams streams = Streams::independent;
+
+  Container container;
+  std::uint32_t n_spheres = 0;
+  Start start;
+  std::vector<Stage> protocol;
+  Move move;
+  Stop stop;
+
+  std::vector<Observable> observables;
+  Snapshots snapshots;
+};
+
+/// Taps of the whole protocol.
+std::uint64_t total_taps(const Plan& plan);
+
+/// The tap with number t in 1 .. total_taps(plan).
+const Tap& tap_number(const Plan& plan, std::uint64_t t);
+
+}  // namespace jostle

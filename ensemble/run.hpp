@@ -1,0 +1,40 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ensemble/plan.hpp"
+#include "ensemble/sink.hpp"
+
+namespace jostle {
+
+/// Live counts for a progress display, read while the run goes on.
+struct Progress {
+  std::atomic<std::uint64_t> realizations_done{0}, realizations_running{0}, realizations_failed{0};
+  std::atomic<std::uint64_t> taps_done{0}, trials_done{0};
+  std::atomic<std::uint64_t> busy_nanoseconds{0};  // of all threads inside trial loops
+};
+
+struct RunOptions {
+  int threads = 1;
+  std::chrono::duration<double> checkpoint_every{60.0};
+  /// Set from a signal handler or a time limit: every realization stops at a sweep boundary,
+  /// checkpoints and ends.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct RunSummary {
+  std::uint64_t done = 0, failed = 0, interrupted = 0;
+};
+
+/// Runs the given realizations of the plans on `options.threads` threads and hands their records to
+/// the sink. What reaches the sink for a realization depends only on its plan and index, never on
+/// threads or timing. A realization that throws is reported to the sink as failed and the rest go
+/// on; an exception of the sink ends the run and is rethrown.
+RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
+                        const RunOptions& options, Sink& sink, Progress& progress);
+
+}  // namespace jostle

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/relaxation.hpp"
+#include "engine/trial_loop.hpp"
+#include "engine/vec3.hpp"
+
+// Where an ensemble's numbers go. Nothing here says how they are stored.
+namespace jostle {
+
+/// One realization of one sweep point: both are indices into the study.
+struct RealizationId {
+  std::uint32_t point = 0;
+  std::uint32_t realization = 0;
+  auto operator<=>(const RealizationId&) const = default;
+};
+
+/// What is recorded after every tap besides the observables.
+struct RelaxationRecord {
+  double sweeps = 0;            // of the relaxation; a multiple of 1 / n_spheres
+  double acceptance = 0;        // accepted trials / trials; NaN without trials
+  double tests_per_trial = 0;   // pair distances computed / trials; NaN without trials
+  double capped = 0;            // 1 where the cap ended the relaxation
+};
+/// The names under which the fields above are stored beside the observables, in order.
+inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "tests_per_trial",
+                                                     "capped"};
+
+/// One row of the series: tap 0 is the start.
+struct TapRow {
+  std::uint64_t tap = 0;
+  std::vector<double> observables;  // [n_observables of the plan]
+  RelaxationRecord relaxation;
+};
+
+struct SnapshotRecord {
+  std::uint64_t tap = 0;
+  std::vector<Vec3> centres;                 // [n_spheres], or empty where not kept
+  std::optional<double> coordination;        // mean number of centres within the cut
+  std::vector<double> height_histogram;      // [n_bins], or empty where not kept
+};
+
+/// A realization between two sweeps: what it needs to go on bit for bit.
+struct RealizationState {
+  std::uint64_t rows = 0;                    // recorded: taps 0 .. rows - 1; the next is tap `rows`
+  bool relaxing = false;                     // tap `rows` was excited and is not yet relaxed
+  RelaxationProgress relaxation;
+  MoveState move;
+  std::uint64_t tap_stream_position = 0;     // of Purpose::tap
+  HeightWindow stop_window{0, 0};
+  std::vector<HeightWindow> observable_windows;
+  std::vector<Vec3> centres;
+};
+
+enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 2, failed = 3 };
+
+/// How a realization ended.
+struct Outcome {
+  RealizationStatus status = RealizationStatus::done;
+  std::string reason;          // of a failure
+  double seconds = 0;          // of work in this process
+  std::uint64_t trials = 0;    // made in this process
+};
+
+/// Receives the records of realizations. Calls for one realization come one after another, calls
+/// for different ones concurrently. A sink that cannot store throws; the run then stops.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+
+  /// Opens a realization. Returns the state of its last checkpoint, or nothing if it begins anew;
+  /// rows and snapshots appended after that checkpoint are forgotten.
+  virtual std::optional<RealizationState> begin(RealizationId id) = 0;
+  virtual void append(RealizationId id, const TapRow& row) = 0;
+  virtual void snapshot(RealizationId id, const SnapshotRecord& record) = 0;
+  /// Makes everything appended so far, and the state, durable.
+  virtual void checkpoint(RealizationId id, const RealizationState& state) = 0;
+  /// Makes everything durable and closes the realization.
+  virtual void end(RealizationId id, const RealizationState& state, const Outcome& outcome) = 0;
+};
+
+}  // namespace jostle

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/packing.hpp"
+#include "engine/stops.hpp"
+
+// What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
+// list of them is all that is computed.
+namespace jostle {
+
+/// <Z>, mean height of the centres, diameters. Philippe & Bideau 2001.
+struct MeanHeight {
+  bool operator==(const MeanHeight&) const = default;
+};
+
+/// Phi_b, solids fraction between z = 0 and 4 R = 2 diameters. Philippe & Bideau 2001, sec. III.
+struct BottomFraction {
+  bool operator==(const BottomFraction&) const = default;
+};
+
+/// <Phi_c>, solids fraction from the floor to `depth` x 2<Z>, with the solid volume between z = 0
+/// and R multiplied by 16/11, the deficit that a plane wall makes. Philippe & Bideau 2001, sec. III
+/// ("approximately 90 %" of the packing).
+struct CorrectedFraction {
+  double depth = 0.9;
+  bool operator==(const CorrectedFraction&) const = default;
+};
+
+/// Solids fraction between two heights, or two height quantiles of the starting packing.
+/// Rosato et al. 2010 ("bulk solids fraction").
+struct BulkFraction {
+  std::string name = "bulk_fraction";
+  Window window = QuantileWindow{};
+  bool operator==(const BulkFraction&) const = default;
+};
+
+using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction>;
+
+/// How an observable is stored: name (also in scenes), units, a sentence, and its source.
+struct ObservableLabel {
+  std::string name, units, long_name, source;
+};
+ObservableLabel label(const Observable& observable);
+
+/// The observables of a scene with their windows resolved once, on the starting packing.
+class Observer {
+ public:
+  /// `start` gives the heights of quantile windows, [n_observables] windows in order.
+  Observer(const std::vector<Observable>& observables, const Packing& start);
+  /// With windows resolved earlier (from a checkpoint), as `windows()` gave them.
+  Observer(const std::vector<Observable>& observables, std::vector<HeightWindow> windows);
+
+  /// One value an observable, in order.
+  std::vector<double> operator()(const Packing& packing) const;
+  const std::vector<HeightWindow>& windows() const { return windows_; }
+
+ private:
+  std::vector<Observable> observables_;
+  std::vector<HeightWindow> windows_;  // [n_observables]; unused entries are {0, 0}
+};
+
+}  // namespace jostle

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/packing.hpp"
+
+// What is measured of a packing at snapshots only.
+namespace jostle {
+
+/// N_c: mean number of centres within `cut` diameters of a centre. Rosato et al. 2010: cut = 1.05.
+double coordination(const Packing& packing, double cut = 1.05);
+
+/// The number of centres within `cut` of each centre, [n_spheres].
+std::vector<unsigned> coordination_numbers(const Packing& packing, double cut = 1.05);
+
+/// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
+/// highest centre. Sums to 1. Rosato et al. 2010, fig. 6.
+std::vector<double> height_histogram(const Packing& packing, double bin_width = 0.1);
+
+}  // namespace jostle
