@@ -30,15 +30,15 @@ struct WidthFault {
                       true);
   }
   std::optional<std::string> operator()(const WalledBox& box) const {
-    return too_narrow("width between walls", std::min(box.width_x, box.width_y),
-                      least_walled_width, false);
+    return too_narrow("width between walls", std::min(box.width_x, box.width_y), least_walled_width,
+                      false);
   }
   std::optional<std::string> operator()(const Cylinder& tube) const {
     return too_narrow("cylinder diameter", tube.diameter, least_walled_width, false);
   }
   std::optional<std::string> operator()(const FullyPeriodicBox& box) const {
-    return too_narrow("periodic width or height",
-                      std::min({box.width_x, box.width_y, box.height}), least_periodic_width, true);
+    return too_narrow("periodic width or height", std::min({box.width_x, box.width_y, box.height}),
+                      least_periodic_width, true);
   }
 };
 

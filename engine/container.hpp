@@ -19,7 +19,8 @@ struct PeriodicBox {
   bool operator==(const PeriodicBox&) const = default;
 };
 
-/// Four impassable vertical planes (F.B.C. of Philippe & Bideau 2001). Centres in [1/2, width - 1/2].
+/// Four impassable vertical planes (F.B.C. of Philippe & Bideau 2001). Centres in [1/2, width -
+/// 1/2].
 struct WalledBox {
   double width_x = 16, width_y = 16;
   bool operator==(const WalledBox&) const = default;

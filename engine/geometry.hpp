@@ -4,7 +4,8 @@
 #include "engine/vec3.hpp"
 
 // The one arithmetic by which positions are wrapped and compared. Whatever decides or checks an
-// overlap uses these functions, so that a stored packing is judged by the very numbers that made it.
+// overlap uses these functions, so that a stored packing is judged by the very numbers that made
+// it.
 namespace jostle {
 
 /// A coordinate within one period of [0, width) brought into it. -5e-17 becomes 0, not width.
@@ -28,8 +29,12 @@ inline Vec3 wrapped(const FullyPeriodicBox& box, Vec3 r) {
   return {wrap_coordinate(r.x, box.width_x), wrap_coordinate(r.y, box.width_y),
           wrap_coordinate(r.z, box.height)};
 }
-inline Vec3 wrapped(const WalledBox&, Vec3 r) { return r; }
-inline Vec3 wrapped(const Cylinder&, Vec3 r) { return r; }
+inline Vec3 wrapped(const WalledBox&, Vec3 r) {
+  return r;
+}
+inline Vec3 wrapped(const Cylinder&, Vec3 r) {
+  return r;
+}
 
 /// The shortest vector from b to a.
 inline Vec3 separation(const PeriodicBox& box, Vec3 a, Vec3 b) {
@@ -39,12 +44,20 @@ inline Vec3 separation(const FullyPeriodicBox& box, Vec3 a, Vec3 b) {
   return {nearest_image(a.x - b.x, box.width_x), nearest_image(a.y - b.y, box.width_y),
           nearest_image(a.z - b.z, box.height)};
 }
-inline Vec3 separation(const WalledBox&, Vec3 a, Vec3 b) { return a - b; }
-inline Vec3 separation(const Cylinder&, Vec3 a, Vec3 b) { return a - b; }
+inline Vec3 separation(const WalledBox&, Vec3 a, Vec3 b) {
+  return a - b;
+}
+inline Vec3 separation(const Cylinder&, Vec3 a, Vec3 b) {
+  return a - b;
+}
 
 /// Whether a sphere centred at r stays clear of the floor and the sides (touching is clear).
-inline bool clear_of_boundaries(const PeriodicBox&, Vec3 r) { return r.z >= sphere_radius; }
-inline bool clear_of_boundaries(const FullyPeriodicBox&, Vec3) { return true; }
+inline bool clear_of_boundaries(const PeriodicBox&, Vec3 r) {
+  return r.z >= sphere_radius;
+}
+inline bool clear_of_boundaries(const FullyPeriodicBox&, Vec3) {
+  return true;
+}
 inline bool clear_of_boundaries(const WalledBox& box, Vec3 r) {
   return r.z >= sphere_radius && r.x >= sphere_radius && r.x <= box.width_x - sphere_radius &&
          r.y >= sphere_radius && r.y <= box.width_y - sphere_radius;

@@ -22,9 +22,9 @@ double top_height(const Packing& packing);
 
 /// The deepest overlap in a packing, over all pairs, the floor and the walls.
 struct Overlap {
-  double depth = 0;        // diameters; 0 where nothing overlaps
-  long first = -1;         // index of a sphere, -1 where nothing overlaps
-  long second = -1;        // index of the other sphere, -1 for the floor or a wall
+  double depth = 0;  // diameters; 0 where nothing overlaps
+  long first = -1;   // index of a sphere, -1 where nothing overlaps
+  long second = -1;  // index of the other sphere, -1 for the floor or a wall
 };
 
 /// Compares every pair (O(n^2), no neighbour search): the independent check of the engine.

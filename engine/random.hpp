@@ -25,8 +25,8 @@ StreamKey stream_key(std::uint64_t seed, std::uint64_t sweep_point, std::uint64_
 inline std::array<std::uint32_t, 4> philox_block(StreamKey key, std::uint64_t block,
                                                  std::uint32_t lane = 0) {
   const auto k = static_cast<std::uint64_t>(key);
-  const philox4x32_ctr_t counter = {{static_cast<std::uint32_t>(block),
-                                     static_cast<std::uint32_t>(block >> 32), lane, 0}};
+  const philox4x32_ctr_t counter = {
+      {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(block >> 32), lane, 0}};
   const philox4x32_key_t philox_key = {
       {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(k >> 32)}};
   const philox4x32_ctr_t words = philox4x32_R(10, counter, philox_key);

@@ -41,7 +41,8 @@ enum class Lattice { hcp, fcc };
 /// A close-packed crystal on the floor, filled layer by layer from below. hcp: layers parallel to
 /// the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even. fcc: (100) layers at
 /// z = 1/2 + k / sqrt(2), footprint n x m. Any other footprint is an error that names the two
-/// nearest, unless `stretch`, which spaces the rows out to the footprint. Rosato et al. 2010, sec. II.
+/// nearest, unless `stretch`, which spaces the rows out to the footprint. Rosato et al. 2010, sec.
+/// II.
 struct Crystal {
   Lattice lattice = Lattice::hcp;
   bool stretch = false;

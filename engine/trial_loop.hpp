@@ -12,10 +12,10 @@ namespace jostle {
 
 /// Where the trials of a realization stand; with the positions, all that the next trial depends on.
 struct MoveState {
-  std::uint64_t next_trial = 0;      // number of the next trial of the realization: Philox's counter
-  double step = 0;                   // Metropolis: the current largest displacement, diameters
-  std::uint64_t window_trials = 0;   // trials counted since the last adaptation of the step
-  std::uint64_t window_base = 0;     // of them, those the share is taken of
+  std::uint64_t next_trial = 0;     // number of the next trial of the realization: Philox's counter
+  double step = 0;                  // Metropolis: the current largest displacement, diameters
+  std::uint64_t window_trials = 0;  // trials counted since the last adaptation of the step
+  std::uint64_t window_base = 0;    // of them, those the share is taken of
   std::uint64_t window_accepted = 0;
   bool operator==(const MoveState&) const = default;
 };

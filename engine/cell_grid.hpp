@@ -1,0 +1,116 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "engine/container.hpp"
+#include "engine/vec3.hpp"
+
+namespace jostle {
+
+/// Spheres sorted into cells at least `cutoff` wide, so that whatever lies within the cutoff of a
+/// point lies in its cell or a neighbouring one. Holds the order of one moment; build it anew after
+/// spheres have moved. A periodic direction with room for fewer than three cells gets a single one
+/// (all pairs), so that no image is met twice.
+class CellGrid {
+ public:
+  /// The grid over positions 0 .. n - 1, `position(i)` in diameters and wrapped.
+  /// cutoff > 0, diameters. Cells are widened where space is so empty that they would outnumber
+  /// the spheres by far.
+  template <class Position>
+  void build(const Container& container, double cutoff, std::uint32_t n, Position&& position) {
+    set_shape(container, cutoff, n, position);
+    starts_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] + 1, 0);
+    cell_of_.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      cell_of_[i] = cell_at(position(i));
+      ++starts_[cell_of_[i] + 1];
+    }
+    for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
+    order_.resize(n);
+    next_.assign(starts_.begin(), starts_.end() - 1);
+    for (std::uint32_t i = 0; i < n; ++i) order_[next_[cell_of_[i]]++] = i;
+  }
+
+  /// Calls visit(j) for every sphere in the cell of `r` and the cells around it.
+  template <class Visit>
+  void for_each_near(Vec3 r, Visit&& visit) const {
+    const std::array<int, 3> home = {index(r.x, 0), index(r.y, 1), index(r.z, 2)};
+    std::array<std::array<int, 3>, 3> line;
+    std::array<int, 3> length;
+    for (int axis = 0; axis < 3; ++axis) length[axis] = neighbours(home[axis], axis, line[axis]);
+    for (int a = 0; a < length[2]; ++a) {
+      for (int b = 0; b < length[1]; ++b) {
+        for (int c = 0; c < length[0]; ++c) {
+          const std::size_t cell = cell_number(line[0][c], line[1][b], line[2][a]);
+          for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) visit(order_[k]);
+        }
+      }
+    }
+  }
+
+  std::size_t bytes() const {
+    return sizeof(std::uint32_t) *
+           (starts_.capacity() + order_.capacity() + cell_of_.capacity() + next_.capacity());
+  }
+
+ private:
+  template <class Position>
+  void set_shape(const Container& container, double cutoff, std::uint32_t n, Position& position) {
+    const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
+    periodic_ = {bulk || std::holds_alternative<PeriodicBox>(container),
+                 bulk || std::holds_alternative<PeriodicBox>(container), bulk != nullptr};
+    double top = 1;
+    for (std::uint32_t i = 0; i < n; ++i) top = std::max(top, position(i).z);
+    const std::array<double, 3> widths = {width_x(container), width_y(container),
+                                          bulk ? bulk->height : top};
+    double side = cutoff;
+    do {
+      double cells = 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double fitting = std::max(1.0, std::floor(widths[axis] / side));
+        counts_[axis] = static_cast<int>(std::min(fitting, 1e9));
+        if (periodic_[axis] && counts_[axis] < 3) counts_[axis] = 1;
+        per_length_[axis] = counts_[axis] / widths[axis];
+        cells *= counts_[axis];
+      }
+      if (cells <= 1000 + 8.0 * n) break;
+      side *= 1.5;
+    } while (true);
+  }
+
+  int index(double x, int axis) const {
+    return std::clamp(static_cast<int>(x * per_length_[axis]), 0, counts_[axis] - 1);
+  }
+  std::size_t cell_number(int ix, int iy, int iz) const {
+    return (static_cast<std::size_t>(iz) * counts_[1] + iy) * counts_[0] + ix;
+  }
+  std::uint32_t cell_at(Vec3 r) const {
+    return static_cast<std::uint32_t>(cell_number(index(r.x, 0), index(r.y, 1), index(r.z, 2)));
+  }
+  int neighbours(int home, int axis, std::array<int, 3>& line) const {
+    int length = 0;
+    if (periodic_[axis]) {
+      if (counts_[axis] == 1) {
+        line[0] = 0;
+        return 1;
+      }
+      line = {(home + counts_[axis] - 1) % counts_[axis], home, (home + 1) % counts_[axis]};
+      return 3;
+    }
+    for (int k = std::max(0, home - 1); k <= std::min(counts_[axis] - 1, home + 1); ++k) {
+      line[length++] = k;
+    }
+    return length;
+  }
+
+  std::array<bool, 3> periodic_{};
+  std::array<int, 3> counts_{1, 1, 1};
+  std::array<double, 3> per_length_{1, 1, 1};
+  std::vector<std::uint32_t> starts_, order_, cell_of_, next_;
+};
+
+}  // namespace jostle

@@ -1,0 +1,99 @@
+#include "engine/taps.hpp"
+
+#include "engine/cell_grid.hpp"
+#include "engine/geometry.hpp"
+
+namespace jostle {
+
+namespace {
+
+// A vector uniform in the disc, by rejection from the square.
+Vec3 random_in_disc(double radius, RandomStream& random) {
+  for (;;) {
+    const double x = 2 * random.uniform() - 1;
+    const double y = 2 * random.uniform() - 1;
+    if (x * x + y * y <= 1) return {radius * x, radius * y, 0};
+  }
+}
+
+// Lateral offsets, one sphere after another; each sees the spheres as they then stand.
+class LateralOffsets {
+ public:
+  LateralOffsets(Packing& packing, const Shake& shake) : packing_(packing), shake_(shake) {
+    // Both spheres of a pair may have gone up to one radius of the disc since the grid was built.
+    grid_.build(packing.container, 1 + 2 * shake.lateral_radius,
+                static_cast<std::uint32_t>(packing.centres.size()),
+                [&](std::uint32_t i) { return packing.centres[i]; });
+    origins_ = packing.centres;
+  }
+
+  template <class Box>
+  std::uint64_t operator()(const Box& box, RandomStream& random) const {
+    std::uint64_t dropped = 0;
+    for (std::uint32_t i = 0; i < packing_.centres.size(); ++i) {
+      dropped += !offset(box, i, random);
+    }
+    return dropped;
+  }
+
+ private:
+  template <class Box>
+  bool offset(const Box& box, std::uint32_t i, RandomStream& random) const {
+    for (std::uint32_t attempt = 0; attempt <= shake_.retries; ++attempt) {
+      const Vec3 offset = random_in_disc(shake_.lateral_radius, random);
+      const Vec3 target = wrapped(box, packing_.centres[i] + offset);
+      if (is_free(box, i, target)) {
+        packing_.centres[i] = target;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  template <class Box>
+  bool is_free(const Box& box, std::uint32_t i, Vec3 target) const {
+    if (!clear_of_boundaries(box, target)) return false;
+    bool free = true;
+    grid_.for_each_near(origins_[i], [&](std::uint32_t j) {
+      if (j != i && overlaps(box, target, packing_.centres[j])) free = false;
+    });
+    return free;
+  }
+
+  Packing& packing_;
+  const Shake& shake_;
+  CellGrid grid_;
+  std::vector<Vec3> origins_;
+};
+
+struct Excite {
+  Packing& packing;
+  RandomStream& random;
+
+  TapReport operator()(const Dilate& tap) const {
+    for (Vec3& centre : packing.centres) centre.z = centre.z * (1 + tap.epsilon);
+    return {};
+  }
+  TapReport operator()(const DilateFloorHeld& tap) const {
+    // z + (z - 1/2) delta, so that a sphere on the floor keeps its height to the bit.
+    for (Vec3& centre : packing.centres) centre.z += (centre.z - sphere_radius) * tap.delta;
+    return {};
+  }
+  TapReport operator()(const Lift& tap) const {
+    for (Vec3& centre : packing.centres) centre.z += tap.gamma;
+    return {};
+  }
+  TapReport operator()(const Shake& tap) const {
+    for (Vec3& centre : packing.centres) centre.z = centre.z * (1 + tap.lambda);
+    const LateralOffsets offsets(packing, tap);
+    return {std::visit([&](const auto& box) { return offsets(box, random); }, packing.container)};
+  }
+};
+
+}  // namespace
+
+TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {
+  return std::visit(Excite{packing, random}, tap);
+}
+
+}  // namespace jostle
