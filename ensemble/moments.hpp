@@ -5,7 +5,8 @@
 namespace jostle {
 
 /// Mean and spread of one observable at one tap over realizations, folded one value at a time in
-/// the order of realizations (Welford 1962), so that small fluctuations on a large mean keep their
+/// the order of realizations (Welford 1962, on the differences from the first value, which are
+/// exact where fluctuations are small), so that small fluctuations on a large mean keep their
 /// digits. NaN values (failed realizations) are skipped.
 class Moments {
  public:
@@ -21,7 +22,8 @@ class Moments {
 
  private:
   std::uint64_t count_ = 0;
-  double mean_ = 0;
+  double origin_ = 0;  // the first value
+  double mean_ = 0;    // of the differences from it
   double sum_of_squares_ = 0;
 };
 

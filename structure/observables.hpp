@@ -21,9 +21,12 @@ struct BottomFraction {
   bool operator==(const BottomFraction&) const = default;
 };
 
-/// <Phi_c>, solids fraction from the floor to `depth` x 2<Z>, with the solid volume between z = 0
-/// and R multiplied by 16/11, the deficit that a plane wall makes. Philippe & Bideau 2001, sec. III
-/// ("approximately 90 %" of the packing).
+/// <Phi_c>, solids fraction from the floor to h = `depth` x 2<Z> ("approximately 90 %" of the
+/// packing, Philippe & Bideau 2001, sec. III; <Z> is that of the same packing, so the window
+/// follows the bed as it compacts), with the solid volume between z = 0 and R multiplied by 16/11,
+/// the deficit that a plane wall makes: (V(0, h) + 5/11 V(0, R)) / (footprint area x h), V being
+/// the volume of spheres between two heights. It corrects for the floor alone, not for the sides.
+/// `depth` in (0, 1].
 struct CorrectedFraction {
   double depth = 0.9;
   bool operator==(const CorrectedFraction&) const = default;

@@ -1,0 +1,37 @@
+#include "ensemble/moments.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace jostle {
+
+namespace {
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+}
+
+void Moments::add(double value) {
+  if (std::isnan(value)) return;
+  if (count_ == 0) origin_ = value;
+  ++count_;
+  const double x = value - origin_;
+  const double before = x - mean_;
+  mean_ += before / static_cast<double>(count_);
+  sum_of_squares_ += before * (x - mean_);
+}
+
+double Moments::mean() const {
+  return count_ == 0 ? not_a_number : origin_ + mean_;
+}
+
+double Moments::sigma() const {
+  if (count_ == 0) return not_a_number;
+  return std::sqrt(sum_of_squares_ / static_cast<double>(count_));
+}
+
+double Moments::standard_error() const {
+  if (count_ < 2) return not_a_number;
+  const double m = static_cast<double>(count_);
+  return std::sqrt(sum_of_squares_ / (m * (m - 1)));
+}
+
+}  // namespace jostle

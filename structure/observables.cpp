@@ -1,0 +1,89 @@
+#include "structure/observables.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "engine/slab.hpp"
+
+namespace jostle {
+
+namespace {
+
+struct Label {
+  ObservableLabel operator()(const MeanHeight&) const {
+    return {"mean_height", "d", "mean height of the sphere centres <Z>",
+            "Philippe & Bideau 2001, sec. II"};
+  }
+  ObservableLabel operator()(const BottomFraction&) const {
+    return {"bottom_fraction", "1", "solids fraction Phi_b between the floor and 2 d",
+            "Philippe & Bideau 2001, sec. III"};
+  }
+  ObservableLabel operator()(const CorrectedFraction&) const {
+    return {"corrected_fraction", "1",
+            "solids fraction <Phi_c> of most of the packing, corrected for the floor",
+            "Philippe & Bideau 2001, sec. III"};
+  }
+  ObservableLabel operator()(const BulkFraction& bulk) const {
+    return {bulk.name, "1", "solids fraction of the bulk, between two heights fixed for the run",
+            "Rosato et al. 2010, sec. II"};
+  }
+};
+
+// The window an observable keeps for the whole run; {0, 0} where it needs none.
+HeightWindow fixed_window(const Observable& observable, const Packing& start) {
+  const auto* bulk = std::get_if<BulkFraction>(&observable);
+  return bulk != nullptr ? resolve(bulk->window, start) : HeightWindow{0, 0};
+}
+
+struct Measure {
+  const Packing& packing;
+  HeightWindow window;
+
+  double operator()(const MeanHeight&) const { return mean_height(packing); }
+
+  double operator()(const BottomFraction&) const {
+    return solids_fraction(packing, {0, 4 * sphere_radius});
+  }
+
+  double operator()(const CorrectedFraction& corrected) const {
+    // A plane wall thins the first radius to 11/16 of the bulk (Philippe & Bideau 2001, sec. III):
+    // the solid volume there counts 16/11 times, that is, 5/11 more.
+    const double top = corrected.depth * 2 * mean_height(packing);
+    const double thinned = std::min(sphere_radius, top);
+    return solids_fraction(packing, {0, top}) +
+           5.0 / 11.0 * solids_fraction(packing, {0, thinned}) * (thinned / top);
+  }
+
+  double operator()(const BulkFraction&) const { return solids_fraction(packing, window); }
+};
+
+}  // namespace
+
+ObservableLabel label(const Observable& observable) {
+  return std::visit(Label{}, observable);
+}
+
+Observer::Observer(const std::vector<Observable>& observables, const Packing& start)
+    : observables_(observables) {
+  windows_.reserve(observables.size());
+  for (const Observable& observable : observables) {
+    windows_.push_back(fixed_window(observable, start));
+  }
+}
+
+Observer::Observer(const std::vector<Observable>& observables, std::vector<HeightWindow> windows)
+    : observables_(observables), windows_(std::move(windows)) {
+  assert(windows_.size() == observables_.size());
+}
+
+std::vector<double> Observer::operator()(const Packing& packing) const {
+  std::vector<double> values;
+  values.reserve(observables_.size());
+  for (std::size_t i = 0; i < observables_.size(); ++i) {
+    values.push_back(std::visit(Measure{packing, windows_[i]}, observables_[i]));
+  }
+  return values;
+}
+
+}  // namespace jostle
