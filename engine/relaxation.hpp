@@ -13,12 +13,11 @@ enum class RelaxationStatus : std::uint32_t { running = 0, settled = 1, capped =
 /// Everything a relaxation must remember to go on bit for bit after a checkpoint.
 struct RelaxationProgress {
   RelaxationStatus status = RelaxationStatus::running;
-  std::uint64_t trials = 0;          // since the tap
-  std::uint64_t accepted = 0;        // of them
-  std::uint64_t distance_tests = 0;  // pair distances computed
-  bool measured = false;             // whether last_value holds a measurement
-  double last_value = 0;             // of <Z> or the bulk fraction
-  std::uint32_t passes = 0;          // times in a row the rule was met
+  std::uint64_t trials = 0;    // since the tap
+  std::uint64_t accepted = 0;  // of them
+  bool measured = false;       // whether last_value holds a measurement
+  double last_value = 0;       // of <Z> or the bulk fraction
+  std::uint32_t passes = 0;    // times in a row the rule was met
   bool operator==(const RelaxationProgress&) const = default;
 };
 

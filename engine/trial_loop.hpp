@@ -7,6 +7,7 @@
 #include "engine/moves.hpp"
 #include "engine/packing.hpp"
 #include "engine/random.hpp"
+#include "engine/stops.hpp"
 
 namespace jostle {
 
@@ -50,7 +51,10 @@ class TrialLoop {
   /// Begins the relaxation of a tap: resets the Metropolis step where the move asks for it.
   virtual void begin_tap() = 0;
 
+  /// <Z> of the spheres as they stand, diameters, summed in the order they were loaded.
   virtual double mean_height() const = 0;
+  /// Solids fraction between two heights (engine/slab.hpp).
+  virtual double solids_fraction(HeightWindow window) const = 0;
   virtual std::uint32_t n_spheres() const = 0;
   virtual const MoveState& state() const = 0;
   virtual void restore(const MoveState& state) = 0;

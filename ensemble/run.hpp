@@ -15,7 +15,8 @@ namespace jostle {
 struct Progress {
   std::atomic<std::uint64_t> realizations_done{0}, realizations_running{0}, realizations_failed{0};
   std::atomic<std::uint64_t> taps_done{0}, trials_done{0};
-  std::atomic<std::uint64_t> busy_nanoseconds{0};  // of all threads inside trial loops
+  std::atomic<std::uint64_t> distance_tests{0};
+  std::atomic<std::uint64_t> relaxing_nanoseconds{0};  // of all threads, inside relaxations
 };
 
 struct RunOptions {

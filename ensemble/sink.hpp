@@ -21,14 +21,12 @@ struct RealizationId {
 
 /// What is recorded after every tap besides the observables.
 struct RelaxationRecord {
-  double sweeps = 0;            // of the relaxation; a multiple of 1 / n_spheres
-  double acceptance = 0;        // accepted trials / trials; NaN without trials
-  double tests_per_trial = 0;   // pair distances computed / trials; NaN without trials
-  double capped = 0;            // 1 where the cap ended the relaxation
+  double sweeps = 0;      // of the relaxation; a multiple of 1 / n_spheres
+  double acceptance = 0;  // accepted trials / trials; NaN without trials
+  double capped = 0;      // 1 where the cap ended the relaxation
 };
 /// The names under which the fields above are stored beside the observables, in order.
-inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "tests_per_trial",
-                                                     "capped"};
+inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "capped"};
 
 /// One row of the series: tap 0 is the start.
 struct TapRow {
@@ -39,18 +37,18 @@ struct TapRow {
 
 struct SnapshotRecord {
   std::uint64_t tap = 0;
-  std::vector<Vec3> centres;                 // [n_spheres], or empty where not kept
-  std::optional<double> coordination;        // mean number of centres within the cut
-  std::vector<double> height_histogram;      // [n_bins], or empty where not kept
+  std::vector<Vec3> centres;             // [n_spheres], or empty where not kept
+  std::optional<double> coordination;    // mean number of centres within the cut
+  std::vector<double> height_histogram;  // [n_bins], or empty where not kept
 };
 
 /// A realization between two sweeps: what it needs to go on bit for bit.
 struct RealizationState {
-  std::uint64_t rows = 0;                    // recorded: taps 0 .. rows - 1; the next is tap `rows`
-  bool relaxing = false;                     // tap `rows` was excited and is not yet relaxed
+  std::uint64_t rows = 0;  // recorded: taps 0 .. rows - 1; the next is tap `rows`
+  bool relaxing = false;   // tap `rows` was excited and is not yet relaxed
   RelaxationProgress relaxation;
   MoveState move;
-  std::uint64_t tap_stream_position = 0;     // of Purpose::tap
+  std::uint64_t tap_stream_position = 0;  // of Purpose::tap
   HeightWindow stop_window{0, 0};
   std::vector<HeightWindow> observable_windows;
   std::vector<Vec3> centres;
@@ -61,9 +59,11 @@ enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 
 /// How a realization ended.
 struct Outcome {
   RealizationStatus status = RealizationStatus::done;
-  std::string reason;          // of a failure
-  double seconds = 0;          // of work in this process
-  std::uint64_t trials = 0;    // made in this process
+  std::string reason;  // of a failure
+  // Of the work in this process: cost, not physics, so it depends on where a run was resumed.
+  double seconds = 0;
+  std::uint64_t trials = 0;
+  std::uint64_t distance_tests = 0;  // pair distances computed
 };
 
 /// Receives the records of realizations. Calls for one realization come one after another, calls
