@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "ensemble/plan.hpp"
+
+// A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
+namespace jostle {
+
+/// What is wrong with one value of a scene.
+struct Fault {
+  std::string pointer;  // JSON pointer to the value (RFC 6901); "" is the whole scene
+  std::string message;  // what, why, the allowed range or keys, and a did-you-mean
+  bool operator==(const Fault&) const = default;
+};
+
+/// "start": {"file": ...}: a packing saved by an earlier run (.h5, .hdf5: point, realization, tap)
+/// or extended XYZ (.xyz, .extxyz: frame).
+struct PackingFile {
+  std::string path;         // as written; relative to the folder of the scene file
+  std::uint32_t point = 0;  // index of the sweep point of the earlier run
+  std::uint32_t realization = 0;
+  std::optional<std::uint64_t> tap;    // a snapshot of the earlier run; absent: its last
+  std::optional<std::uint64_t> frame;  // counted from 0; absent: the last
+  auto operator<=>(const PackingFile&) const = default;
+};
+
+using StartChoice =
+    std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, PackingFile>;
+
+/// Strengths from `from` to `to`, both included, `step` apart; downwards where from > to. With
+/// square_root the three are square roots, and a tap's strength is their square: [PB]'s control
+/// parameter is epsilon^(1/2).
+enum class RampScale { linear, square_root };
+struct Ramp {
+  double from = 0, to = 0, step = 0;
+  RampScale scale = RampScale::linear;
+  bool operator==(const Ramp&) const = default;
+};
+
+/// The strengths of a ramp, in order. A value in between is rounded to 15 significant digits, so
+/// that it is the number a person would have typed, and the same on the way up and down.
+std::vector<double> strengths(const Ramp& ramp);
+
+/// One line of a protocol: `count` taps, or `count` taps at each strength of a ramp; the strength
+/// of `tap` itself is then unused (zero).
+struct ProtocolLine {
+  Tap tap;
+  std::optional<Ramp> ramp;
+  std::uint64_t count = 0;
+  bool operator==(const ProtocolLine&) const = default;
+};
+
+/// Taps from 10^(k / per_decade) x `from`, rounded, at most `to`; and `also`, any others.
+struct LogarithmicTaps {
+  std::uint64_t from = 1, to = 1;
+  std::uint32_t per_decade = 3;
+  std::vector<std::uint64_t> also;  // ascending
+  bool operator==(const LogarithmicTaps&) const = default;
+};
+
+/// Snapshots with the taps as the scene gives them: ascending, or a logarithmic grid.
+struct SnapshotChoice {
+  std::variant<std::vector<std::uint64_t>, LogarithmicTaps> taps;
+  bool positions = true, coordination = true, height_histogram = true;
+  double contact_cut = 1.05, bin_width = 0.1;  // diameters
+  bool operator==(const SnapshotChoice&) const = default;
+};
+
+/// Values that vary together: one list of values a pointer, all of one length. An axis with one
+/// pointer is a plain axis, with several a zipped one. Axes are crossed, the first varies slowest.
+struct SweepAxis {
+  std::vector<std::pair<std::string, std::vector<nlohmann::ordered_json>>> columns;
+  std::size_t size() const { return columns.empty() ? 0 : columns.front().second.size(); }
+  bool operator==(const SweepAxis&) const = default;
+};
+
+struct Scene {
+  std::string name = "scene", description;
+  std::uint64_t seed = 0;
+  std::uint32_t realizations = 1;  // of every sweep point
+  Streams streams = Streams::independent;
+
+  Container container;
+  std::uint32_t n_spheres = 0;
+  StartChoice start;
+  std::vector<ProtocolLine> protocol;
+  Move move;
+  Stop stop;
+
+  std::vector<Observable> observables;
+  SnapshotChoice snapshots;
+  std::vector<SweepAxis> sweep;
+  bool operator==(const Scene&) const = default;
+};
+
+/// A scene, or every fault that keeps the text from being one.
+struct ParsedScene {
+  std::optional<Scene> scene;
+  std::vector<Fault> faults;  // empty if and only if there is a scene
+};
+
+/// Reads a scene. Reports every fault: of syntax (with line and column), duplicate and unknown
+/// keys, wrong types, values out of range or at odds with each other, also at single sweep points.
+ParsedScene parse_scene(std::string_view json_text);
+
+/// The scene with every default written out, keys in a fixed order: parse_scene(resolved(s).dump())
+/// gives s again.
+nlohmann::ordered_json resolved(const Scene& scene);
+
+/// Number of sweep points, 1 without a sweep.
+std::size_t n_sweep_points(const Scene& scene);
+
+/// Reads the centres of a saved packing. May throw; make_plans lets it pass.
+using PackingLoader = std::function<std::vector<Vec3>(const PackingFile&)>;
+
+/// One plan a sweep point, in the order of the sweep (first axis slowest). Calls `load` once for
+/// every distinct file. Throws StartError where a file does not hold as many spheres as the scene.
+std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load);
+
+/// The JSON Schema (draft-07) of scenes, as shipped in config/scene.schema.json.
+std::string_view scene_schema();
+
+/// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
+/// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
+/// those, more realizations, and another name or description.
+std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
+                                 const nlohmann::ordered_json& new_resolved);
+
+}  // namespace jostle
