@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// Who holds NAME.lock.
+struct LockOwner {
+  std::string host;
+  long pid = 0;
+  std::uint64_t start_time = 0;  // field 22 of /proc/PID/stat
+  bool alive = false;            // known only on its own host; elsewhere taken to be alive
+};
+std::optional<LockOwner> lock_owner(const std::string& results_path);
+
+/// A file and, where a run goes on or was killed, its parts.
+struct RunStatus {
+  RunState state = RunState::running;            // of the file
+  std::optional<LockOwner> owner;                // of a lock
+  std::vector<RealizationSummary> realizations;  // with the parts' newer checkpoints
+  std::uint64_t file_bytes = 0, parts_bytes = 0;
+};
+
+/// Looks without disturbing: a live run may go on while this reads.
+RunStatus run_status(const std::string& results_path);
+
+}  // namespace jostle

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "results/study.hpp"
+
+namespace jostle {
+
+/// Joins the complete files of all shards of one study into one whose digest is that of a single
+/// run. Throws ResultsError naming the file, where an input is unfinished or damaged, has another
+/// scene, holds a realization that an earlier input holds too, or where no input holds one; and
+/// where `output` exists, unless `force`.
+void merge_files(std::span<const std::string> inputs, const std::string& output,
+                 const Provenance& provenance, bool force = false);
+
+}  // namespace jostle

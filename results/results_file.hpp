@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/packing.hpp"
+#include "results/record.hpp"
+#include "results/study.hpp"
+
+namespace jostle {
+
+/// Written on the file: `running` until the first fold, then `interrupted` while realizations of
+/// the shard have taps left, else `complete` (with or without failed realizations).
+enum class RunState { running, interrupted, complete };
+
+/// One column of the series at one sweep point, over all realizations.
+struct Series {
+  ObservableLabel label;
+  std::uint64_t n_taps = 0;  // rows: taps 0 .. n_taps - 1
+  std::uint32_t n_realizations = 0;
+  std::vector<double> values;  // [n_taps, n_realizations]; NaN where there is none
+
+  double at(std::uint64_t tap, std::uint32_t realization) const {
+    return values[tap * n_realizations + realization];
+  }
+};
+
+/// The same over the ensemble, [n_taps] each.
+struct EnsembleSeries {
+  ObservableLabel label;
+  std::vector<double> mean, sigma, error;  // sigma has 1/M; NaN where undefined
+  std::vector<std::uint32_t> count;        // realizations that have a value
+};
+
+struct RealizationSummary {
+  RealizationId id;
+  RealizationStatus status = RealizationStatus::missing;
+  std::uint64_t rows = 0;  // recorded taps, the start included
+  std::string reason;      // of a failure
+  double seconds = 0;
+  std::uint64_t trials = 0;
+};
+
+/// A results file opened for reading. Its checksum is verified first: a damaged, truncated or
+/// foreign file is refused with a ResultsError that says which. One thread at a time may use any
+/// ResultsFile.
+class ResultsFile {
+ public:
+  explicit ResultsFile(const std::string& path);
+  ~ResultsFile();
+  ResultsFile(ResultsFile&&) noexcept;
+
+  const std::string& path() const;
+  RunState state() const;
+  const Shard& shard() const;
+  const Study& study() const;
+  const std::vector<Provenance>& provenance() const;  // one a process that worked on it
+  /// Marks this run's parts; random.
+  const std::string& run_id() const;
+
+  /// Every (point, realization), points outermost.
+  std::vector<RealizationSummary> realizations() const;
+  /// The observables, then the relaxation columns.
+  std::vector<Series> series(std::uint32_t point) const;
+  std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
+  /// Everything stored of one realization.
+  RealizationRecord record(RealizationId id) const;
+  /// Its snapshots alone; centres are empty where positions were not kept.
+  std::vector<SnapshotRecord> snapshots(RealizationId id) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// SHA-256, in hex, over every dataset and attribute outside /provenance and /timing, in order of
+/// their paths: path, type, shape and values, whatever the chunks and compression. The file's
+/// checksum is verified first.
+std::string digest_of(const std::string& path);
+
+}  // namespace jostle

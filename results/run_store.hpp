@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ensemble/sink.hpp"
+#include "results/study.hpp"
+
+namespace jostle {
+
+/// The results of one run on disk: a file NAME that always opens, parts under NAME.parts/ while the
+/// run goes on, and NAME.lock. Killed at any instant, it leaves its last checkpoints.
+///
+/// Begin/append/snapshot/checkpoint/end may be called from several threads, one realization at a
+/// time from one; everything else from one thread. Every function throws ResultsError.
+class RunStore : public Sink {
+ public:
+  /// Starts a file. An existing one is refused unless `force`, which discards it and its parts and
+  /// takes over the lock of another host. Refuses a disk with less space than disk_estimate().
+  static std::unique_ptr<RunStore> create(const std::string& path, const Study& study,
+                                          const Shard& shard, const Provenance& provenance,
+                                          bool force = false);
+  /// Goes on with a file. `study` is the stored one, or it has more taps at the end or more
+  /// realizations: the caller compares the scenes (ResultsFile::study) and refuses other changes.
+  /// The shard must be the stored one. `force` only takes over the lock of another host.
+  static std::unique_ptr<RunStore> resume(const std::string& path, const Study& study,
+                                          const Shard& shard, const Provenance& provenance,
+                                          bool force = false);
+  /// Gives the lock back; parts that were not folded stay for a resume.
+  ~RunStore() override;
+
+  /// Realizations of the shard that have taps left to do; failed ones only if asked for, and those
+  /// begin anew.
+  std::vector<RealizationId> pending(bool retry_failed = false) const;
+
+  std::optional<RealizationState> begin(RealizationId id) override;
+  void append(RealizationId id, const TapRow& row) override;
+  void snapshot(RealizationId id, const SnapshotRecord& record) override;
+  void checkpoint(RealizationId id, const RealizationState& state) override;
+  void end(RealizationId id, const RealizationState& state, const Outcome& outcome) override;
+
+  /// Folds everything into a new file in the order of (point, realization), replaces the old one
+  /// by it, then deletes the parts. At the end of a run and at a graceful stop alike: the
+  /// restart states of unfinished realizations are in the file.
+  void finish();
+
+ private:
+  class Impl;
+  explicit RunStore(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace jostle

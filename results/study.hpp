@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/container.hpp"
+#include "ensemble/plan.hpp"
+#include "ensemble/sink.hpp"
+#include "structure/observables.hpp"
+
+namespace jostle {
+
+/// What a results file must know of one sweep point to lay out and read back its numbers.
+struct StudyPoint {
+  std::string label;                                              // for people; may be empty
+  std::vector<std::pair<std::string, std::string>> sweep_values;  // JSON pointer, JSON value
+  std::uint64_t id = 0;                                           // Plan::point_id
+  std::uint64_t seed = 0;
+  Container container;
+  std::uint32_t n_spheres = 0;
+  std::uint64_t taps = 0;                    // the series have taps + 1 rows: tap 0 is the start
+  std::vector<ObservableLabel> observables;  // as the scene lists them
+  Snapshots snapshots;
+};
+
+/// A whole study: every sweep point times `realizations`.
+struct Study {
+  std::string scene;           // the scene file, word for word
+  std::string resolved_scene;  // the same with every default written out: what a resume compares
+  std::uint32_t realizations = 0;
+  std::vector<StudyPoint> points;
+};
+
+/// The study of the given plans, one point a plan.
+Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
+                 std::uint32_t realizations);
+
+/// The share number `index` of `count`, index in 1 .. count. A realization belongs to share
+/// (realization * n_points + point) % count + 1: more realizations leave the old ones where they
+/// were.
+struct Shard {
+  std::uint32_t index = 1, count = 1;
+  bool operator==(const Shard&) const = default;
+};
+bool in_share(const Shard& shard, const Study& study, RealizationId id);
+
+/// Every realization of a share, in the order of (realization, point).
+std::vector<RealizationId> realizations_of(const Study& study, const Shard& shard);
+
+/// Bytes on disk that a run needs at its largest, parts and folded file together, uncompressed.
+std::uint64_t disk_estimate(const Study& study, const Shard& shard);
+
+/// Who computed: one of these a process that worked on the file. Never part of the digest.
+struct Provenance {
+  std::string version, git_revision;  // of jostle
+  std::string libraries;              // "HDF5 1.10.8, ..."
+  std::string host, cpu, instruction_set;
+  std::string threads;
+  std::string command_line;
+  std::string started;  // UTC, ISO 8601
+};
+
+/// Host, processor model, time and HDF5's and OpenSSL's versions filled in; the rest is the
+/// caller's.
+Provenance provenance_of_this_machine();
+
+}  // namespace jostle
