@@ -1,0 +1,239 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <vector>
+
+#include "engine/elementary.hpp"
+#include "engine/geometry.hpp"
+#include "engine/neighbour_lists.hpp"
+#include "engine/proposals.hpp"
+#include "engine/slab.hpp"
+#include "engine/theta_table.hpp"
+#include "engine/trial_loop.hpp"
+
+namespace jostle {
+
+/// What decides a trial that rises: it cannot happen (polar), it is refused (cold), it passes with
+/// probability exp(-beta dz) (thermal), or height does not matter (weightless).
+enum class Rise { impossible, refused, thermal, free };
+
+/// The trial loop of one container and one kind of move. One trial is: propose, wrap, test floor
+/// and sides, test the neighbours, accept or refuse. Everything else happens once a batch or more
+/// rarely.
+template <class Box, Rise rise>
+class TypedTrialLoop final : public TrialLoop {
+ public:
+  TypedTrialLoop(const Box& box, const Move& move, StreamKey key, const ProposalKernels& kernels)
+      : box_(box), key_(key), kernels_(kernels) {
+    if (const auto* polar = std::get_if<PolarMove>(&move)) {
+      polar_ = *polar;
+      theta_table_ = make_theta_table(polar_);
+      state_.step = polar_.max_step;
+    } else {
+      metropolis_ = std::get<MetropolisMove>(move);
+      state_.step = metropolis_.max_step;
+    }
+  }
+
+  void load(const Packing& packing) override {
+    centres_.resize(packing.centres.size());
+    std::ranges::transform(packing.centres, centres_.begin(), [](Vec3 r) {
+      return PaddedVec3{r.x, r.y, r.z, 0};
+    });
+    lists_valid_ = false;
+    batch_valid_ = false;
+  }
+
+  void store(Packing& packing) const override {
+    packing.centres.resize(centres_.size());
+    std::ranges::transform(centres_, packing.centres.begin(), unpadded);
+  }
+
+  void begin_tap() override {
+    if constexpr (rise != Rise::impossible) {
+      if (metropolis_.adaptation && metropolis_.adaptation->reset_each_tap) {
+        state_.step = metropolis_.max_step;
+        state_.window_trials = state_.window_base = state_.window_accepted = 0;
+      }
+    }
+  }
+
+  void run(std::uint64_t n_trials) override {
+    assert(!centres_.empty());
+    if (!lists_valid_) rebuild_lists();
+    while (n_trials > 0) {
+      const std::uint64_t offset = state_.next_trial % ProposalBatch::size;
+      if (!batch_valid_ || offset == 0) propose(state_.next_trial - offset);
+      std::uint64_t piece = std::min(n_trials, ProposalBatch::size - offset);
+      if constexpr (rise != Rise::impossible) piece = std::min(piece, until_adaptation());
+      const BatchCounts counts =
+          run_batch(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(offset + piece));
+      state_.next_trial += piece;
+      tally_.trials += piece;
+      tally_.accepted += counts.accepted;
+      tally_.distance_tests += counts.distance_tests;
+      if constexpr (rise != Rise::impossible) adapt_step(piece, counts);
+      n_trials -= piece;
+    }
+  }
+
+  double mean_height() const override {
+    double sum = 0;
+    for (const PaddedVec3& centre : centres_) sum += centre.z;
+    return sum / static_cast<double>(centres_.size());
+  }
+
+  double solids_fraction(HeightWindow window) const override {
+    Packing packing{box_, {}};
+    store(packing);
+    return jostle::solids_fraction(packing, window);
+  }
+
+  std::uint32_t n_spheres() const override { return static_cast<std::uint32_t>(centres_.size()); }
+  const MoveState& state() const override { return state_; }
+  void restore(const MoveState& state) override {
+    state_ = state;
+    batch_valid_ = false;
+    lists_valid_ = false;  // a larger step may need a larger skin
+  }
+  const TrialTally& tally() const override { return tally_; }
+  std::size_t bytes() const override {
+    return sizeof(*this) + lists_.bytes() + sizeof(PaddedVec3) * centres_.capacity() +
+           sizeof(double) * theta_table_.capacity();
+  }
+
+ private:
+  struct BatchCounts {
+    std::uint64_t accepted = 0, rising = 0, distance_tests = 0;
+  };
+
+  void propose(std::uint64_t first) {
+    const BatchOrigin origin{static_cast<std::uint64_t>(key_), first, n_spheres()};
+    if constexpr (rise == Rise::impossible) {
+      kernels_.polar(origin, theta_table_.data(), polar_.max_step, batch_);
+    } else {
+      kernels_.metropolis(origin, batch_);
+    }
+    batch_valid_ = true;
+  }
+
+  // The displacement of a trial in the batch, diameters.
+  Vec3 displacement(std::uint32_t t) const {
+    const Vec3 proposed{batch_.dx[t], batch_.dy[t], batch_.dz[t]};
+    if constexpr (rise == Rise::impossible) return proposed;
+    return state_.step * proposed;
+  }
+
+  BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
+    BatchCounts counts;
+    for (std::uint32_t t = begin; t < end; ++t) {
+      prefetch(t);
+      const Vec3 step = displacement(t);
+      if constexpr (rise == Rise::refused || rise == Rise::thermal) {
+        if (step.z > 0) {
+          ++counts.rising;
+          if constexpr (rise == Rise::refused) continue;
+        }
+      }
+      const std::uint32_t i = batch_.sphere[t];
+      const Vec3 target = wrapped(box_, unpadded(centres_[i]) + step);
+      if (!clear_of_boundaries(box_, target) || blocked(i, target, counts.distance_tests)) continue;
+      if constexpr (rise == Rise::thermal) {
+        if (step.z > 0 && !rise_passes(state_.next_trial + (t - begin), step.z)) continue;
+      }
+      if (lists_.outgrown(box_, i, target)) {
+        rebuild_lists();
+        if (blocked(i, target, counts.distance_tests)) continue;
+      }
+      centres_[i] = {target.x, target.y, target.z, 0};
+      ++counts.accepted;
+    }
+    return counts;
+  }
+
+  // Whether a neighbour overlaps a sphere i placed at `target`.
+  bool blocked(std::uint32_t i, Vec3 target, std::uint64_t& tests) const {
+    const auto* const last = lists_.end(i);
+    for (const auto* j = lists_.begin(i); j != last; ++j) {
+      ++tests;
+      if (overlaps(box_, target, unpadded(centres_[*j]))) return true;
+    }
+    return false;
+  }
+
+  bool rise_passes(std::uint64_t trial, double dz) const {
+    const double u = (philox_block(key_, trial, 1)[0] + 0.5) * 0x1p-32;
+    return u < exponential(-(metropolis_.beta * dz));
+  }
+
+  void prefetch(std::uint32_t t) const {
+    constexpr std::uint32_t far = 16, near = 8;
+    const std::uint32_t soon = std::min(t + far, ProposalBatch::size - 1);
+    __builtin_prefetch(&centres_[batch_.sphere[soon]]);
+    __builtin_prefetch(lists_.row_address(batch_.sphere[soon]));
+    const std::uint32_t next = std::min(t + near, ProposalBatch::size - 1);
+    __builtin_prefetch(lists_.begin(batch_.sphere[next]));
+  }
+
+  std::uint64_t until_adaptation() const {
+    if (!metropolis_.adaptation) return ProposalBatch::size;
+    return metropolis_.adaptation->every_trials - state_.window_trials;
+  }
+
+  void adapt_step(std::uint64_t trials, const BatchCounts& counts) {
+    if (!metropolis_.adaptation) return;
+    const StepAdaptation& rule = *metropolis_.adaptation;
+    const bool all = rule.base == AcceptanceBase::all_trials;
+    state_.window_trials += trials;
+    state_.window_base += all ? trials : trials - counts.rising;
+    state_.window_accepted += counts.accepted;
+    if (state_.window_trials < rule.every_trials) return;
+    if (static_cast<double>(state_.window_accepted) <
+        rule.threshold * static_cast<double>(state_.window_base)) {
+      state_.step *= rule.factor;
+    }
+    state_.window_trials = state_.window_base = state_.window_accepted = 0;
+  }
+
+  // The longest displacement of a trial, diameters, with room for rounding.
+  double longest_step() const {
+    return (rise == Rise::impossible ? 1.0 : 1.7320508075688773) * state_.step * 1.000001;
+  }
+
+  void rebuild_lists() {
+    const double least = 2 * longest_step() + 1e-6;
+    if (lists_valid_) {
+      // Lists rebuilt after few sweeps want a wider skin, after many a narrower one.
+      const double sweeps = static_cast<double>(tally_.trials - trials_at_build_) / n_spheres();
+      if (sweeps < 30) skin_ *= 1.25;
+      if (sweeps > 300) skin_ *= 0.8;
+    }
+    skin_ = std::max(least, std::min(skin_, 1.0));
+    Vec3 drift;
+    if constexpr (rise == Rise::impossible) drift.z = -0.43 * state_.step;
+    if constexpr (rise == Rise::refused) drift.z = -0.5 * state_.step;
+    lists_.build(box_, centres_, skin_, drift);
+    lists_valid_ = true;
+    trials_at_build_ = tally_.trials;
+    ++tally_.list_rebuilds;
+  }
+
+  Box box_;
+  StreamKey key_;
+  ProposalKernels kernels_;
+  PolarMove polar_;
+  MetropolisMove metropolis_;
+  MoveState state_;
+  TrialTally tally_;
+  std::vector<double> theta_table_;
+  std::vector<PaddedVec3> centres_;
+  NeighbourLists lists_;
+  double skin_ = 0.3;
+  std::uint64_t trials_at_build_ = 0;
+  bool lists_valid_ = false;
+  bool batch_valid_ = false;
+  ProposalBatch batch_;
+};
+
+}  // namespace jostle
