@@ -1,0 +1,111 @@
+#include "structure/snapshot_statistics.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "engine/geometry.hpp"
+#include "engine/random.hpp"
+#include "reference_deposit.hpp"
+
+using namespace jostle;
+
+namespace {
+
+// All pairs, and all images near enough to matter, spelt out.
+std::vector<unsigned> by_brute_force(const Packing& packing, double cut) {
+  const bool periodic = std::holds_alternative<PeriodicBox>(packing.container);
+  const auto* full = std::get_if<FullyPeriodicBox>(&packing.container);
+  const int lateral = periodic || full != nullptr ? 3 : 0, vertical = full != nullptr ? 3 : 0;
+  const double a = width_x(packing.container), b = width_y(packing.container);
+  const double c = full != nullptr ? full->height : 0;
+  std::vector<unsigned> numbers;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    unsigned number = 0;
+    for (std::size_t j = 0; j < packing.centres.size(); ++j) {
+      const Vec3 way = packing.centres[j] - packing.centres[i];
+      for (int u = -lateral; u <= lateral; ++u) {
+        for (int v = -lateral; v <= lateral; ++v) {
+          for (int w = -vertical; w <= vertical; ++w) {
+            if (i == j && u == 0 && v == 0 && w == 0) continue;
+            number += norm_squared(way + Vec3{u * a, v * b, w * c}) <= cut * cut;
+          }
+        }
+      }
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+// Points, overlapping or not, within the container and up to the given height.
+Packing random_points(const Container& container, double height, unsigned n) {
+  RandomStream random(stream_key(20, 0, 0, Purpose::start));
+  Packing packing{container, {}};
+  while (packing.centres.size() < n) {
+    const Vec3 point{width_x(container) * random.uniform(), width_y(container) * random.uniform(),
+                     height * random.uniform()};
+    const bool inside = std::visit(
+        [&](const auto& box) {
+          return clear_of_boundaries(box, {point.x, point.y, 1});
+        },
+        container);
+    if (inside) packing.centres.push_back(point);
+  }
+  return packing;
+}
+
+}  // namespace
+
+TEST_CASE("Coordination by cells is coordination over all pairs and images") {
+  const auto [container, height] = GENERATE(table<Container, double>({
+      {PeriodicBox{8, 6.5}, 5},
+      {PeriodicBox{2.02, 3.1}, 9},
+      {PeriodicBox{40, 40}, 2},
+      {WalledBox{5, 7}, 5},
+      {WalledBox{1.05, 4}, 9},
+      {Cylinder{6}, 5},
+      {Cylinder{1.2}, 20},
+      {FullyPeriodicBox{6, 5, 4}, 4},
+      {FullyPeriodicBox{2.02, 2.3, 3.3}, 3.3},
+  }));
+  const double cut = GENERATE(1.05, 0.4, 2.1);
+  const Packing packing = random_points(container, height, 200);
+  CHECK(coordination_numbers(packing, cut) == by_brute_force(packing, cut));
+}
+
+TEST_CASE("Spheres astride the seam are neighbours, and an image beyond the cut is none") {
+  const Packing packing{PeriodicBox{5, 5}, {{0, 2, 1}, {4.0, 2, 1}, {3.9, 2, 3}}};
+  CHECK(coordination_numbers(packing, 1.05) == std::vector<unsigned>{1, 1, 0});
+  CHECK(coordination(packing, 1.05) == Approx(2.0 / 3));
+}
+
+TEST_CASE("The reference deposit has the neighbours that its maker counted") {
+  const Packing deposit = reference_deposit();
+  const auto reference = reference_measurements();
+  const double bottom = reference.at("zwin").at(0).get<double>() * sphere_radius;
+  const double top = reference.at("zwin").at(1).get<double>() * sphere_radius;
+  const std::vector<unsigned> numbers = coordination_numbers(deposit, 1.05);
+  unsigned spheres = 0, neighbours = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double z = deposit.centres[i].z;
+    if (z < bottom || z > top) continue;
+    ++spheres;
+    neighbours += numbers[i];
+  }
+  CHECK(spheres == reference.at("n_in"));
+  // Margin: half a unit of the last digit printed.
+  CHECK(static_cast<double>(neighbours) / spheres ==
+        Approx(reference.at("neigh_within_1.05d").get<double>()).margin(0.5e-4).epsilon(0));
+}
+
+TEST_CASE("The height histogram counts centres in half-open bins up to the highest") {
+  const Packing packing{PeriodicBox{5, 5}, {{1, 1, 0.5}, {3, 1, 0.5}, {1, 3, 0.74}, {3, 3, 1.25}}};
+  CHECK(height_histogram(packing, 0.25) == std::vector<double>{0, 0, 0.75, 0, 0, 0.25});
+
+  const std::vector<double> deposit = height_histogram(reference_deposit(), 0.1);
+  CHECK(std::accumulate(deposit.begin(), deposit.end(), 0.0) == Approx(1));
+  // Every sphere on the floor lies in the bin from 0.5 d.
+  CHECK(deposit[5] * 4096 >= reference_measurements().at("floor_spheres").get<double>());
+  CHECK(deposit[4] == 0);
+}
