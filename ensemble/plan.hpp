@@ -26,22 +26,23 @@ struct Snapshots {
   std::vector<std::uint64_t> taps;  // ascending, each at most the number of taps
   bool positions = true;
   bool coordination = true;
-  double contact_cut = 1.05;        // diameters
+  double contact_cut = 1.05;  // diameters
   bool height_histogram = true;
-  double bin_width = 0.1;           // diameters
+  double bin_width = 0.1;  // diameters
   bool operator==(const Snapshots&) const = default;
 };
 
 /// Whether every sweep point draws its own random numbers, or start and tap streams are the same at
-/// all points, so that points are compared on paired packings.
+/// all points (those of point id 0), so that points are compared on paired packings. Trials always
+/// draw the point's own.
 enum class Streams { independent, matched };
 
 /// All that one sweep point of a study needs: what is simulated, what is measured, which numbers
 /// are drawn. Realizations differ only in their index.
 struct Plan {
-  std::string label;                // "epsilon = 0.005", for people; empty without a sweep
+  std::string label;  // "epsilon = 0.005", for people; empty without a sweep
   std::vector<std::pair<std::string, std::string>> sweep_values;  // JSON pointer, JSON value
-  std::uint64_t point_id = 0;       // hash of sweep_values: 0 without a sweep
+  std::uint64_t point_id = 0;  // hash of sweep_values: 0 without a sweep
   std::uint64_t seed = 1;
   Streams streams = Streams::independent;
 

@@ -21,20 +21,27 @@ struct Progress {
 
 struct RunOptions {
   int threads = 1;
+  /// Of each realization, at least. 0: after every slice.
   std::chrono::duration<double> checkpoint_every{60.0};
+  /// A slice: how many trials a realization makes, up to the next end of a sweep, before it looks
+  /// at `stop` and at the clock. About 0.1 s on one core.
+  std::uint64_t trials_per_slice = 4'000'000;
   /// Set from a signal handler or a time limit: every realization stops at a sweep boundary,
   /// checkpoints and ends.
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// How the realizations ended; those that a stop kept from beginning are in none of the counts.
 struct RunSummary {
   std::uint64_t done = 0, failed = 0, interrupted = 0;
 };
 
-/// Runs the given realizations of the plans on `options.threads` threads and hands their records to
-/// the sink. What reaches the sink for a realization depends only on its plan and index, never on
-/// threads or timing. A realization that throws is reported to the sink as failed and the rest go
-/// on; an exception of the sink ends the run and is rethrown.
+/// Runs the given realizations of the plans on `options.threads` threads, each thread taking the
+/// next of the list, and hands their records to the sink. What reaches the sink for a realization
+/// depends only on its plan and index, never on threads or timing; but for when it checkpoints.
+/// At a stop each realization ends with status `running` and its state. One that throws ends as
+/// failed with the reason and an empty state, and the rest go on. An exception of the sink stops
+/// the run like a stop and is rethrown.
 RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
                         const RunOptions& options, Sink& sink, Progress& progress);
 

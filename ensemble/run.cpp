@@ -1,0 +1,150 @@
+#include "ensemble/run.hpp"
+
+#include <exception>
+#include <mutex>
+#include <utility>
+
+#include "ensemble/parallel.hpp"
+#include "ensemble/realization.hpp"
+
+namespace jostle {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// One call of run_ensemble: what its threads share.
+class EnsembleRun {
+ public:
+  EnsembleRun(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
+              const RunOptions& options, Sink& sink, Progress& progress)
+      : plans_(plans),
+        realizations_(realizations),
+        options_(options),
+        sink_(sink),
+        progress_(progress) {}
+
+  RunSummary operator()() {
+    on_threads(options_.threads, [this] { work(); });
+    if (sink_failure_) std::rethrow_exception(sink_failure_);
+    return {done_, failed_, interrupted_};
+  }
+
+ private:
+  void work() noexcept;
+  void carry_out(RealizationId id);
+  Outcome carry_on(RealizationId id, Realization& realization);
+  void hand_over(RealizationId id, const Slice& slice);
+  void count(const Outcome& outcome);
+  bool stopping() const;
+
+  std::span<const Plan> plans_;
+  const std::vector<RealizationId>& realizations_;
+  const RunOptions& options_;
+  Sink& sink_;
+  Progress& progress_;
+
+  std::atomic<std::size_t> next_{0};  // of realizations_
+  std::atomic<std::uint64_t> done_{0}, failed_{0}, interrupted_{0};
+  std::atomic<bool> sink_failed_{false};
+  std::mutex sink_failure_mutex_;
+  std::exception_ptr sink_failure_;  // the first
+};
+
+// Whatever is thrown here comes from the sink: carry_on keeps what a realization throws.
+void EnsembleRun::work() noexcept {
+  try {
+    while (!stopping()) {
+      const std::size_t mine = next_.fetch_add(1);
+      if (mine >= realizations_.size()) return;
+      carry_out(realizations_[mine]);
+    }
+  } catch (...) {
+    const std::scoped_lock lock(sink_failure_mutex_);
+    if (!sink_failure_) sink_failure_ = std::current_exception();
+    sink_failed_ = true;
+  }
+}
+
+void EnsembleRun::carry_out(RealizationId id) {
+  struct Running {
+    std::atomic<std::uint64_t>& count;
+    explicit Running(std::atomic<std::uint64_t>& c) : count(c) { ++count; }
+    ~Running() { --count; }
+  } running(progress_.realizations_running);
+
+  const auto began = Clock::now();
+  Realization realization(plans_[id.point], id.realization, sink_.begin(id));
+  Outcome outcome = carry_on(id, realization);
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  const bool failed = outcome.status == RealizationStatus::failed;
+  sink_.end(id, failed ? RealizationState{} : realization.state(), outcome);
+  count(outcome);
+}
+
+Outcome EnsembleRun::carry_on(RealizationId id, Realization& realization) {
+  Outcome outcome;
+  auto checkpointed = Clock::now();
+  while (!realization.finished()) {
+    if (stopping()) {
+      outcome.status = RealizationStatus::running;
+      return outcome;
+    }
+    Slice slice;
+    try {
+      slice = realization.advance(options_.trials_per_slice);
+    } catch (const std::exception& error) {
+      outcome.status = RealizationStatus::failed;
+      outcome.reason = error.what();
+      return outcome;
+    }
+    outcome.trials += slice.trials;
+    outcome.distance_tests += slice.distance_tests;
+    hand_over(id, slice);
+    if (!realization.finished() && Clock::now() - checkpointed >= options_.checkpoint_every) {
+      sink_.checkpoint(id, realization.state());
+      checkpointed = Clock::now();
+    }
+  }
+  outcome.status = RealizationStatus::done;
+  return outcome;
+}
+
+void EnsembleRun::hand_over(RealizationId id, const Slice& slice) {
+  if (slice.row) sink_.append(id, *slice.row);
+  if (slice.snapshot) sink_.snapshot(id, *slice.snapshot);
+  progress_.trials_done += slice.trials;
+  progress_.distance_tests += slice.distance_tests;
+  progress_.relaxing_nanoseconds += static_cast<std::uint64_t>(slice.relaxing.count());
+  if (slice.row && slice.row->tap > 0) ++progress_.taps_done;
+}
+
+void EnsembleRun::count(const Outcome& outcome) {
+  switch (outcome.status) {
+    case RealizationStatus::done:
+      ++done_;
+      ++progress_.realizations_done;
+      break;
+    case RealizationStatus::failed:
+      ++failed_;
+      ++progress_.realizations_failed;
+      break;
+    case RealizationStatus::running:
+    case RealizationStatus::missing:
+      ++interrupted_;
+      break;
+  }
+}
+
+bool EnsembleRun::stopping() const {
+  return sink_failed_ || (options_.stop != nullptr && *options_.stop);
+}
+
+}  // namespace
+
+RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
+                        const RunOptions& options, Sink& sink, Progress& progress) {
+  return EnsembleRun(plans, realizations, options, sink, progress)();
+}
+
+}  // namespace jostle
