@@ -43,7 +43,7 @@ struct StepAdaptation {
 struct MetropolisMove {
   double max_step = 0.1;
   double beta = std::numeric_limits<double>::infinity();
-  std::optional<StepAdaptation> adaptation;  // absent: the step is fixed
+  std::optional<StepAdaptation> adaptation = std::nullopt;  // absent: the step is fixed
   bool operator==(const MetropolisMove&) const = default;
 };
 

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "engine/cell_grid.hpp"
+#include "engine/neighbour_lists.hpp"
+#include "sample_packings.hpp"
+
+using namespace jostle;
+
+namespace {
+
+std::vector<Container> containers() {
+  return {PeriodicBox{16, 16}, PeriodicBox{2.1, 2.1},     PeriodicBox{4.1, 9},
+          WalledBox{1, 1},     WalledBox{8, 3},           Cylinder{1},
+          Cylinder{7},         FullyPeriodicBox{7, 7, 7}, FullyPeriodicBox{2.1, 5, 11}};
+}
+
+// Random points (they may overlap), with some on the seams and the upper edges.
+Packing points(const Container& container, int n, double height, std::uint64_t seed) {
+  RandomStream random(stream_key(seed, 0, 0, Purpose::start));
+  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
+  const double wx = width_x(container), wy = width_y(container);
+  const double wz = bulk ? bulk->height : height;
+  Packing packing{container, {}};
+  for (int k = 0; k < n; ++k) {
+    Vec3 r{wx * random.uniform(), wy * random.uniform(), wz * random.uniform()};
+    if (k % 5 == 0) r.x = 0;
+    if (k % 7 == 0) r.y = std::nextafter(wy, 0.0);
+    if (bulk && k % 11 == 0) r.z = 0;
+    packing.centres.push_back(r);
+  }
+  return packing;
+}
+
+std::vector<PaddedVec3> padded(const Packing& packing) {
+  std::vector<PaddedVec3> centres;
+  for (const Vec3& r : packing.centres) centres.push_back({r.x, r.y, r.z, 0});
+  return centres;
+}
+
+// Lists against all pairs: each neighbour exactly once, none missing, none too far.
+void check_lists(const Packing& packing, double skin) {
+  std::visit(
+      [&](const auto& box) {
+        NeighbourLists lists;
+        lists.build(box, padded(packing), skin, {0, 0, -0.04});
+        for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
+          std::vector<std::uint32_t> found(lists.begin(i), lists.end(i)), expected;
+          for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
+            const Vec3 away = separation(box, packing.centres[i], packing.centres[j]);
+            if (j != i && norm_squared(away) < (1 + skin) * (1 + skin)) expected.push_back(j);
+          }
+          std::ranges::sort(found);
+          REQUIRE(found == expected);
+        }
+      },
+      packing.container);
+}
+
+}  // namespace
+
+TEST_CASE("neighbour lists hold exactly the pairs that all pairs give") {
+  for (const Container& container : containers()) {
+    CAPTURE(container.index(), width_x(container), width_y(container));
+    for (const double skin : {0.05, 0.3, 1.0, 4.0}) {
+      check_lists(points(container, 80, 10, 1), skin);
+      check_lists(points(container, 80, 400, 2), skin);  // a dilute column
+      check_lists(points(container, 2, 3, 3), skin);
+      check_lists(points(container, 1, 3, 4), skin);
+    }
+  }
+}
+
+TEST_CASE("neighbour lists hold on a crystal whose rows lie on the seams") {
+  for (const double skin : {0.0, 1e-9, 0.2, 0.5}) {
+    check_lists(cubic_packing(PeriodicBox{6, 6}, 6, 1), skin);
+    check_lists(cubic_packing(FullyPeriodicBox{6, 6, 6}, 6, 1), skin);
+    check_lists(cubic_packing(PeriodicBox{3, 3}, 3, 1), skin);
+  }
+}
+
+TEST_CASE("a search by cells misses nothing within its cutoff and meets nothing twice") {
+  for (const Container& container : containers()) {
+    for (const double cutoff : {0.3, 1.0, 1.7, 5.0}) {
+      const Packing packing = points(container, 150, 12, 6);
+      CellGrid grid;
+      grid.build(container, cutoff, 150, [&](std::uint32_t i) { return packing.centres[i]; });
+      for (std::uint32_t i = 0; i < 150; ++i) {
+        std::multiset<std::uint32_t> met;
+        grid.for_each_near(packing.centres[i], [&](std::uint32_t j) { met.insert(j); });
+        for (std::uint32_t j = 0; j < 150; ++j) {
+          REQUIRE(met.count(j) <= 1);
+          const bool close = std::visit(
+              [&](const auto& box) {
+                return norm_squared(separation(box, packing.centres[i], packing.centres[j])) <
+                       cutoff * cutoff;
+              },
+              container);
+          if (close) REQUIRE(met.count(j) == 1);
+        }
+      }
+    }
+  }
+}
