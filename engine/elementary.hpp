@@ -10,11 +10,9 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Sine and cosine of `quarter_turns` x pi/2, for quarter_turns in [0, 4]. Kernels on [-pi/4, pi/4]
-/// with the coefficients of fdlibm (Sun Microsystems 1993). Branch-free, so that loops vectorise.
-[[gnu::always_inline]] inline SineCosine sine_cosine(double quarter_turns) {
-  const double nearest = static_cast<double>(static_cast<std::int32_t>(quarter_turns + 0.5));
-  const double x = (quarter_turns - nearest) * 1.57079632679489661923;
+/// Sine and cosine of x on [-pi/4, pi/4], with the coefficients of fdlibm (Sun Microsystems 1993).
+/// Branch-free, so that loops vectorise.
+[[gnu::always_inline]] inline SineCosine sine_cosine(double x) {
   const double z = x * x;
   const double s =
       x + x * z *
@@ -31,11 +29,12 @@ struct SineCosine {
                 z * (2.48015872894767294178e-05 +
                      z * (-2.75573143513906633035e-07 +
                           z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-  // Quadrants 0 to 4: (s, c), (c, -s), (-s, -c), (-c, s), (s, c).
-  const double odd = nearest == 1.0 || nearest == 3.0 ? 1.0 : 0.0;
-  const double sine_sign = nearest == 2.0 || nearest == 3.0 ? -1.0 : 1.0;
-  const double cosine_sign = nearest == 1.0 || nearest == 2.0 ? -1.0 : 1.0;
-  return {sine_sign * (odd != 0.0 ? c : s), cosine_sign * (odd != 0.0 ? s : c)};
+  return {s, c};
+}
+
+/// Sine and cosine of twice the angle; each doubling about doubles the error.
+[[gnu::always_inline]] inline SineCosine doubled(SineCosine angle) {
+  return {2 * angle.sine * angle.cosine, 1 - 2 * angle.sine * angle.sine};
 }
 
 /// exp(x) for x <= 0; 0 below -708. Taylor's series of degree 13 on |r| <= ln(2)/2.

@@ -1,6 +1,8 @@
 // Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
-// It must instantiate nothing that another translation unit could pick up: plain arrays and
-// static functions only.
+// It must instantiate nothing that another translation unit could pick up: plain arrays, intrinsics
+// and static functions only.
+#include <immintrin.h>
+
 #include "engine/elementary.hpp"
 #include "engine/proposals.hpp"
 #include "engine/theta_table.hpp"
@@ -9,91 +11,117 @@ namespace jostle::JOSTLE_KERNELS {
 
 namespace {
 
-constexpr std::uint32_t n = ProposalBatch::size;
+// One Philox word a 64-bit lane, in its lower half; the upper half is never looked at.
+#if defined(__AVX512F__)
+using Lanes = std::uint64_t __attribute__((vector_size(64)));
+inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
+  return (Lanes)_mm512_mul_epu32((__m512i)a, (__m512i)b);
+}
+#elif defined(__AVX2__)
+using Lanes = std::uint64_t __attribute__((vector_size(32)));
+inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
+  return (Lanes)_mm256_mul_epu32((__m256i)a, (__m256i)b);
+}
+#else
+using Lanes = std::uint64_t __attribute__((vector_size(16)));
+inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
+  return (Lanes)_mm_mul_epu32((__m128i)a, (__m128i)b);
+}
+#endif
 
-// The four words of n consecutive Philox4x32-10 blocks, word by word.
+constexpr std::uint32_t n = ProposalBatch::size;
+constexpr std::uint32_t n_lanes = sizeof(Lanes) / sizeof(std::uint64_t);
+
+// The words of n consecutive Philox blocks, word by word; word 0 already turned into a sphere.
 struct Words {
-  alignas(64) std::uint32_t w[4][n];
+  alignas(64) std::uint64_t sphere[n], w1[n], w2[n], w3[n];
 };
 
-// Philox4x32-10 (Salmon et al. 2011); constants as in Random123, against which it is tested.
-void philox_blocks(const BatchOrigin& origin, Words& words) {
-  for (std::uint32_t t = 0; t < n; ++t) {
+// Philox4x32-10 (Salmon et al. 2011, doi:10.1145/2063384.2063405); constants as in Random123,
+// against which it is tested.
+void make_words(const BatchOrigin& origin, Words& words) {
+  constexpr Lanes zero = {};
+  const Lanes multiplier0 = zero + 0xD2511F53u, multiplier1 = zero + 0xCD9E8D57u;
+  const Lanes n_spheres = zero + origin.n_spheres;
+  Lanes first = zero;
+  for (std::uint32_t lane = 0; lane < n_lanes; ++lane) first[lane] = lane;
+  for (std::uint32_t t = 0; t < n; t += n_lanes) {
     // origin.first is a multiple of n, so the sum never carries into the high word.
-    std::uint32_t c0 = static_cast<std::uint32_t>(origin.first) + t;
-    std::uint32_t c1 = static_cast<std::uint32_t>(origin.first >> 32);
-    std::uint32_t c2 = 0, c3 = 0;
+    Lanes c0 = first + ((origin.first & 0xffffffffu) + t);
+    Lanes c1 = zero + (origin.first >> 32), c2 = zero, c3 = zero;
     auto k0 = static_cast<std::uint32_t>(origin.key);
     auto k1 = static_cast<std::uint32_t>(origin.key >> 32);
 #pragma GCC unroll 10
     for (int round = 0; round < 10; ++round) {
-      const std::uint64_t p0 = static_cast<std::uint64_t>(c0) * 0xD2511F53u;
-      const std::uint64_t p1 = static_cast<std::uint64_t>(c2) * 0xCD9E8D57u;
-      c0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1 ^ k0;
-      c2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3 ^ k1;
-      c1 = static_cast<std::uint32_t>(p1);
-      c3 = static_cast<std::uint32_t>(p0);
+      const Lanes p0 = product_of_lower_halves(c0, multiplier0);
+      const Lanes p1 = product_of_lower_halves(c2, multiplier1);
+      c0 = (p1 >> 32) ^ c1 ^ k0;
+      c2 = (p0 >> 32) ^ c3 ^ k1;
+      c1 = p1;
+      c3 = p0;
       k0 += 0x9E3779B9u;
       k1 += 0xBB67AE85u;
     }
-    words.w[0][t] = c0;
-    words.w[1][t] = c1;
-    words.w[2][t] = c2;
-    words.w[3][t] = c3;
+    *reinterpret_cast<Lanes*>(words.sphere + t) = product_of_lower_halves(c0, n_spheres) >> 32;
+    *reinterpret_cast<Lanes*>(words.w1 + t) = c1;
+    *reinterpret_cast<Lanes*>(words.w2 + t) = c2;
+    *reinterpret_cast<Lanes*>(words.w3 + t) = c3;
   }
+}
+
+constexpr double quarter_pi = 0.78539816339744830962;
+
+// The lower half w of a lane as a double: 2^52 + w has it in its last bits.
+inline double lower_half(std::uint64_t lane) {
+  return __builtin_bit_cast(double, (lane & 0xffffffffu) | 0x4330000000000000u) - 0x1p52;
 }
 
 // (w + 1/2) 2^-32, in (0, 1), exactly.
-inline double unit(std::uint32_t w) {
-  return static_cast<double>(static_cast<std::int32_t>(w ^ 0x80000000u)) * 0x1p-32 +
-         (0.5 + 0x1p-33);
+inline double unit(std::uint64_t lane) {
+  return lower_half(lane) * 0x1p-32 + 0x1p-33;
 }
 
-inline void choose_spheres(const Words& words, std::uint32_t n_spheres, ProposalBatch& batch) {
-  for (std::uint32_t t = 0; t < n; ++t) {
-    batch.sphere[t] =
-        static_cast<std::uint32_t>((static_cast<std::uint64_t>(words.w[0][t]) * n_spheres) >> 32);
-  }
+// 2 (w + 1/2) 2^-32 - 1, in (-1, 1), exactly.
+inline double centred(std::uint64_t lane) {
+  return lower_half(lane) * 0x1p-31 + (0x1p-32 - 1);
 }
 
-void polar(const BatchOrigin& origin, const double* theta_table, double max_step,
-           ProposalBatch& batch) {
+void polar(const BatchOrigin& origin, const double* __restrict theta_table, double max_step,
+           ProposalBatch& __restrict batch) {
   Words words;
-  philox_blocks(origin, words);
-  choose_spheres(words, origin.n_spheres, batch);
-  constexpr int shift = theta_table::shift;
+  make_words(origin, words);
   for (std::uint32_t t = 0; t < n; ++t) {
-    const double v = unit(words.w[3][t]);
-    const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, v);
+    constexpr int shift = theta_table::shift;
+    constexpr std::uint64_t rest = (std::uint64_t{1} << shift) - 1;
+    const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, unit(words.w3[t]));
     const auto node = static_cast<std::int64_t>((bits >> shift) - theta_table::first);
     // The fraction of the way to the next node is in the remaining bits.
-    constexpr std::uint64_t rest = (std::uint64_t{1} << shift) - 1;
     const double along =
         __builtin_bit_cast(double, ((bits & rest) << theta_table::log2_nodes_per_octave) |
                                        __builtin_bit_cast(std::uint64_t, 1.0)) -
         1.0;
     const double low = theta_table[node];
-    batch.dz[t] = low + (theta_table[node + 1] - low) * along;
-  }
-  for (std::uint32_t t = 0; t < n; ++t) {
-    const SineCosine theta = sine_cosine(batch.dz[t]);
-    const SineCosine azimuth = sine_cosine(4 * unit(words.w[1][t]));
-    const double length = max_step * unit(words.w[2][t]);
+    const double half_theta = low + (theta_table[node + 1] - low) * along;
+    // Angles in [0, pi/2] and (-pi, pi) from their half and their quarter.
+    const SineCosine theta = doubled(sine_cosine(half_theta));
+    const SineCosine azimuth = doubled(doubled(sine_cosine(quarter_pi * centred(words.w1[t]))));
+    const double length = max_step * unit(words.w2[t]);
     const double sideways = length * theta.sine;
+    batch.sphere[t] = static_cast<std::uint32_t>(words.sphere[t]);
     batch.dx[t] = sideways * azimuth.cosine;
     batch.dy[t] = sideways * azimuth.sine;
     batch.dz[t] = -(length * theta.cosine);
   }
 }
 
-void metropolis(const BatchOrigin& origin, ProposalBatch& batch) {
+void metropolis(const BatchOrigin& origin, ProposalBatch& __restrict batch) {
   Words words;
-  philox_blocks(origin, words);
-  choose_spheres(words, origin.n_spheres, batch);
+  make_words(origin, words);
   for (std::uint32_t t = 0; t < n; ++t) {
-    batch.dx[t] = 1 - 2 * unit(words.w[1][t]);
-    batch.dy[t] = 1 - 2 * unit(words.w[2][t]);
-    batch.dz[t] = 1 - 2 * unit(words.w[3][t]);
+    batch.sphere[t] = static_cast<std::uint32_t>(words.sphere[t]);
+    batch.dx[t] = -centred(words.w1[t]);
+    batch.dy[t] = -centred(words.w2[t]);
+    batch.dz[t] = -centred(words.w3[t]);
   }
 }
 

@@ -85,7 +85,7 @@ std::vector<double> make_theta_table(const PolarMove& move) {
     while (interval > 0 && tail[interval] < wanted) --interval;
     const double theta = angle_with_integral(move, interval * width, (interval + 1) * width,
                                              wanted - tail[interval + 1]);
-    table[node] = std::clamp(theta / half_pi, 0.0, 1.0);
+    table[node] = std::clamp(0.5 * theta, 0.0, 0.5 * half_pi);
   }
   table.back() = 0;
   return table;

@@ -22,7 +22,7 @@ inline constexpr std::uint64_t first = static_cast<std::uint64_t>(1023 - octaves
                                        << log2_nodes_per_octave;
 }  // namespace theta_table
 
-/// The table of a polar move, [theta_table::size], in quarter turns, descending from the largest
+/// The table of a polar move, [theta_table::size]: theta / 2, radians, descending from the largest
 /// angle to 0. Requires theta0 > 0.
 std::vector<double> make_theta_table(const PolarMove& move);
 

@@ -168,12 +168,10 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   void prefetch(std::uint32_t t) const {
-    constexpr std::uint32_t far = 16, near = 8;
-    const std::uint32_t soon = std::min(t + far, ProposalBatch::size - 1);
-    __builtin_prefetch(&centres_[batch_.sphere[soon]]);
-    __builtin_prefetch(lists_.row_address(batch_.sphere[soon]));
-    const std::uint32_t next = std::min(t + near, ProposalBatch::size - 1);
-    __builtin_prefetch(lists_.begin(batch_.sphere[next]));
+    constexpr std::uint32_t far = ProposalBatch::margin, near = far / 2;
+    __builtin_prefetch(&centres_[batch_.sphere[t + far]]);
+    __builtin_prefetch(lists_.row_address(batch_.sphere[t + far]));
+    __builtin_prefetch(lists_.begin(batch_.sphere[t + near]));
   }
 
   std::uint64_t until_adaptation() const {

@@ -16,50 +16,34 @@ double ulps(double value, long double exact) {
   return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / ulp);
 }
 
-struct Exact {
-  long double sine, cosine;
-};
-
-// Near an axis pi/2 itself must not be rounded: reduce in quarter turns, where that is exact.
-Exact exact_sine_cosine(double quarter_turns) {
-  constexpr long double half_pi = std::numbers::pi_v<long double> / 2;
-  const double nearest = std::round(quarter_turns);
-  const long double s = std::sin(half_pi * (quarter_turns - nearest));
-  const long double c = std::cos(half_pi * (quarter_turns - nearest));
-  switch (static_cast<int>(nearest) % 4) {
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    case 3:
-      return {-c, s};
-  }
-  return {s, c};
-}
-
 }  // namespace
 
-TEST_CASE("sine and cosine are good to 2 ulp on a full turn") {
+TEST_CASE("sine and cosine are good to 2 ulp between -pi/4 and pi/4") {
   double worst = 0;
-  for (int k = 1; k < 400'000; ++k) {
-    const double quarter_turns = k * 1e-5 + 1.3e-7;
-    if (quarter_turns > 4) break;
-    const SineCosine own = sine_cosine(quarter_turns);
-    const Exact exact = exact_sine_cosine(quarter_turns);
-    worst = std::max(worst, ulps(own.sine, exact.sine));
-    worst = std::max(worst, ulps(own.cosine, exact.cosine));
+  for (int k = -400'000; k <= 400'000; ++k) {
+    const double x = std::numbers::pi / 4 * k / 400'000;
+    const SineCosine own = sine_cosine(x);
+    worst = std::max(worst, ulps(own.sine, std::sin(static_cast<long double>(x))));
+    worst = std::max(worst, ulps(own.cosine, std::cos(static_cast<long double>(x))));
   }
   CHECK(worst <= 2);
-}
-
-TEST_CASE("sine and cosine are exact on the axes") {
   CHECK(sine_cosine(0).sine == 0);
   CHECK(sine_cosine(0).cosine == 1);
-  CHECK(sine_cosine(1).sine == 1);
-  CHECK(sine_cosine(1).cosine == 0);
-  CHECK(sine_cosine(2).cosine == -1);
-  CHECK(sine_cosine(3).sine == -1);
-  CHECK(sine_cosine(4).cosine == 1);
+}
+
+TEST_CASE("an angle doubled twice keeps its direction and its length") {
+  double worst = 0, worst_length = 0;
+  for (int k = -400'000; k <= 400'000; ++k) {
+    const double x = std::numbers::pi / 4 * k / 400'000;
+    const SineCosine own = doubled(doubled(sine_cosine(x)));
+    const auto angle = 4 * static_cast<long double>(x);
+    worst = std::max({worst, std::abs(own.sine - static_cast<double>(std::sin(angle))),
+                      std::abs(own.cosine - static_cast<double>(std::cos(angle)))});
+    worst_length =
+        std::max(worst_length, std::abs(own.sine * own.sine + own.cosine * own.cosine - 1));
+  }
+  CHECK(worst < 2e-15);  // the first quarter is good to 2 ulp, each doubling may double it
+  CHECK(worst_length < 4e-15);
 }
 
 TEST_CASE("the exponential of a negative number is good to 2 ulp") {

@@ -82,7 +82,7 @@ TEST_CASE("the table's law differs from the exact one by less than 1e-5") {
         const double v1 =
             std::ldexp(1 + ((node + 1) % 256) / 256.0, (node + 1) / 256 - theta_table::octaves);
         for (const double part : {0.0, 0.25, 0.5, 0.75}) {
-          const double theta = pi / 2 * (table[node] + part * (table[node + 1] - table[node]));
+          const double theta = 2 * (table[node] + part * (table[node + 1] - table[node]));
           worst = std::max(worst, std::abs(1 - cumulative(move, theta) - (v0 + part * (v1 - v0))));
         }
       }
