@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <vector>
 
@@ -54,6 +55,7 @@ class TypedTrialLoop final : public TrialLoop {
     if constexpr (rise != Rise::impossible) {
       if (metropolis_.adaptation && metropolis_.adaptation->reset_each_tap) {
         state_.step = metropolis_.max_step;
+        lists_valid_ = false;  // a longer step wants a wider skin
         state_.window_trials = state_.window_base = state_.window_accepted = 0;
       }
     }
@@ -95,7 +97,7 @@ class TypedTrialLoop final : public TrialLoop {
   void restore(const MoveState& state) override {
     state_ = state;
     batch_valid_ = false;
-    lists_valid_ = false;  // a larger step may need a larger skin
+    lists_valid_ = false;  // a longer step wants a wider skin
   }
   const TrialTally& tally() const override { return tally_; }
   std::size_t bytes() const override {
@@ -115,6 +117,7 @@ class TypedTrialLoop final : public TrialLoop {
     } else {
       kernels_.metropolis(origin, batch_);
     }
+    if constexpr (rise == Rise::refused) list_falling();
     batch_valid_ = true;
   }
 
@@ -127,15 +130,17 @@ class TypedTrialLoop final : public TrialLoop {
 
   BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
     BatchCounts counts;
-    for (std::uint32_t t = begin; t < end; ++t) {
-      prefetch(t);
+    std::uint32_t first = begin, last = end;
+    if constexpr (rise == Rise::refused) {
+      first = falling_before(begin);
+      last = falling_before(end);
+      counts.rising = (end - begin) - (last - first);
+    }
+    for (std::uint32_t k = first; k < last; ++k) {
+      prefetch(k);
+      const std::uint32_t t = looked_at(k);
       const Vec3 step = displacement(t);
-      if constexpr (rise == Rise::refused || rise == Rise::thermal) {
-        if (step.z > 0) {
-          ++counts.rising;
-          if constexpr (rise == Rise::refused) continue;
-        }
-      }
+      if constexpr (rise == Rise::thermal) counts.rising += step.z > 0;
       const std::uint32_t i = batch_.sphere[t];
       const Vec3 target = wrapped(box_, unpadded(centres_[i]) + step);
       if (!clear_of_boundaries(box_, target) || blocked(i, target, counts.distance_tests)) continue;
@@ -167,11 +172,33 @@ class TypedTrialLoop final : public TrialLoop {
     return u < exponential(-(metropolis_.beta * dz));
   }
 
-  void prefetch(std::uint32_t t) const {
+  void prefetch(std::uint32_t k) const {
     constexpr std::uint32_t far = ProposalBatch::margin, near = far / 2;
-    __builtin_prefetch(&centres_[batch_.sphere[t + far]]);
-    __builtin_prefetch(lists_.row_address(batch_.sphere[t + far]));
-    __builtin_prefetch(lists_.begin(batch_.sphere[t + near]));
+    const std::uint32_t soon = batch_.sphere[looked_at(k + far)];
+    __builtin_prefetch(&centres_[soon]);
+    __builtin_prefetch(lists_.row_address(soon));
+    __builtin_prefetch(lists_.begin(batch_.sphere[looked_at(k + near)]));
+  }
+
+  // Trials that rise in the cold are refused unseen: the others of a batch, in order.
+  void list_falling() {
+    std::uint32_t count = 0;
+    for (std::uint32_t t = 0; t < ProposalBatch::size; ++t) {
+      falling_[count] = t;
+      count += !(batch_.dz[t] > 0);
+    }
+    n_falling_ = count;
+    std::fill_n(falling_.begin() + count, ProposalBatch::margin, 0u);
+  }
+  std::uint32_t falling_before(std::uint32_t t) const {
+    const auto end = falling_.begin() + n_falling_;
+    return static_cast<std::uint32_t>(std::lower_bound(falling_.begin(), end, t) -
+                                      falling_.begin());
+  }
+  // The trial of the batch that is looked at as the k-th.
+  std::uint32_t looked_at(std::uint32_t k) const {
+    if constexpr (rise == Rise::refused) return falling_[k];
+    return k;
   }
 
   std::uint64_t until_adaptation() const {
@@ -232,6 +259,8 @@ class TypedTrialLoop final : public TrialLoop {
   bool lists_valid_ = false;
   bool batch_valid_ = false;
   ProposalBatch batch_;
+  std::array<std::uint32_t, ProposalBatch::size + ProposalBatch::margin> falling_;
+  std::uint32_t n_falling_ = 0;
 };
 
 }  // namespace jostle
