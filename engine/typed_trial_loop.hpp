@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/elementary.hpp"
-#include "engine/geometry.hpp"
 #include "engine/neighbour_lists.hpp"
+#include "engine/packed_geometry.hpp"
 #include "engine/proposals.hpp"
 #include "engine/slab.hpp"
 #include "engine/theta_table.hpp"
@@ -39,16 +39,14 @@ class TypedTrialLoop final : public TrialLoop {
 
   void load(const Packing& packing) override {
     centres_.resize(packing.centres.size());
-    std::ranges::transform(packing.centres, centres_.begin(), [](Vec3 r) {
-      return PaddedVec3{r.x, r.y, r.z, 0};
-    });
+    std::ranges::transform(packing.centres, centres_.begin(), packed);
     lists_valid_ = false;
     batch_valid_ = false;
   }
 
   void store(Packing& packing) const override {
     packing.centres.resize(centres_.size());
-    std::ranges::transform(centres_, packing.centres.begin(), unpadded);
+    std::ranges::transform(centres_, packing.centres.begin(), unpacked);
   }
 
   void begin_tap() override {
@@ -82,7 +80,7 @@ class TypedTrialLoop final : public TrialLoop {
 
   double mean_height() const override {
     double sum = 0;
-    for (const PaddedVec3& centre : centres_) sum += centre.z;
+    for (const PackedCentre& centre : centres_) sum += centre.z;
     return sum / static_cast<double>(centres_.size());
   }
 
@@ -101,7 +99,7 @@ class TypedTrialLoop final : public TrialLoop {
   }
   const TrialTally& tally() const override { return tally_; }
   std::size_t bytes() const override {
-    return sizeof(*this) + lists_.bytes() + sizeof(PaddedVec3) * centres_.capacity() +
+    return sizeof(*this) + lists_.bytes() + sizeof(PackedCentre) * centres_.capacity() +
            sizeof(double) * theta_table_.capacity();
   }
 
@@ -121,11 +119,18 @@ class TypedTrialLoop final : public TrialLoop {
     batch_valid_ = true;
   }
 
-  // The displacement of a trial in the batch, diameters.
-  Vec3 displacement(std::uint32_t t) const {
-    const Vec3 proposed{batch_.dx[t], batch_.dy[t], batch_.dz[t]};
-    if constexpr (rise == Rise::impossible) return proposed;
-    return state_.step * proposed;
+  // What the loop reads again and again, in locals: the compiler cannot know that no store to a
+  // centre changes them.
+  struct View {
+    PackedBox<Box> box;
+    PackedCentre* centres;
+    const NeighbourLists::Index *first, *entries;
+    const PackedCentre* origins;
+    double half_skin_squared;
+  };
+  View view() {
+    return {PackedBox<Box>(box_), centres_.data(),  lists_.first(),
+            lists_.entries(),     lists_.origins(), lists_.half_skin_squared()};
   }
 
   BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
@@ -136,33 +141,40 @@ class TypedTrialLoop final : public TrialLoop {
       last = falling_before(end);
       counts.rising = (end - begin) - (last - first);
     }
+    View here = view();
+    const double step = rise == Rise::impossible ? 1.0 : state_.step;
     for (std::uint32_t k = first; k < last; ++k) {
-      prefetch(k);
+      prefetch(here, k);
       const std::uint32_t t = looked_at(k);
-      const Vec3 step = displacement(t);
-      if constexpr (rise == Rise::thermal) counts.rising += step.z > 0;
       const std::uint32_t i = batch_.sphere[t];
-      const Vec3 target = wrapped(box_, unpadded(centres_[i]) + step);
-      if (!clear_of_boundaries(box_, target) || blocked(i, target, counts.distance_tests)) continue;
+      const PackedCentre target =
+          here.box.wrapped({here.centres[i].xy + step * Pair{batch_.dx[t], batch_.dy[t]},
+                            here.centres[i].z + step * batch_.dz[t], 0});
+      if constexpr (rise == Rise::thermal) counts.rising += batch_.dz[t] > 0;
+      if (!here.box.clear_of_boundaries(target)) continue;
+      if (blocked(here, i, target, counts.distance_tests)) continue;
       if constexpr (rise == Rise::thermal) {
-        if (step.z > 0 && !rise_passes(state_.next_trial + (t - begin), step.z)) continue;
+        const std::uint64_t trial = state_.next_trial + (t - begin);
+        if (batch_.dz[t] > 0 && !rise_passes(trial, step * batch_.dz[t])) continue;
       }
-      if (lists_.outgrown(box_, i, target)) {
+      if (distance_squared(here.box, target, here.origins[i]) > here.half_skin_squared) {
         rebuild_lists();
-        if (blocked(i, target, counts.distance_tests)) continue;
+        here = view();
+        if (blocked(here, i, target, counts.distance_tests)) continue;
       }
-      centres_[i] = {target.x, target.y, target.z, 0};
+      here.centres[i] = target;
       ++counts.accepted;
     }
     return counts;
   }
 
   // Whether a neighbour overlaps a sphere i placed at `target`.
-  bool blocked(std::uint32_t i, Vec3 target, std::uint64_t& tests) const {
-    const auto* const last = lists_.end(i);
-    for (const auto* j = lists_.begin(i); j != last; ++j) {
+  static bool blocked(const View& here, std::uint32_t i, const PackedCentre& target,
+                      std::uint64_t& tests) {
+    const auto* const last = here.entries + here.first[i + 1];
+    for (const auto* j = here.entries + here.first[i]; j != last; ++j) {
       ++tests;
-      if (overlaps(box_, target, unpadded(centres_[*j]))) return true;
+      if (distance_squared(here.box, target, here.centres[*j]) < 1.0) return true;
     }
     return false;
   }
@@ -172,12 +184,12 @@ class TypedTrialLoop final : public TrialLoop {
     return u < exponential(-(metropolis_.beta * dz));
   }
 
-  void prefetch(std::uint32_t k) const {
+  void prefetch(const View& here, std::uint32_t k) const {
     constexpr std::uint32_t far = ProposalBatch::margin, near = far / 2;
     const std::uint32_t soon = batch_.sphere[looked_at(k + far)];
-    __builtin_prefetch(&centres_[soon]);
-    __builtin_prefetch(lists_.row_address(soon));
-    __builtin_prefetch(lists_.begin(batch_.sphere[looked_at(k + near)]));
+    __builtin_prefetch(&here.centres[soon]);
+    __builtin_prefetch(&here.first[soon]);
+    __builtin_prefetch(&here.entries[here.first[batch_.sphere[looked_at(k + near)]]]);
   }
 
   // Trials that rise in the cold are refused unseen: the others of a batch, in order.
@@ -252,7 +264,7 @@ class TypedTrialLoop final : public TrialLoop {
   MoveState state_;
   TrialTally tally_;
   std::vector<double> theta_table_;
-  std::vector<PaddedVec3> centres_;
+  std::vector<PackedCentre> centres_;
   NeighbourLists lists_;
   double skin_ = 0.3;
   std::uint64_t trials_at_build_ = 0;

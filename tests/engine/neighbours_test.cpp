@@ -33,9 +33,9 @@ Packing points(const Container& container, int n, double height, std::uint64_t s
   return packing;
 }
 
-std::vector<PaddedVec3> padded(const Packing& packing) {
-  std::vector<PaddedVec3> centres;
-  for (const Vec3& r : packing.centres) centres.push_back({r.x, r.y, r.z, 0});
+std::vector<PackedCentre> packed_centres(const Packing& packing) {
+  std::vector<PackedCentre> centres;
+  for (const Vec3& r : packing.centres) centres.push_back(packed(r));
   return centres;
 }
 
@@ -44,9 +44,11 @@ void check_lists(const Packing& packing, double skin) {
   std::visit(
       [&](const auto& box) {
         NeighbourLists lists;
-        lists.build(box, padded(packing), skin, {0, 0, -0.04});
+        lists.build(box, packed_centres(packing), skin, {0, 0, -0.04});
         for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
-          std::vector<std::uint32_t> found(lists.begin(i), lists.end(i)), expected;
+          std::vector<std::uint32_t> found(lists.entries() + lists.first()[i],
+                                           lists.entries() + lists.first()[i + 1]),
+              expected;
           for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
             const Vec3 away = separation(box, packing.centres[i], packing.centres[j]);
             if (j != i && norm_squared(away) < (1 + skin) * (1 + skin)) expected.push_back(j);
