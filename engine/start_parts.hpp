@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/packing.hpp"
+#include "engine/random.hpp"
+#include "engine/starts.hpp"
+
+// One function for each start. All throw StartError as make_start does; n_spheres > 0 and legal
+// widths are required.
+namespace jostle {
+
+/// What a pour cost. A drop whose path is degenerate is drawn anew.
+struct PourTally {
+  std::uint64_t redrawn = 0;
+};
+
+std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
+                       PourTally* tally = nullptr);
+std::vector<Vec3> fit_pour(const FittedPour& fitted, const WalledBox& box, std::uint32_t n_spheres,
+                           RandomStream& random);
+std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
+                          std::uint32_t n_spheres, RandomStream& random);
+std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
+                                std::uint32_t n_spheres);
+std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
+                       RandomStream& random);
+std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
+                              std::uint32_t n_spheres);
+
+}  // namespace jostle

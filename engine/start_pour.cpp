@@ -1,0 +1,47 @@
+#include <string>
+
+#include "engine/pour_bed.hpp"
+#include "engine/pour_descent.hpp"
+#include "engine/start_parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+Vec3 draw_drop(const PourBed& bed, RandomStream& random) {
+  // A tube takes pi / 4 of the draws: a thousand misses in a row are beyond chance.
+  for (int draw = 0; draw < 1000; ++draw) {
+    const double share_x = random.uniform(), share_y = random.uniform();
+    if (const auto p = bed.above(share_x, share_y)) return *p;
+  }
+  throw StartError("steepest-descent pour: no place to drop a sphere from; widen the container");
+}
+
+}  // namespace
+
+std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
+                       PourTally* tally) {
+  if (!has_gravity(container)) {
+    throw StartError(
+        "steepest-descent pour: a fully periodic box has no floor to pour on; use the start grow "
+        "or a crystal");
+  }
+  constexpr int max_redraws = 1000;  // of one sphere
+  PourBed bed(container, n_spheres);
+  for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
+    std::optional<Vec3> rest;
+    for (int draw = 0; draw < max_redraws && !rest; ++draw) {
+      rest = descend(bed, draw_drop(bed, random));
+      if (!rest && tally != nullptr) ++tally->redrawn;
+    }
+    if (!rest) {
+      throw StartError("steepest-descent pour: sphere " + std::to_string(sphere) +
+                       " found no place to rest in " + std::to_string(max_redraws) +
+                       " drops; change the seed or the width by a little");
+    }
+    bed.add(*rest);
+  }
+  return bed.centres();
+}
+
+}  // namespace jostle
