@@ -1,0 +1,77 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "memory_sink.hpp"
+
+namespace jostle {
+
+/// All numbers of a record as their bits, NaN included, so that equal vectors are equal bytes.
+class Bits {
+ public:
+  void add(std::uint64_t value) { bits_.push_back(value); }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const std::vector<double>& values) {
+    add(std::uint64_t{values.size()});
+    for (const double value : values) add(value);
+  }
+  void add(const std::vector<Vec3>& centres) {
+    add(std::uint64_t{centres.size()});
+    for (const Vec3& r : centres) {
+      add(r.x);
+      add(r.y);
+      add(r.z);
+    }
+  }
+  void add(const TapRow& row) {
+    add(row.tap);
+    add(row.observables);
+    add(std::vector<double>{row.relaxation.sweeps, row.relaxation.acceptance,
+                            row.relaxation.capped});
+  }
+  void add(const SnapshotRecord& snapshot) {
+    add(snapshot.tap);
+    add(snapshot.centres);
+    add(snapshot.coordination.value_or(-1));
+    add(snapshot.height_histogram);
+  }
+  void add(const RealizationState& state) {
+    add(state.rows);
+    add(std::uint64_t{state.relaxing});
+    add(state.move.next_trial);
+    add(state.move.step);
+    add(state.move.window_trials);
+    add(state.move.window_base);
+    add(state.move.window_accepted);
+    add(state.relaxation.trials);
+    add(state.relaxation.accepted);
+    add(state.relaxation.last_value);
+    add(std::uint64_t{state.relaxation.passes});
+    add(state.tap_stream_position);
+    add(state.stop_window.low);
+    add(state.stop_window.high);
+    for (const HeightWindow& window : state.observable_windows) {
+      add(window.low);
+      add(window.high);
+    }
+    add(state.centres);
+  }
+
+  bool operator==(const Bits&) const = default;
+
+ private:
+  std::vector<std::uint64_t> bits_;
+};
+
+/// What a record says of a realization, without what it says of the run: costs and checkpoints.
+inline Bits bits(const RecordedRealization& record) {
+  Bits all;
+  for (const TapRow& row : record.rows) all.add(row);
+  for (const SnapshotRecord& snapshot : record.snapshots) all.add(snapshot);
+  if (record.state) all.add(*record.state);
+  return all;
+}
+
+}  // namespace jostle

@@ -1,0 +1,195 @@
+#include "ensemble/realization.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "bits.hpp"
+#include "engine/starts.hpp"
+#include "small_plans.hpp"
+#include "structure/snapshot_statistics.hpp"
+
+using namespace jostle;
+
+namespace {
+
+void keep(RecordedRealization& record, Slice slice) {
+  if (slice.row) record.rows.push_back(std::move(*slice.row));
+  if (slice.snapshot) record.snapshots.push_back(std::move(*slice.snapshot));
+}
+
+RecordedRealization straight(const Plan& plan, std::uint32_t index = 0) {
+  RecordedRealization record;
+  Realization realization(plan, index);
+  while (!realization.finished()) keep(record, realization.advance(1'000'000));
+  record.state = realization.state();
+  return record;
+}
+
+// Slices of random lengths; after every third or so the state is stored and taken up by another.
+RecordedRealization interrupted(const Plan& plan, RandomStream& random) {
+  RecordedRealization record;
+  auto realization = std::make_unique<Realization>(plan, 0);
+  while (!realization->finished()) {
+    keep(record, realization->advance(random.below(20 * plan.n_spheres)));
+    if (random.below(3) == 0) {
+      realization = std::make_unique<Realization>(plan, 0, realization->state());
+    }
+  }
+  record.state = realization->state();
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
+  RandomStream random(stream_key(7, 0, 0, Purpose::start));
+  for (const auto& [name, plan] : various_plans()) {
+    CAPTURE(name);
+    const RecordedRealization undisturbed = straight(plan);
+    REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
+    }
+  }
+}
+
+TEST_CASE("Taps leave no overlap in any container") {
+  for (const auto& [name, plan] : various_plans()) {
+    CAPTURE(name);
+    const Packing packing{plan.container, straight(plan).state->centres};
+    REQUIRE(packing.centres.size() == plan.n_spheres);
+    CHECK(deepest_overlap_brute_force(packing).depth <= overlap_bound(packing));
+  }
+}
+
+TEST_CASE("A realization records its start, every tap and the snapshots asked for") {
+  const Plan plan = small_plan();
+  const RecordedRealization record = straight(plan);
+  REQUIRE(record.rows.size() == 6);
+  for (std::size_t t = 0; t < 6; ++t) CHECK(record.rows[t].tap == t);
+
+  const TapRow& start = record.rows[0];
+  CHECK(start.relaxation.sweeps == 0);
+  CHECK(std::isnan(start.relaxation.acceptance));
+  CHECK(start.relaxation.capped == 0);
+
+  REQUIRE(record.snapshots.size() == 3);
+  const SnapshotRecord& last = record.snapshots[2];
+  CHECK(record.snapshots[1].tap == 2);
+  CHECK(last.tap == 5);
+  const Packing packing{plan.container, last.centres};
+  CHECK(last.coordination == coordination(packing, 1.05));
+  CHECK(last.height_histogram == height_histogram(packing, 0.1));
+  const Packing first{plan.container, record.snapshots[0].centres};
+  CHECK(record.rows[5].observables == Observer(plan.observables, first)(packing));
+  CHECK(record.rows[0].observables == Observer(plan.observables, first)(first));
+}
+
+TEST_CASE("A start that settles is recorded once it has") {
+  Plan plan = small_plan();
+  plan.protocol.clear();
+  plan.start = RandomSettle{};
+  plan.stop = {.rule = SweepsStop{.sweeps = 37}};
+  const RecordedRealization record = straight(plan);
+  REQUIRE(record.rows.size() == 1);
+  CHECK(record.rows[0].relaxation.sweeps == 37);
+  CHECK(record.rows[0].relaxation.acceptance > 0);
+  CHECK(record.state->move.next_trial == 37 * 60);
+}
+
+TEST_CASE("While a start settles, quantiles are those of the bed to come; then those of the bed") {
+  Plan plan = small_plan();
+  plan.start = RandomSettle{};
+  plan.stop.rule = BulkFractionStop{.every_trials = 600};
+  Realization realization(plan, 0);
+  realization.advance(60);
+  REQUIRE(realization.state().rows == 0);
+  const double depth = 60 * sphere_volume / (0.57 * 4 * 4);
+  CHECK(realization.state().stop_window.low == Approx(0.2 * depth));
+  CHECK(realization.state().stop_window.high == Approx(0.8 * depth));
+
+  while (realization.state().rows == 0) realization.advance(1'000'000);
+  const RealizationState settled = realization.state();
+  const Packing bed{plan.container, settled.centres};
+  CHECK(settled.stop_window == resolve(QuantileWindow{}, bed));
+  REQUIRE(settled.observable_windows.size() == 4);
+  CHECK(settled.observable_windows[3] == resolve(QuantileWindow{}, bed));
+
+  while (!realization.finished()) realization.advance(1'000'000);
+  CHECK(realization.state().stop_window == settled.stop_window);
+}
+
+TEST_CASE("A relaxation that meets no rule is capped, and recorded as capped") {
+  Plan plan = small_plan();
+  plan.protocol = {{Dilate{}, 2}};
+  plan.stop = {.rule = MeanHeightStop{.eta = 0}, .max_sweeps = 250};
+  const RecordedRealization record = straight(plan);
+  for (std::size_t t = 1; t <= 2; ++t) {
+    CHECK(record.rows[t].relaxation.capped == 1);
+    CHECK(record.rows[t].relaxation.sweeps == 250);
+  }
+  plan.stop.rule = SweepsStop{.sweeps = 30};
+  CHECK(straight(plan).rows[2].relaxation.capped == 0);
+}
+
+TEST_CASE("More taps at the end of a finished realization continue it") {
+  Plan plan = small_plan();
+  plan.snapshots.taps.clear();
+  plan.protocol = {{Dilate{}, 4}};
+  const RecordedRealization whole = straight(plan);
+
+  plan.protocol[0].count = 2;
+  RecordedRealization record = straight(plan);
+  plan.protocol[0].count = 4;
+  Realization realization(plan, 0, record.state);
+  while (!realization.finished()) keep(record, realization.advance(1'000'000));
+  record.state = realization.state();
+  CHECK(bits(record) == bits(whole));
+}
+
+TEST_CASE(
+    "Realizations, seeds and sweep points draw their own numbers; matched points share them") {
+  Plan plan = small_plan();
+  plan.protocol = {{Shake{}, 1}};
+  plan.snapshots.taps = {0, 1};
+  const auto start_of = [](const Plan& p, std::uint32_t index) {
+    return straight(p, index).snapshots[0].centres;
+  };
+  Plan other_point = plan;
+  other_point.point_id = 77;
+  CHECK(start_of(plan, 0) == start_of(plan, 0));
+  CHECK(start_of(plan, 0) != start_of(plan, 1));
+  CHECK(start_of(plan, 0) != start_of(other_point, 0));
+
+  plan.streams = other_point.streams = Streams::matched;
+  CHECK(start_of(plan, 0) == start_of(other_point, 0));
+  CHECK(start_of(plan, 0) != start_of(other_point, 1));
+  CHECK(straight(plan).snapshots[1].centres != straight(other_point).snapshots[1].centres);
+
+  // Without trials the taps alone are seen: they are the same at matched points.
+  plan.stop = other_point.stop = {.rule = SweepsStop{.sweeps = 0}};
+  CHECK(straight(plan).snapshots[1].centres == straight(other_point).snapshots[1].centres);
+  other_point.streams = Streams::independent;
+  CHECK(straight(plan).snapshots[1].centres != straight(other_point).snapshots[1].centres);
+}
+
+TEST_CASE("A start that cannot be made says why") {
+  Plan plan = small_plan();
+  plan.container = PeriodicBox{4.1, 4.3};
+  plan.start = Crystal{};
+  Realization realization(plan, 0);
+  CHECK_THROWS_AS(realization.advance(1000), StartError);
+}
+
+TEST_CASE("The Metropolis step begins anew at each tap where the move asks for it, else goes on") {
+  Plan plan = small_plan();
+  plan.protocol = {{Dilate{}, 3}};
+  plan.stop = {.rule = SweepsStop{.sweeps = 10}};
+  // Halved twice in the 600 trials of a tap, whatever is accepted.
+  StepAdaptation adaptation{.factor = 0.5, .every_trials = 300, .threshold = 1};
+  plan.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25));
+  adaptation.reset_each_tap = false;
+  plan.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25 * 0.25 * 0.25));
+}

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ensemble/plan.hpp"
+
+namespace jostle {
+
+/// A plan of seconds' fraction: 60 spheres, a few taps, everything observed.
+inline Plan small_plan() {
+  Plan plan;
+  plan.seed = 20010222;
+  plan.container = PeriodicBox{4, 4};
+  plan.n_spheres = 60;
+  plan.start = SteepestDescentPour{};
+  plan.protocol = {{Dilate{.epsilon = 0.05}, 3}, {Lift{.gamma = 0.2}, 2}};
+  plan.move = PolarMove{};
+  plan.stop = {.rule = MeanHeightStop{.eta = 1e-3, .every_sweeps = 10}, .max_sweeps = 500};
+  plan.observables = {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
+  plan.snapshots.taps = {0, 2, 5};
+  return plan;
+}
+
+/// Small plans that differ in every part of the engine, each with a name.
+struct NamedPlan {
+  std::string name;
+  Plan plan;
+};
+
+inline std::vector<NamedPlan> various_plans() {
+  const StepAdaptation adaptation{.factor = 0.9, .every_trials = 700};
+  std::vector<NamedPlan> plans;
+  const auto add = [&](const char* name) -> Plan& {
+    return plans.emplace_back(NamedPlan{name, small_plan()}).plan;
+  };
+
+  add("periodic, polar, mean height");
+
+  Plan& walled = add("walls, fitted pour, Metropolis that keeps its step, bulk fraction");
+  walled.container = WalledBox{4.5, 4.2};
+  walled.start = FittedPour{};
+  walled.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  std::get<MetropolisMove>(walled.move).adaptation->reset_each_tap = false;
+  walled.stop = {.rule = BulkFractionStop{.change = 0.01, .every_trials = 1234}, .max_sweeps = 300};
+
+  Plan& tube = add("cylinder, random settle, exponential polar, bulk fraction by heights");
+  tube.container = Cylinder{4.3};
+  tube.start = RandomSettle{};
+  tube.move = PolarMove{.max_step = 0.3, .theta0 = 0.5, .law = ThetaLaw::exponential};
+  tube.stop = {.rule = BulkFractionStop{.change = 0.005,
+                                        .every_trials = 1500,
+                                        .times = 3,
+                                        .measure_start = false,
+                                        .window = HeightWindow{0.5, 2.5}},
+               .max_sweeps = 300};
+
+  Plan& shaken = add("periodic, shake, warm Metropolis that resets its step, sweeps");
+  shaken.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.1}, 2}, {DilateFloorHeld{}, 3}};
+  shaken.move = MetropolisMove{.max_step = 0.15, .beta = 5, .adaptation = adaptation};
+  shaken.stop = {.rule = SweepsStop{.sweeps = 60}};
+
+  Plan& fluid = add("fully periodic, Metropolis, sweeps, capped");
+  fluid.container = FullyPeriodicBox{4, 4.5, 5};
+  fluid.start = Grow{};
+  fluid.protocol = {{Lift{.gamma = 0}, 5}};
+  fluid.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
+  fluid.stop = {.rule = SweepsStop{.sweeps = 60}, .max_sweeps = 40};
+  fluid.observables = {MeanHeight{}, BulkFraction{.window = HeightWindow{1, 4}}};
+  return plans;
+}
+
+}  // namespace jostle
