@@ -47,7 +47,7 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
     CAPTURE(name);
     const RecordedRealization undisturbed = straight(plan);
     REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
-    for (int repeat = 0; repeat < 5; ++repeat) {
+    for (int repeat = 0; repeat < 3; ++repeat) {
       CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
     }
   }
@@ -97,7 +97,7 @@ TEST_CASE("A start that settles is recorded once it has") {
   CHECK(record.state->move.next_trial == 37 * 60);
 }
 
-TEST_CASE("While a start settles, quantiles are those of the bed to come; then those of the bed") {
+TEST_CASE("While a start settles, quantiles are those of the bed to come, then those of the bed") {
   Plan plan = small_plan();
   plan.start = RandomSettle{};
   plan.stop.rule = BulkFractionStop{.every_trials = 600};
@@ -148,7 +148,7 @@ TEST_CASE("More taps at the end of a finished realization continue it") {
 }
 
 TEST_CASE(
-    "Realizations, seeds and sweep points draw their own numbers; matched points share them") {
+    "Realizations, seeds and sweep points draw their own numbers, matched points share them") {
   Plan plan = small_plan();
   plan.protocol = {{Shake{}, 1}};
   plan.snapshots.taps = {0, 1};
