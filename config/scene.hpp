@@ -63,7 +63,7 @@ struct ProtocolLine {
 struct LogarithmicTaps {
   std::uint64_t from = 1, to = 1;
   std::uint32_t per_decade = 3;
-  std::vector<std::uint64_t> also;  // ascending
+  std::vector<std::uint64_t> also = {};  // ascending
   bool operator==(const LogarithmicTaps&) const = default;
 };
 

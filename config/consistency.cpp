@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "config/grids.hpp"
+#include "config/parts.hpp"
+#include "ensemble/sink.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double densest_growth = 0.64;
+
+template <class T>
+bool is(const auto& choice) {
+  return std::holds_alternative<T>(choice);
+}
+
+/// Notes faults between parts, each only where the parts it joins have none of their own.
+class Check {
+ public:
+  Check(const Scene& scene, std::vector<Fault>& faults) : scene_(scene), faults_(faults) {}
+
+  void start_suits_container() {
+    if (!all_sound({"/start", "/container", "/spheres"})) return;
+    const bool fluid = is<FullyPeriodicBox>(scene_.container);
+    const bool file = is<PackingFile>(scene_.start);
+    if (fluid && !file && !is<Grow>(scene_.start)) {
+      note("/start",
+           "a fully_periodic container has neither floor nor gravity: start it with "
+           "{\"grow\": {}} or from a file");
+    }
+    if (is<Grow>(scene_.start)) growth_is_possible();
+    if (is<FittedPour>(scene_.start) && !is<WalledBox>(scene_.container)) {
+      note("/start/pour",
+           "a fitted pour is fitted between walls: it needs the sides \"walls\" "
+           "(elsewhere take \"steepest_descent\")");
+    }
+    if (is<Crystal>(scene_.start) && is<Cylinder>(scene_.container)) {
+      note("/start/crystal", "a crystal needs a rectangular footprint, a cylinder has none");
+    }
+  }
+
+  void fluid_has_no_gravity() {
+    if (!is<FullyPeriodicBox>(scene_.container) || !all_sound({"/container"})) return;
+    if (all_sound({"/relax"})) {
+      if (is<PolarMove>(scene_.move)) {
+        note("/relax", "polar moves fall: without gravity (fully_periodic) use \"metropolis\"");
+      }
+      if (!is<SweepsStop>(scene_.stop.rule)) {
+        note("/relax/stop",
+             "without gravity (fully_periodic) nothing settles: end a relaxation "
+             "after a number of \"sweeps\"");
+      }
+    }
+    if (all_sound({"/observe"}) && !scene_.observables.empty()) {
+      note("/observe",
+           "these are measured from a floor, a fully_periodic container has none: "
+           "write \"observe\": [] and keep snapshots");
+    }
+    if (all_sound({"/protocol"})) taps_are_idle();
+  }
+
+  void relaxation_can_end() {
+    if (!all_sound({"/relax"})) return;
+    const auto* fixed = std::get_if<SweepsStop>(&scene_.stop.rule);
+    if (fixed && fixed->sweeps > scene_.stop.max_sweeps) {
+      note("/relax/stop/sweeps", fmt::format("{} sweeps are more than the cap max_sweeps of {}: "
+                                             "every relaxation would end capped",
+                                             fixed->sweeps, scene_.stop.max_sweeps));
+    }
+  }
+
+  void observables_have_names() {
+    // Columns that every series has beside the observables.
+    std::map<std::string, std::string> taken;
+    for (const std::string column : relaxation_columns) taken[column] = "a column of every series";
+    for (std::size_t i = 0; i < scene_.observables.size(); ++i) {
+      const std::string name = name_of(scene_.observables[i]);
+      const std::string here = fmt::format("/observe/{}", i);
+      if (!all_sound({here})) continue;
+      const auto [other, is_new] = taken.emplace(name, here);
+      if (is_new) continue;
+      note(here, fmt::format("the name \"{}\" is taken by {}", name, other->second));
+    }
+  }
+
+  void snapshots_are_reached() {
+    if (!all_sound({"/snapshots", "/protocol"})) return;
+    const std::vector<std::uint64_t> taps = snapshot_taps(scene_.snapshots);
+    const std::uint64_t last = total_taps(scene_.protocol);
+    if (taps.empty() || taps.back() <= last) return;
+    note("/snapshots/taps",
+         fmt::format("tap {} is beyond the last tap of the protocol, {}", taps.back(), last));
+  }
+
+ private:
+  bool all_sound(std::initializer_list<std::string_view> pointers) const {
+    for (const std::string_view pointer : pointers) {
+      if (!sound(faults_, pointer)) return false;
+    }
+    return true;
+  }
+  void note(std::string pointer, std::string message) {
+    faults_.push_back({std::move(pointer), std::move(message)});
+  }
+
+  void growth_is_possible() {
+    const auto* box = std::get_if<FullyPeriodicBox>(&scene_.container);
+    if (!box) {
+      note("/start/grow", "spheres grow in a fully_periodic container only: elsewhere pour them");
+      return;
+    }
+    const double volume = box->width_x * box->width_y * box->height;
+    const double fraction = scene_.n_spheres * sphere_volume / volume;
+    if (fraction <= densest_growth) return;
+    note("/spheres", fmt::format("{} spheres fill {:.4f} of the box: growing without order ends at "
+                                 "{}, that is {:.0f} spheres",
+                                 scene_.n_spheres, fraction, densest_growth,
+                                 std::floor(densest_growth * volume / sphere_volume)));
+  }
+
+  /// Without gravity a tap is a relaxation and nothing else: its strength must be zero.
+  void taps_are_idle() {
+    for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
+      const ProtocolLine& line = scene_.protocol[i];
+      if (!line.ramp && (line.tap == Tap{Dilate{0}} || line.tap == Tap{Lift{0}})) continue;
+      note(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"),
+           "a tap has no meaning without gravity (fully_periodic): {\"dilate\": 0} only relaxes");
+    }
+  }
+
+  const Scene& scene_;
+  std::vector<Fault>& faults_;
+};
+
+}  // namespace
+
+void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
+  Check check(scene, faults);
+  check.start_suits_container();
+  check.fluid_has_no_gravity();
+  check.relaxation_can_end();
+  check.observables_have_names();
+  check.snapshots_are_reached();
+}
+
+}  // namespace jostle

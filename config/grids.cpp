@@ -1,0 +1,114 @@
+#include "config/grids.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace jostle {
+
+namespace {
+
+/// The double nearest to the value's first 15 significant digits.
+double rounded_to_15_digits(double value) {
+  const std::string text = fmt::format("{:.15g}", value);
+  double rounded = value;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  return rounded;
+}
+
+/// x^(1/n) of 10 by Newton's method from above, in the same bits on every machine.
+double root_of_ten(std::uint32_t n) {
+  double root = 10;
+  for (;;) {
+    double power = 1;  // root^(n - 1)
+    for (std::uint32_t i = 1; i < n; ++i) power *= root;
+    const double next = root - (root * power - 10) / (n * power);
+    if (!(next < root)) return root;
+    root = next;
+  }
+}
+
+/// The tap with another strength.
+Tap with_strength(Tap tap, double strength) {
+  if (auto* dilate = std::get_if<Dilate>(&tap)) dilate->epsilon = strength;
+  if (auto* held = std::get_if<DilateFloorHeld>(&tap)) held->delta = strength;
+  if (auto* lift = std::get_if<Lift>(&tap)) lift->gamma = strength;
+  if (auto* shake = std::get_if<Shake>(&tap)) shake->lambda = strength;
+  return tap;
+}
+
+std::vector<std::uint64_t> logarithmic(const LogarithmicTaps& grid) {
+  const double root = root_of_ten(grid.per_decade);
+  std::vector<std::uint64_t> taps = grid.also;
+  double decade = static_cast<double>(grid.from);
+  while (decade <= static_cast<double>(grid.to)) {
+    double value = decade;
+    for (std::uint32_t i = 0; i < grid.per_decade; ++i, value *= root) {
+      const double tap = std::floor(value + 0.5);
+      if (tap <= static_cast<double>(grid.to)) taps.push_back(static_cast<std::uint64_t>(tap));
+    }
+    decade *= 10;
+  }
+  return taps;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> whole_steps(const Ramp& ramp) {
+  const double steps = std::abs(ramp.to - ramp.from) / ramp.step;
+  const double whole = std::floor(steps + 0.5);
+  if (!(std::abs(steps - whole) <= 1e-6) || !(whole < 1e15)) return std::nullopt;
+  return static_cast<std::uint64_t>(whole);
+}
+
+std::vector<double> strengths(const Ramp& ramp) {
+  const std::uint64_t steps = whole_steps(ramp).value_or(0);
+  std::vector<double> values;
+  for (std::uint64_t k = 0; k <= steps; ++k) {
+    const double weight = static_cast<double>(k), rest = static_cast<double>(steps - k);
+    double value = ramp.from;
+    if (k == steps && steps > 0) {
+      value = ramp.to;
+    } else if (k > 0) {
+      value = rounded_to_15_digits((ramp.from * rest + ramp.to * weight) / (rest + weight));
+    }
+    values.push_back(ramp.scale == RampScale::square_root ? value * value : value);
+  }
+  return values;
+}
+
+std::vector<Stage> stages(const std::vector<ProtocolLine>& protocol) {
+  std::vector<Stage> stages;
+  for (const ProtocolLine& line : protocol) {
+    if (line.count == 0) continue;
+    if (!line.ramp) {
+      stages.push_back({line.tap, line.count});
+      continue;
+    }
+    for (const double strength : strengths(*line.ramp)) {
+      stages.push_back({with_strength(line.tap, strength), line.count});
+    }
+  }
+  return stages;
+}
+
+std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol) {
+  std::uint64_t taps = 0;
+  for (const ProtocolLine& line : protocol) {
+    taps += line.count * (line.ramp ? whole_steps(*line.ramp).value_or(0) + 1 : 1);
+  }
+  return taps;
+}
+
+std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& snapshots) {
+  const auto* grid = std::get_if<LogarithmicTaps>(&snapshots.taps);
+  std::vector<std::uint64_t> taps =
+      grid ? logarithmic(*grid) : std::get<std::vector<std::uint64_t>>(snapshots.taps);
+  std::sort(taps.begin(), taps.end());
+  taps.erase(std::unique(taps.begin(), taps.end()), taps.end());
+  return taps;
+}
+
+}  // namespace jostle

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "config/scene.hpp"
+
+// Lists that a scene gives by a rule.
+namespace jostle {
+
+/// How many steps lead from one end of a ramp to the other; nothing where no whole number does, to
+/// one part in 1e6 of a step.
+std::optional<std::uint64_t> whole_steps(const Ramp& ramp);
+
+/// The stages of a protocol, ramps written out, stages without taps left out.
+std::vector<Stage> stages(const std::vector<ProtocolLine>& protocol);
+
+std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol);
+
+/// The taps of the snapshots, ascending.
+std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& snapshots);
+
+}  // namespace jostle

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "ensemble/plan.hpp"
+
+// What scenes call the enumerators.
+namespace jostle {
+
+template <class Enum, std::size_t n>
+using NameTable = std::array<std::pair<std::string_view, Enum>, n>;
+
+inline constexpr NameTable<ThetaLaw, 3> theta_laws{{{"gaussian", ThetaLaw::gaussian},
+                                                    {"exponential", ThetaLaw::exponential},
+                                                    {"linear", ThetaLaw::linear}}};
+inline constexpr NameTable<AcceptanceBase, 2> acceptance_bases{
+    {{"all_trials", AcceptanceBase::all_trials}, {"not_upward", AcceptanceBase::not_upward}}};
+inline constexpr NameTable<Lattice, 2> lattices{{{"hcp", Lattice::hcp}, {"fcc", Lattice::fcc}}};
+inline constexpr NameTable<Streams, 2> stream_kinds{
+    {{"independent", Streams::independent}, {"matched", Streams::matched}}};
+
+template <class Enum, std::size_t n>
+std::string name_in(const NameTable<Enum, n>& names, Enum value) {
+  for (const auto& [name, enumerator] : names) {
+    if (enumerator == value) return std::string(name);
+  }
+  return {};
+}
+
+}  // namespace jostle

@@ -1,0 +1,17 @@
+#include "config/parts.hpp"
+#include "config/sweep.hpp"
+
+namespace jostle {
+
+ParsedScene parse_scene(std::string_view json_text) {
+  ParsedScene parsed;
+  const auto json = read_json(json_text, parsed.faults);
+  if (!json) return parsed;
+  Scene scene = read_scene(Reader{*json, "", parsed.faults});
+  check_consistency(scene, parsed.faults);
+  if (!scene.sweep.empty()) check_sweep(scene, json->at("sweep"), parsed.faults);
+  if (parsed.faults.empty()) parsed.scene = std::move(scene);
+  return parsed;
+}
+
+}  // namespace jostle

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "config/reader.hpp"
+#include "config/scene.hpp"
+
+// The parts of a scene, in from JSON and out to it. A read_* function always returns a part; where
+// it noted a fault, the part is a default that stands in for it.
+namespace jostle {
+
+/// "relax": the moves and when they end.
+struct Relaxation {
+  Move move;
+  Stop stop;
+};
+
+Container read_container(const Reader& in);
+StartChoice read_start(const Reader& in);
+std::vector<ProtocolLine> read_protocol(const Reader& in);
+Relaxation read_relaxation(const Reader& in);
+Window read_window(const Reader& in);
+std::vector<Observable> read_observables(const Reader& in);
+SnapshotChoice read_snapshots(const Reader& in);
+std::vector<SweepAxis> read_sweep(const Reader& in);
+
+Json written(const Container& container);
+Json written(const StartChoice& start);
+Json written(const Tap& tap);
+Json written(const std::vector<ProtocolLine>& protocol);
+Json written(const Relaxation& relaxation);
+Json written(const Window& window);
+Json written(const std::vector<Observable>& observables);
+Json written(const SnapshotChoice& snapshots);
+Json written(const std::vector<SweepAxis>& sweep);
+
+/// A number as a person writes it: 16, not 16.0.
+Json plain_number(double value);
+
+/// What an observable is called in the scene and in the results.
+std::string name_of(const Observable& observable);
+/// Default of "observe": one of each kind.
+std::vector<Observable> default_observables();
+
+/// The scene of a JSON object, with defaults in the place of what is faulty or missing. Sweeps are
+/// read, not expanded.
+Scene read_scene(const Reader& in);
+
+/// Notes what is at odds in values that are right one by one.
+void check_consistency(const Scene& scene, std::vector<Fault>& faults);
+
+}  // namespace jostle

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <cassert>
+#include <map>
+
+#include "config/grids.hpp"
+#include "config/sweep.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// Starts with every file read once, its centres shared by all plans.
+class StartMaker {
+ public:
+  explicit StartMaker(const PackingLoader& load) : load_(load) {}
+
+  Start operator()(const StartChoice& choice, std::uint32_t n_spheres) {
+    return std::visit([&](const auto& start) { return made(start, n_spheres); }, choice);
+  }
+
+ private:
+  template <class Other>
+  Start made(const Other& start, std::uint32_t) {
+    return start;
+  }
+  Start made(const PackingFile& file, std::uint32_t n_spheres) {
+    auto& centres = loaded_[file];
+    if (!centres) centres = std::make_shared<const std::vector<Vec3>>(load_(file));
+    if (centres->size() != n_spheres) {
+      throw StartError(fmt::format("{} holds {} spheres, the scene {}: set \"spheres\" to {}",
+                                   file.path, centres->size(), n_spheres, centres->size()));
+    }
+    return GivenPacking{centres};
+  }
+
+  const PackingLoader& load_;
+  std::map<PackingFile, std::shared_ptr<const std::vector<Vec3>>> loaded_;
+};
+
+Snapshots snapshots(const SnapshotChoice& choice) {
+  return {.taps = snapshot_taps(choice),
+          .positions = choice.positions,
+          .coordination = choice.coordination,
+          .contact_cut = choice.contact_cut,
+          .height_histogram = choice.height_histogram,
+          .bin_width = choice.bin_width};
+}
+
+}  // namespace
+
+std::size_t n_sweep_points(const Scene& scene) {
+  std::size_t points = 1;
+  for (const SweepAxis& axis : scene.sweep) points *= axis.size();
+  return points;
+}
+
+std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
+  const Json base = resolved(scene);
+  StartMaker make_start_of(load);
+  std::vector<Plan> plans;
+  for (const SweepPoint& point : sweep_points(scene.sweep)) {
+    std::vector<Fault> faults;
+    const Scene here = scene_at(base, point, faults);
+    assert(faults.empty());  // parse_scene tried every point
+    Plan plan;
+    plan.label = point_label(point);
+    for (const auto& [pointer, value] : point.values) {
+      plan.sweep_values.emplace_back(pointer, canonical_text(value));
+    }
+    plan.point_id = point_id(point);
+    plan.seed = here.seed;
+    plan.streams = here.streams;
+    plan.container = here.container;
+    plan.n_spheres = here.n_spheres;
+    plan.start = make_start_of(here.start, here.n_spheres);
+    plan.protocol = stages(here.protocol);
+    plan.move = here.move;
+    plan.stop = here.stop;
+    plan.observables = here.observables;
+    plan.snapshots = snapshots(here.snapshots);
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace jostle

@@ -1,0 +1,33 @@
+#include <cmath>
+
+#include "config/names.hpp"
+#include "config/parts.hpp"
+
+namespace jostle {
+
+Json plain_number(double value) {
+  if (value == std::trunc(value) && std::abs(value) < 0x1p53) {
+    return static_cast<std::int64_t>(value);
+  }
+  return value;
+}
+
+Json resolved(const Scene& scene) {
+  Json out;
+  out["name"] = scene.name;
+  out["description"] = scene.description;
+  out["seed"] = scene.seed;
+  out["realizations"] = scene.realizations;
+  out["streams"] = name_in(stream_kinds, scene.streams);
+  out["container"] = written(scene.container);
+  out["spheres"] = scene.n_spheres;
+  out["start"] = written(scene.start);
+  out["protocol"] = written(scene.protocol);
+  out["relax"] = written(Relaxation{scene.move, scene.stop});
+  out["observe"] = written(scene.observables);
+  out["snapshots"] = written(scene.snapshots);
+  out["sweep"] = written(scene.sweep);
+  return out;
+}
+
+}  // namespace jostle

@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/grids.hpp"
+#include "config/parts.hpp"
+#include "config/sweep.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// One fault for every value that differs, at the deepest pointer that both have.
+void compare(const Json& was, const Json& is, const std::string& pointer,
+             std::vector<Fault>& faults) {
+  if (was == is) return;
+  if (!was.is_structured() || was.type() != is.type() ||
+      (was.is_array() && was.size() != is.size())) {
+    faults.push_back(
+        {pointer, fmt::format("was {}, is {}: a resumed run keeps it", was.dump(), is.dump())});
+    return;
+  }
+  if (was.is_array()) {
+    for (std::size_t i = 0; i < was.size(); ++i) {
+      compare(was[i], is[i], pointer_to(pointer, i), faults);
+    }
+    return;
+  }
+  for (const auto& [key, value] : was.items()) {
+    compare(value, is.value(key, Json()), pointer_to(pointer, key), faults);
+  }
+  for (const auto& [key, value] : is.items()) {
+    if (!was.contains(key)) compare(Json(), value, pointer_to(pointer, key), faults);
+  }
+}
+
+/// Taps as runs of equal ones, so that only what is done counts and not how it was written.
+std::vector<Stage> merged(const std::vector<Stage>& stages) {
+  std::vector<Stage> runs;
+  for (const Stage& stage : stages) {
+    if (!runs.empty() && runs.back().tap == stage.tap) {
+      runs.back().count += stage.count;
+    } else {
+      runs.push_back(stage);
+    }
+  }
+  return runs;
+}
+
+/// What keeps `is` from beginning with all taps of `was`; nothing if it does.
+std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
+                                        const std::vector<ProtocolLine>& is) {
+  const std::uint64_t n_was = total_taps(was), n_is = total_taps(is);
+  if (n_is < n_was) {
+    return fmt::format("had {} taps, has {}: taps can be added at the end, not taken away", n_was,
+                       n_is);
+  }
+  const std::vector<Stage> before = merged(stages(was)), after = merged(stages(is));
+  std::uint64_t tap = 1;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool last = i + 1 == before.size();
+    const bool same_tap = i < after.size() && before[i].tap == after[i].tap;
+    const bool long_enough =
+        same_tap && (last ? after[i].count >= before[i].count : after[i].count == before[i].count);
+    if (!long_enough) {
+      const std::uint64_t shared = same_tap ? std::min(before[i].count, after[i].count) : 0;
+      return fmt::format("tap {} changed: taps can only be added after the last one, {}",
+                         tap + shared, n_was);
+    }
+    tap += before[i].count;
+  }
+  return std::nullopt;
+}
+
+/// Snapshots may be added beyond the taps of the run.
+std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
+  const auto before = snapshot_taps(was.snapshots), after = snapshot_taps(is.snapshots);
+  const std::uint64_t last = total_taps(was.protocol);
+  for (const std::uint64_t tap : before) {
+    if (!std::binary_search(after.begin(), after.end(), tap)) {
+      return fmt::format("the snapshot of tap {} was taken away", tap);
+    }
+  }
+  for (const std::uint64_t tap : after) {
+    if (tap > last) break;
+    if (!std::binary_search(before.begin(), before.end(), tap)) {
+      return fmt::format(
+          "a snapshot of tap {} was added: only those after the last tap, {}, can be", tap, last);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Compares taps and snapshots of every sweep point, and notes the first that changed.
+void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& faults) {
+  const Json base_was = resolved(was), base_is = resolved(is);
+  bool same_taps = true, same_snapshots = true;
+  for (const SweepPoint& point : sweep_points(was.sweep)) {
+    std::vector<Fault> ignored;  // both scenes were checked
+    const Scene before = scene_at(base_was, point, ignored),
+                after = scene_at(base_is, point, ignored);
+    const std::string where =
+        point.values.empty() ? "" : fmt::format(" (at the sweep point {})", point_label(point));
+    const auto taps = changed_taps(before.protocol, after.protocol);
+    const auto snapshots = changed_snapshots(before, after);
+    if (taps && same_taps) faults.push_back({"/protocol", *taps + where});
+    if (snapshots && same_snapshots) faults.push_back({"/snapshots/taps", *snapshots + where});
+    same_taps = same_taps && !taps;
+    same_snapshots = same_snapshots && !snapshots;
+    if (!same_taps && !same_snapshots) return;
+  }
+}
+
+}  // namespace
+
+std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resolved) {
+  const ParsedScene was = parse_scene(old_resolved.dump()), is = parse_scene(new_resolved.dump());
+  if (!was.scene) {
+    return {{"", "the scene of the stored run is no scene for this version of the program: " +
+                     was.faults.front().pointer + ": " + was.faults.front().message}};
+  }
+  if (!is.scene) return is.faults;
+  std::vector<Fault> faults;
+  if (is.scene->realizations < was.scene->realizations) {
+    faults.push_back(
+        {"/realizations", fmt::format("were {}, are {}: realizations can be added, not taken away",
+                                      was.scene->realizations, is.scene->realizations)});
+  }
+  Json before = resolved(*was.scene), after = resolved(*is.scene);
+  for (Json* scene : {&before, &after}) {
+    for (const char* free : {"name", "description", "realizations", "protocol"}) scene->erase(free);
+    (*scene)["snapshots"].erase("taps");
+  }
+  compare(before, after, "", faults);
+  if (was.scene->sweep == is.scene->sweep) compare_points(*was.scene, *is.scene, faults);
+  return faults;
+}
+
+}  // namespace jostle

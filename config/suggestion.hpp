@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace jostle {
+
+/// Insertions, deletions, replacements and exchanges of neighbours that turn `a` into `b`
+/// (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// ` Did you mean "dilate"?`, with its leading blank, for the candidate nearest to `written`;
+/// empty where none is near: more than 1 + length / 4 edits away, and not a part of a candidate.
+std::string did_you_mean(std::string_view written, const std::vector<std::string>& candidates);
+
+}  // namespace jostle

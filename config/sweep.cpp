@@ -1,0 +1,246 @@
+#include "config/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "config/parts.hpp"
+#include "config/suggestion.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::size_t most_points = 100'000;
+
+/// What a sweep may set: what is simulated and measured. The rest belongs to the study as a whole.
+const std::vector<std::string> swept_parts{"container", "spheres", "start",    "protocol",
+                                           "relax",     "observe", "snapshots"};
+
+/// Every pointer that leads somewhere in a value.
+void collect_pointers(const Json& value, const std::string& pointer,
+                      std::vector<std::string>& into) {
+  if (!pointer.empty()) into.push_back(pointer);
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      collect_pointers(member, pointer_to(pointer, key), into);
+    }
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      collect_pointers(value[i], pointer_to(pointer, i), into);
+    }
+  }
+}
+
+bool leads_somewhere(const Json& scene, const std::string& pointer) {
+  try {
+    return scene.contains(Json::json_pointer(pointer));
+  } catch (const Json::exception&) {
+    return false;  // not a pointer at all
+  }
+}
+
+/// Where the file lists the values of a swept pointer.
+std::string location(const Json& written_sweep, const std::string& pointer) {
+  if (written_sweep.contains(pointer)) return pointer_to("/sweep", pointer);
+  const Json& zip = written_sweep.at("zip");
+  if (zip.is_object()) return pointer_to("/sweep/zip", pointer);
+  std::size_t group = 0;
+  while (!zip[group].contains(pointer)) ++group;
+  return pointer_to(pointer_to("/sweep/zip", group), pointer);
+}
+
+class SweepCheck {
+ public:
+  SweepCheck(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults)
+      : scene_(scene),
+        written_sweep_(written_sweep),
+        faults_(faults),
+        base_faults_(faults),
+        resolved_(resolved(scene)) {
+    may_be_swept_ = Json::object();
+    for (const std::string& part : swept_parts) may_be_swept_[part] = resolved_.at(part);
+  }
+
+  void operator()() {
+    for (const SweepAxis& axis : scene_.sweep) {
+      for (const auto& [pointer, values] : axis.columns) check_pointer(pointer);
+    }
+    if (faults_.size() > base_faults_.size() || !points_are_few()) return;
+    const std::vector<SweepPoint> points = sweep_points(scene_.sweep);
+    check_points(points);
+    points_differ(points);
+  }
+
+ private:
+  void check_pointer(const std::string& pointer) {
+    const std::string here = location(written_sweep_, pointer);
+    for (const std::string& other : seen_) {
+      if (is_within(pointer, other) || is_within(other, pointer)) {
+        faults_.push_back({here, fmt::format("sets what {} sets too: sweep one of them", other)});
+      }
+    }
+    seen_.push_back(pointer);
+    // Where the scene itself is faulty, what is missing there may be no fault of the sweep.
+    for (const Fault& fault : base_faults_) {
+      if (is_within(pointer, fault.pointer) || is_within(fault.pointer, pointer)) return;
+    }
+    if (leads_somewhere(may_be_swept_, pointer)) return;
+    if (leads_somewhere(resolved_, pointer)) {
+      faults_.push_back(
+          {here, fmt::format("{} belongs to the study as a whole and cannot be swept (a sweep sets "
+                             "values in {})",
+                             pointer, listed(swept_parts))});
+      return;
+    }
+    std::vector<std::string> pointers;
+    collect_pointers(may_be_swept_, "", pointers);
+    faults_.push_back({here, fmt::format("{} leads to no value of the resolved scene.{}", pointer,
+                                         did_you_mean(pointer, pointers))});
+  }
+
+  bool points_are_few() {
+    std::size_t points = 1;
+    for (const SweepAxis& axis : scene_.sweep) {
+      points *= axis.size();
+      if (points <= most_points) continue;
+      faults_.push_back({"/sweep", fmt::format("more than {} points", most_points)});
+      return false;
+    }
+    return true;
+  }
+
+  void check_points(const std::vector<SweepPoint>& points) {
+    struct Found {
+      Fault fault;
+      std::size_t n_points = 0;
+      std::string first_label;
+    };
+    std::vector<Found> found;
+    std::map<std::pair<std::string, std::string>, std::size_t> known;
+    for (const SweepPoint& point : points) {
+      std::vector<Fault> faults;
+      scene_at(resolved_, point, faults);
+      for (Fault& fault : faults) {
+        const bool of_value = move_to_sweep(fault, point);
+        if (!of_value && !base_faults_.empty()) continue;
+        const auto [entry, is_new] =
+            known.try_emplace({fault.pointer, fault.message}, found.size());
+        if (is_new) found.push_back({fault, 0, of_value ? "" : point_label(point)});
+        ++found[entry->second].n_points;
+      }
+    }
+    for (const auto& [fault, n_points, label] : found) {
+      std::string where;
+      if (!label.empty()) {
+        where = n_points == 1 ? fmt::format(" (at the sweep point {})", label)
+                              : fmt::format(" (at {} sweep points, first {})", n_points, label);
+      }
+      faults_.push_back({fault.pointer, fault.message + where});
+    }
+  }
+
+  /// Points a fault of a swept value to where the sweep lists it; false for any other fault.
+  bool move_to_sweep(Fault& fault, const SweepPoint& point) const {
+    std::size_t column = 0;
+    for (std::size_t axis = 0; axis < scene_.sweep.size(); ++axis) {
+      for (std::size_t i = 0; i < scene_.sweep[axis].columns.size(); ++i, ++column) {
+        const std::string& pointer = point.values[column].first;
+        if (!is_within(fault.pointer, pointer)) continue;
+        fault.pointer = pointer_to(location(written_sweep_, pointer), point.indices[axis]) +
+                        fault.pointer.substr(pointer.size());
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void points_differ(const std::vector<SweepPoint>& points) {
+    std::map<std::uint64_t, std::size_t> first;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto [other, is_new] = first.emplace(point_id(points[i]), i);
+      if (is_new) continue;
+      faults_.push_back(
+          {"/sweep", fmt::format("points {} and {} are the same, {}: list a value once",
+                                 other->second, i, point_label(points[i]))});
+    }
+  }
+
+  const Scene& scene_;
+  const Json& written_sweep_;
+  std::vector<Fault>& faults_;
+  const std::vector<Fault> base_faults_;
+  const Json resolved_;
+  Json may_be_swept_;
+  std::vector<std::string> seen_;
+};
+
+}  // namespace
+
+std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& sweep) {
+  std::vector<SweepPoint> points(1);
+  for (const SweepAxis& axis : sweep) {
+    std::vector<SweepPoint> crossed;
+    crossed.reserve(points.size() * axis.size());
+    for (const SweepPoint& point : points) {
+      for (std::size_t i = 0; i < axis.size(); ++i) {
+        SweepPoint next = point;
+        for (const auto& [pointer, values] : axis.columns) {
+          next.values.emplace_back(pointer, values[i]);
+        }
+        next.indices.push_back(i);
+        crossed.push_back(std::move(next));
+      }
+    }
+    points = std::move(crossed);
+  }
+  return points;
+}
+
+std::uint64_t point_id(const SweepPoint& point) {
+  if (point.values.empty()) return 0;
+  std::vector<std::string> pairs;
+  for (const auto& [pointer, value] : point.values) {
+    pairs.push_back(fmt::format("{}={}\n", pointer, canonical_text(value)));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::string& pair : pairs) {
+    for (const char c : pair) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return hash == 0 ? 1 : hash;
+}
+
+std::string point_label(const SweepPoint& point) {
+  std::vector<std::string> parts;
+  for (const auto& [pointer, value] : point.values) {
+    const auto last_token = [](const std::string& path) {
+      return path.substr(path.rfind('/') + 1);
+    };
+    const std::string name = last_token(pointer);
+    const auto same =
+        std::count_if(point.values.begin(), point.values.end(),
+                      [&](const auto& other) { return last_token(other.first) == name; });
+    parts.push_back(fmt::format("{} = {}", same > 1 ? pointer : name, canonical_text(value)));
+  }
+  return joined(parts, ", ");
+}
+
+Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults) {
+  Json changed = resolved_scene;
+  changed.erase("sweep");
+  for (const auto& [pointer, value] : point.values) {
+    const Json::json_pointer place(pointer);
+    if (changed.contains(place)) changed.at(place) = value;
+  }
+  Scene scene = read_scene(Reader{changed, "", faults});
+  check_consistency(scene, faults);
+  return scene;
+}
+
+void check_sweep(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults) {
+  SweepCheck{scene, written_sweep, faults}();
+}
+
+}  // namespace jostle

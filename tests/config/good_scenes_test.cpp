@@ -1,0 +1,116 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+TEST_CASE("Good scenes are read, and read again from their resolved form") {
+  for (const auto& file : json_files(good_scenes)) {
+    INFO(file.filename().string());
+    const ParsedScene parsed = parse_scene(text_of(file));
+    CHECK(lines(parsed.faults).empty());
+    REQUIRE(parsed.scene.has_value());
+    const std::string written = resolved(*parsed.scene).dump(2);
+    const Scene again = scene_of(written);
+    CHECK(again == *parsed.scene);
+    CHECK(resolved(again).dump(2) == written);
+  }
+}
+
+TEST_CASE("The shortest scene takes its defaults from the aggregates") {
+  const Scene scene = scene_of(text_of(good_scenes / "least.json"));
+  CHECK(scene.name == "scene");
+  CHECK(scene.realizations == 1);
+  CHECK(scene.streams == Streams::independent);
+  CHECK(scene.container == Container{PeriodicBox{8, 8}});
+  CHECK(scene.start == StartChoice{SteepestDescentPour{}});
+  CHECK(scene.move == Move{PolarMove{}});
+  CHECK(scene.stop == Stop{});
+  CHECK(scene.observables == std::vector<Observable>{MeanHeight{}, BottomFraction{},
+                                                     CorrectedFraction{}, BulkFraction{}});
+  CHECK(scene.snapshots == SnapshotChoice{});
+  CHECK(scene.sweep.empty());
+}
+
+TEST_CASE("Every key of a scene is read") {
+  const Scene scene = scene_of(text_of(good_scenes / "every_key.json"));
+  CHECK(scene.name == "every_key-1.0");
+  CHECK(scene.description == "Every key of a scene.");
+  CHECK(scene.seed == 18446744073709551615u);
+  CHECK(scene.realizations == 12);
+  CHECK(scene.streams == Streams::matched);
+  CHECK(scene.container == Container{WalledBox{12, 16.5}});
+  CHECK(scene.n_spheres == 4096);
+  CHECK(scene.start == StartChoice{FittedPour{.max_step = 0.04, .max_sweeps = 5000}});
+  REQUIRE(scene.protocol.size() == 7);
+  CHECK(scene.protocol[0] == ProtocolLine{Dilate{0.02}, std::nullopt, 100});
+  CHECK(scene.protocol[3] == ProtocolLine{Shake{0.02, 0.1, 3}, std::nullopt, 0});
+  CHECK(scene.protocol[4] ==
+        ProtocolLine{Dilate{0}, Ramp{0.025, 0.4, 0.025, RampScale::square_root}, 2});
+  CHECK(scene.move == Move{PolarMove{0.05, 1.5, ThetaLaw::linear}});
+  CHECK(scene.stop.rule ==
+        StopRule{BulkFractionStop{0.002, 500'000, 3, false, HeightWindow{4, 8.5}}});
+  CHECK(scene.stop.max_sweeps == 20'000);
+  REQUIRE(scene.observables.size() == 6);
+  CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
+  CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});
+  CHECK(scene.observables[5] == Observable{BulkFraction{"middle", QuantileWindow{0.4, 0.6}}});
+  CHECK(std::get<LogarithmicTaps>(scene.snapshots.taps) == LogarithmicTaps{1, 100, 2, {0, 120}});
+  CHECK(scene.snapshots.positions);
+  CHECK(scene.snapshots.coordination);
+  CHECK_FALSE(scene.snapshots.height_histogram);
+  CHECK(scene.snapshots.contact_cut == 1.1);
+  CHECK(scene.snapshots.bin_width == 0.05);
+  CHECK(scene.sweep.size() == 2);
+}
+
+TEST_CASE("Metropolis moves, their adaptation and beta are read") {
+  const Scene scene = scene_of(text_of(good_scenes / "metropolis.json"));
+  CHECK(scene.start == StartChoice{Crystal{Lattice::hcp, true}});
+  const auto& move = std::get<MetropolisMove>(scene.move);
+  CHECK(move.max_step == 0.2);
+  CHECK(std::isinf(move.beta));
+  CHECK(move.adaptation == StepAdaptation{0.99, 20'000, 0.4, AcceptanceBase::not_upward, false});
+  const Scene warm = scene_of(text_of(good_scenes / "finite_beta.json"));
+  CHECK(warm.move == Move{MetropolisMove{.max_step = 0.1, .beta = 2.5, .adaptation = {}}});
+  CHECK(warm.stop.rule == StopRule{SweepsStop{100}});
+}
+
+TEST_CASE("The defaults of the schema are those of the aggregates") {
+  const auto schema = nlohmann::ordered_json::parse(scene_schema());
+  const auto& relax = schema["definitions"]["relax"]["properties"];
+  const auto& polar = relax["polar"]["properties"];
+  CHECK(polar["max_step"]["default"] == PolarMove{}.max_step);
+  CHECK(polar["theta0"]["default"] == PolarMove{}.theta0);
+  const auto& mean_height = relax["stop"]["properties"]["mean_height"]["properties"];
+  CHECK(mean_height["eta"]["default"] == MeanHeightStop{}.eta);
+  CHECK(mean_height["every_sweeps"]["default"] == MeanHeightStop{}.every_sweeps);
+  CHECK(relax["max_sweeps"]["default"] == Stop{}.max_sweeps);
+  const auto& bulk = relax["stop"]["properties"]["bulk_fraction"]["properties"];
+  CHECK(bulk["change"]["default"] == BulkFractionStop{}.change);
+  CHECK(bulk["every_trials"]["default"] == BulkFractionStop{}.every_trials);
+  CHECK(bulk["times"]["default"] == BulkFractionStop{}.times);
+  CHECK(bulk["measure_start"]["default"] == BulkFractionStop{}.measure_start);
+  const auto& metropolis = relax["metropolis"]["properties"];
+  CHECK(metropolis["max_step"]["default"] == MetropolisMove{}.max_step);
+  const auto& adapt = metropolis["adapt"]["anyOf"][1]["properties"];
+  CHECK(adapt["factor"]["default"] == StepAdaptation{}.factor);
+  CHECK(adapt["every_trials"]["default"] == StepAdaptation{}.every_trials);
+  CHECK(adapt["threshold"]["default"] == StepAdaptation{}.threshold);
+  CHECK(adapt["reset_each_tap"]["default"] == StepAdaptation{}.reset_each_tap);
+  const auto& start = schema["definitions"]["start"]["properties"];
+  const auto& fitted = start["pour"]["anyOf"][1]["properties"]["fitted"]["properties"];
+  CHECK(fitted["max_step"]["default"] == FittedPour{}.max_step);
+  CHECK(fitted["max_sweeps"]["default"] == FittedPour{}.max_sweeps);
+  CHECK(start["random_settle"]["properties"]["dilute_fraction"]["default"] ==
+        RandomSettle{}.dilute_fraction);
+  CHECK(start["grow"]["properties"]["max_sweeps"]["default"] == Grow{}.max_sweeps);
+  CHECK(schema["definitions"]["lateral_radius"]["default"] == Shake{}.lateral_radius);
+  CHECK(schema["definitions"]["retries"]["default"] == Shake{}.retries);
+  const auto& snapshots = schema["definitions"]["snapshots"]["properties"];
+  CHECK(snapshots["contact_cut"]["default"] == Snapshots{}.contact_cut);
+  CHECK(snapshots["bin_width"]["default"] == Snapshots{}.bin_width);
+}
+
+}  // namespace jostle

@@ -1,0 +1,69 @@
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+TEST_CASE("A plan holds what the scene says") {
+  auto json = resolved(scene_of(text_of(good_scenes / "every_key.json")));
+  json.erase("sweep");
+  const auto plans = make_plans(scene_of(json.dump()), {});
+  REQUIRE(plans.size() == 1);
+  const Plan& plan = plans[0];
+  CHECK(plan.seed == 18446744073709551615u);
+  CHECK(plan.streams == Streams::matched);
+  CHECK(plan.container == Container{WalledBox{12, 16.5}});
+  CHECK(plan.n_spheres == 4096);
+  CHECK(plan.start == Start{FittedPour{.max_step = 0.04, .max_sweeps = 5000}});
+  REQUIRE(plan.protocol.size() == 3 + 16 + 4 + 1);
+  CHECK(plan.protocol[3] == Stage{Dilate{0.025 * 0.025}, 2});
+  CHECK(plan.protocol[22] == Stage{Dilate{0.1}, 2});
+  CHECK(total_taps(plan) == 100 + 10 + 10 + 2 * 16 + 2 * 4 + 1);
+  CHECK(plan.stop.max_sweeps == 20'000);
+  CHECK(plan.observables.size() == 6);
+  CHECK(plan.snapshots.taps == std::vector<std::uint64_t>{0, 1, 3, 10, 32, 100, 120});
+  CHECK_FALSE(plan.snapshots.height_histogram);
+  CHECK(plan.snapshots.bin_width == 0.05);
+}
+
+TEST_CASE("Every sweep point keeps the seed and the kind of streams") {
+  const Scene scene = scene_of(text_of(good_scenes / "every_key.json"));
+  const auto plans = make_plans(scene, {});
+  REQUIRE(plans.size() == 4);
+  for (const Plan& plan : plans) {
+    CHECK(plan.seed == scene.seed);
+    CHECK(plan.streams == Streams::matched);
+  }
+}
+
+TEST_CASE("A packing file is loaded once for all points that name it") {
+  const Scene scene = scene_of(R"({
+    "seed": 1, "container": {"sides": "periodic", "width": 8}, "spheres": 2,
+    "start": {"file": {"path": "a.h5", "point": 2, "realization": 3, "tap": 40}},
+    "protocol": [{"tap": {"dilate": 0.02}, "count": 1}],
+    "sweep": {"/protocol/0/tap/dilate": [0.01, 0.02], "/start/file/tap": [40, "last"]}})");
+  std::map<PackingFile, int> loads;
+  const auto load = [&](const PackingFile& file) {
+    ++loads[file];
+    return std::vector<Vec3>{{1, 1, 0.5}, {3, 3, file.tap ? 0.5 : 0.75}};
+  };
+  const auto plans = make_plans(scene, load);
+  REQUIRE(plans.size() == 4);
+  CHECK(loads ==
+        std::map<PackingFile, int>{{{"a.h5", 2, 3, 40, {}}, 1}, {{"a.h5", 2, 3, {}, {}}, 1}});
+  const auto& first = std::get<GivenPacking>(plans[0].start);
+  CHECK(first.centres == std::get<GivenPacking>(plans[2].start).centres);
+  CHECK(first.centres->at(1) == Vec3{3, 3, 0.5});
+  CHECK(std::get<GivenPacking>(plans[3].start).centres->at(1) == Vec3{3, 3, 0.75});
+}
+
+TEST_CASE("A packing file with another number of spheres is a start that cannot be") {
+  const Scene scene = scene_of(text_of(good_scenes / "from_results.json"));
+  const auto load = [](const PackingFile&) { return std::vector<Vec3>(512); };
+  CHECK_THROWS_WITH(make_plans(scene, load),
+                    "earlier.h5 holds 512 spheres, the scene 4096: set \"spheres\" to 512");
+  CHECK_THROWS_AS(make_plans(scene, load), StartError);
+}
+
+}  // namespace jostle

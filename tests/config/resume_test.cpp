@@ -1,0 +1,112 @@
+#include <catch2/catch.hpp>
+
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* const run = R"({
+  "name": "run", "seed": 1, "realizations": 4,
+  "container": {"sides": "walls", "width": 8}, "spheres": 512,
+  "protocol": [{"tap": {"dilate": 0.02}, "count": 100},
+               {"ramp": {"lift": {"from": 0.1, "to": 0.3, "step": 0.1}}, "count": 10}],
+  "snapshots": {"taps": [0, 100]},
+  "sweep": {"/protocol/0/tap/dilate": [0.01, 0.02]}})";
+
+/// What resume says to a change of the scene above.
+template <class Change>
+std::string faults_of(const Change& change) {
+  const Json was = resolved(scene_of(run));
+  Json is = Json::parse(run);
+  change(is);
+  return lines(resume_faults(was, resolved(scene_of(is.dump()))));
+}
+
+}  // namespace
+
+TEST_CASE("A resume takes the same scene, more taps, more realizations and another name") {
+  CHECK(faults_of([](Json&) {}).empty());
+  CHECK(faults_of([](Json& scene) { scene["realizations"] = 8; }).empty());
+  CHECK(faults_of([](Json& scene) {
+          scene["name"] = "longer";
+          scene["description"] = "The same, longer.";
+        }).empty());
+  CHECK(faults_of([](Json& scene) {
+          scene["protocol"].push_back(Json::parse(R"({"tap": {"lift": 0.3}, "count": 5})"));
+          scene["snapshots"]["taps"] = {0, 100, 131, 135};
+        }).empty());
+}
+
+TEST_CASE("A resume compares what taps do, not how they are written") {
+  CHECK(faults_of([](Json& scene) {
+          scene["protocol"] = Json::parse(R"([
+            {"tap": {"dilate": 0.02}, "count": 100}, {"tap": {"lift": 0.1}, "count": 10},
+            {"tap": {"lift": 0.2}, "count": 3}, {"tap": {"lift": 0.2}, "count": 7},
+            {"tap": {"lift": 0.3}, "count": 1000}])");
+        }).empty());
+}
+
+TEST_CASE("A resume refuses taps that changed, and names the first") {
+  CHECK(faults_of([](Json& scene) { scene["protocol"][1]["count"] = 11; }) ==
+        "/protocol: tap 111 changed: taps can only be added after the last one, 130 (at the sweep "
+        "point dilate = 0.01)\n");
+  CHECK(faults_of([](Json& scene) { scene["protocol"][1]["count"] = 9; }) ==
+        "/protocol: had 130 taps, has 127: taps can be added at the end, not taken away (at the "
+        "sweep point dilate = 0.01)\n");
+  CHECK(faults_of([](Json& scene) {
+          scene["protocol"][0] = Json::parse(R"({"tap": {"dilate": 0.02}, "count": 130})");
+        }) ==
+        "/protocol: tap 101 changed: taps can only be added after the last one, 130 (at the sweep "
+        "point dilate = 0.01)\n");
+}
+
+TEST_CASE("A resume refuses snapshots that changed within the taps of the run") {
+  CHECK(faults_of([](Json& scene) {
+          scene["snapshots"]["taps"] = {0, 50, 100};
+        }) ==
+        "/snapshots/taps: a snapshot of tap 50 was added: only those after the last tap, 130, can "
+        "be (at the sweep point dilate = 0.01)\n");
+  CHECK(faults_of([](Json& scene) { scene["snapshots"]["taps"] = {100}; }) ==
+        "/snapshots/taps: the snapshot of tap 0 was taken away (at the sweep point dilate = "
+        "0.01)\n");
+}
+
+TEST_CASE("A resume names everything that changed") {
+  const std::string faults = faults_of([](Json& scene) {
+    scene["seed"] = 2;
+    scene["realizations"] = 3;
+    scene["spheres"] = 500;
+    scene["container"]["width"] = 9;
+    scene["relax"]["polar"]["theta0"] = 1;
+    scene["observe"] = {"mean_height"};
+    scene["snapshots"]["keep"] = {"positions"};
+    scene["sweep"]["/protocol/0/tap/dilate"].push_back(0.03);
+  });
+  CHECK(
+      faults ==
+      "/realizations: were 4, are 3: realizations can be added, not taken away\n"
+      "/seed: was 1, is 2: a resumed run keeps it\n"
+      "/container/width: was 8, is 9: a resumed run keeps it\n"
+      "/spheres: was 512, is 500: a resumed run keeps it\n"
+      "/relax/polar/theta0: was 0.7853981633974483, is 1: a resumed run keeps it\n"
+      "/observe: was [\"mean_height\",\"bottom_fraction\",{\"corrected_fraction\":{\"depth\":0.9}}"
+      ",{\"bulk_fraction\":{\"name\":\"bulk_fraction\",\"quantiles\":[0.2,0.8]}}], is "
+      "[\"mean_height\"]: a resumed run keeps it\n"
+      "/snapshots/keep: was [\"positions\",\"coordination\",\"height_histogram\"], is "
+      "[\"positions\"]: a resumed run keeps it\n"
+      "/sweep/~1protocol~10~1tap~1dilate: was [0.01,0.02], is [0.01,0.02,0.03]: a resumed run "
+      "keeps it\n");
+}
+
+TEST_CASE("A resume refuses a scene that this program cannot read") {
+  const Json good = resolved(scene_of(run));
+  Json bad = good;
+  bad["gravity"] = 9.81;
+  CHECK(resume_faults(bad, good).size() == 1);
+  CHECK(resume_faults(good, bad).size() == 1);
+}
+
+}  // namespace jostle

@@ -1,0 +1,135 @@
+#include "config/sweep.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+namespace {
+
+std::string scene_with(const std::string& sweep) {
+  return R"({"seed": 1, "container": {"sides": "periodic", "width": 8}, "spheres": 512,
+             "protocol": [{"tap": {"dilate": 0.02}, "count": 100}], "sweep": )" +
+         sweep + "}";
+}
+
+std::vector<Plan> plans(const std::string& sweep) {
+  return make_plans(scene_of(scene_with(sweep)), {});
+}
+
+double epsilon(const Plan& plan) {
+  return std::get<Dilate>(plan.protocol.at(0).tap).epsilon;
+}
+
+std::map<std::string, std::uint64_t> ids_by_label(const std::vector<Plan>& plans) {
+  std::map<std::string, std::uint64_t> ids;
+  for (const Plan& plan : plans) ids[plan.label] = plan.point_id;
+  return ids;
+}
+
+}  // namespace
+
+TEST_CASE("Axes are crossed, the first varies slowest") {
+  const auto points =
+      plans(R"({"/protocol/0/tap/dilate": [0.01, 0.05], "/spheres": [256, 512, 300]})");
+  REQUIRE(points.size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(epsilon(points[i]) == (i < 3 ? 0.01 : 0.05));
+    CHECK(points[i].n_spheres == std::vector<std::uint32_t>{256, 512, 300}[i % 3]);
+  }
+  CHECK(points[4].label == "dilate = 0.05, spheres = 512");
+  CHECK(points[4].sweep_values == std::vector<std::pair<std::string, std::string>>{
+                                      {"/protocol/0/tap/dilate", "0.05"}, {"/spheres", "512"}});
+}
+
+TEST_CASE("Zipped lists vary together and are crossed with the rest") {
+  const auto points = plans(R"({"/protocol/0/count": [10, 20],
+                                "zip": [{"/spheres": [256, 512], "/container/width": [6, [8, 9]]},
+                                        {"/protocol/0/tap/dilate": [0.1]}]})");
+  REQUIRE(points.size() == 4);
+  CHECK(points[0].container == Container{PeriodicBox{6, 6}});
+  CHECK(points[0].n_spheres == 256);
+  CHECK(points[1].container == Container{PeriodicBox{8, 9}});
+  CHECK(points[1].n_spheres == 512);
+  CHECK(points[1].protocol[0].count == 10);
+  CHECK(points[2].protocol[0].count == 20);
+  for (const Plan& plan : points) CHECK(epsilon(plan) == 0.1);
+}
+
+TEST_CASE("One zipped group may stand without a list") {
+  const auto one = plans(R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]}})");
+  const auto listed = plans(R"({"zip": [{"/spheres": [256, 512], "/container/width": [6, 8]}]})");
+  REQUIRE(one.size() == 2);
+  CHECK(ids_by_label(one) == ids_by_label(listed));
+}
+
+TEST_CASE("Whole parts of a scene can be swept, and values that are defaults") {
+  const auto points = plans(R"({"/protocol/0/tap": [{"lift": 0.25}, {"dilate_floor_held": 0.025}],
+                                "/relax/polar/theta0": [0.5]})");
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].protocol[0].tap == Tap{Lift{0.25}});
+  CHECK(points[1].protocol[0].tap == Tap{DilateFloorHeld{0.025}});
+  CHECK(std::get<PolarMove>(points[1].move).theta0 == 0.5);
+  CHECK(points[0].label == "tap = {\"lift\":0.25}, theta0 = 0.5");
+}
+
+TEST_CASE("Values with the same name are labelled by their whole pointer") {
+  const auto points = plans(R"({"/snapshots/bin_width": [0.1], "/snapshots/contact_cut": [1.1]})");
+  CHECK(points[0].label == "bin_width = 0.1, contact_cut = 1.1");
+  const Scene scene = scene_of(text_of(good_scenes / "hysteresis.json"));
+  auto json = resolved(scene);
+  json["sweep"]["/protocol/0/count"] = {1};
+  json["sweep"]["/protocol/1/count"] = {2};
+  CHECK(make_plans(scene_of(json.dump()), {})[0].label ==
+        "/protocol/0/count = 1, /protocol/1/count = 2");
+}
+
+TEST_CASE("A point's id is a function of its own values") {
+  const auto few = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.01, 0.05]})"));
+  const auto more = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.005, 0.01, 0.02, 0.05]})"));
+  CHECK(few.at("dilate = 0.01") == more.at("dilate = 0.01"));
+  CHECK(few.at("dilate = 0.05") == more.at("dilate = 0.05"));
+  CHECK(more.size() == 4);
+  std::set<std::uint64_t> distinct;
+  for (const auto& [label, id] : more) distinct.insert(id);
+  CHECK(distinct.size() == 4);
+}
+
+TEST_CASE("A point's id depends neither on the order of axes nor on how values are written") {
+  const auto one = plans(R"({"/spheres": [256], "/protocol/0/tap/dilate": [0.05]})");
+  const auto other = plans(R"({"/protocol/0/tap/dilate": [5e-2], "/spheres": [256.0]})");
+  CHECK(one[0].point_id == other[0].point_id);
+}
+
+// The hash is part of the identity of results: these numbers were computed by an independent
+// FNV-1a (Python) over the documented bytes and must never change.
+TEST_CASE("A point's id is the documented hash") {
+  CHECK(plans("{}")[0].point_id == 0);
+  CHECK(plans(R"({"/protocol/0/tap/dilate": [0.005]})")[0].point_id == 0xd3638be4903c49b3u);
+  CHECK(plans(R"({"/spheres": [256], "/protocol/0/tap": [{"lift": 0.25}]})")[0].point_id ==
+        0xd2abb94c90bbc71bu);
+}
+
+TEST_CASE("Without a sweep there is one unnamed point") {
+  const auto points = plans("{}");
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].label.empty());
+  CHECK(points[0].sweep_values.empty());
+  CHECK(n_sweep_points(scene_of(scene_with("{}"))) == 1);
+}
+
+TEST_CASE("Axes keep their order through the resolved scene") {
+  const Scene scene = scene_of(scene_with(
+      R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]},
+          "/protocol/0/tap/dilate": [0.01, 0.05]})"));
+  const auto before = make_plans(scene, {});
+  const auto after = make_plans(scene_of(resolved(scene).dump()), {});
+  REQUIRE(before.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(before[i].label == after[i].label);
+  CHECK(n_sweep_points(scene) == 4);
+}
+
+}  // namespace jostle
