@@ -27,4 +27,8 @@ void sync_folder_of(const std::string& path);
 /// Throws if the file system below `path` has fewer free bytes than needed.
 void require_free_space(const std::string& path, std::uint64_t bytes);
 
+/// Throws ResultsError for a failed system call: "cannot `what`: " and the system's reason, with
+/// the way out of a full disk.
+[[noreturn]] void fail_on_disk(const std::string& path, const char* what, int error);
+
 }  // namespace jostle

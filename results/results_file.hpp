@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,8 @@ class ResultsFile {
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
   /// Everything stored of one realization.
   RealizationRecord record(RealizationId id) const;
+  /// Where it goes on; nothing for missing and failed ones.
+  std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
 

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "results/checksum.hpp"
+#include "results/hdf5_read.hpp"
+#include "results/results_file.hpp"
+#include "results/seal.hpp"
+
+// The digest is a SHA-256 over a canonical text and byte stream: for every object in the order of
+// its path a line "path kind type shape", its values, then its attributes in the order of their
+// names. Chunks, compression, byte order and where in the file things lie do not enter.
+namespace jostle {
+namespace {
+
+class Digest {
+ public:
+  std::string of(hid_t file) {
+    add_attributes(file, "/");
+    add_members(file, "");
+    return hex(sum_.finish());
+  }
+
+ private:
+  void add_members(hid_t group, const std::string& path);
+  void add_object(hid_t parent, const std::string& name, const std::string& path);
+  void add_dataset(hid_t dataset, const std::string& path);
+  void add_attributes(hid_t object, const std::string& path);
+  void add_attribute(hid_t object, const std::string& name, const std::string& path);
+  void add_axes(hid_t dataset, const std::string& path);
+  template <class Read>
+  void add_values(const std::string& what, hid_t type, hid_t space, Read&& read);
+  template <class Number, class Read>
+  void add_numbers(std::size_t n, Read&& read);
+  template <class Read>
+  void add_texts(hid_t space, std::size_t n, Read&& read);
+
+  Sha256 sum_;
+};
+
+using Names = std::vector<std::string>;
+
+Names member_names(hid_t group) {
+  Names names;
+  const auto keep = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+    static_cast<Names*>(all)->push_back(name);
+    return 0;
+  };
+  checked(H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Names attribute_names(hid_t object) {
+  Names names;
+  const auto keep = [](hid_t, const char* name, const H5A_info_t*, void* all) -> herr_t {
+    static_cast<Names*>(all)->push_back(name);
+    return 0;
+  };
+  checked(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string shape_text(hid_t space) {
+  std::string text;
+  Shape shape(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space))));
+  if (!shape.empty()) checked(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
+  for (const hsize_t extent : shape) text += fmt::format(" {}", extent);
+  return text;
+}
+
+void Digest::add_members(hid_t group, const std::string& path) {
+  for (const std::string& name : member_names(group)) {
+    const std::string member = path + "/" + name;
+    if (member == "/provenance" || member == "/timing") continue;
+    add_object(group, name, member);
+  }
+}
+
+void Digest::add_object(hid_t parent, const std::string& name, const std::string& path) {
+  const Hdf5Handle object(H5Oopen(parent, name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (H5Iget_type(object) == H5I_GROUP) {
+    sum_.add(path + " group\n");
+    add_attributes(object, path);
+    add_members(object, path);
+  } else {
+    add_dataset(object, path);
+    add_attributes(object, path);
+    add_axes(object, path);
+  }
+}
+
+void Digest::add_dataset(hid_t dataset, const std::string& path) {
+  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  add_values(path + " dataset", type, space, [&](hid_t memory_type, void* values) {
+    return H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values);
+  });
+}
+
+void Digest::add_attributes(hid_t object, const std::string& path) {
+  for (const std::string& name : attribute_names(object)) {
+    // References to where a dataset lies in the file; add_axes names them instead.
+    if (name == "DIMENSION_LIST" || name == "REFERENCE_LIST") continue;
+    add_attribute(object, name, path);
+  }
+}
+
+void Digest::add_attribute(hid_t object, const std::string& name, const std::string& path) {
+  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+  add_values(path + " attribute " + name, type, space, [&](hid_t memory_type, void* values) {
+    return H5Aread(attribute, memory_type, values);
+  });
+}
+
+void Digest::add_axes(hid_t dataset, const std::string& path) {
+  if (checked(H5DSis_scale(dataset)) > 0) return;
+  const auto keep = [](hid_t, unsigned, hid_t scale, void* names) -> herr_t {
+    char name[1024];
+    const ssize_t n = H5Iget_name(scale, name, sizeof name);
+    if (n <= 0) return -1;
+    static_cast<Names*>(names)->push_back(name);
+    return 0;
+  };
+  for (unsigned dimension = 0; dimension < shape_of(dataset).size(); ++dimension) {
+    Names names;
+    checked(H5DSiterate_scales(dataset, dimension, nullptr, keep, &names));
+    for (const std::string& name : names)
+      sum_.add(path + " axis " + std::to_string(dimension) + " " + name + "\n");
+  }
+}
+
+template <class Read>
+void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read) {
+  const auto n = static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space)));
+  const std::size_t size = H5Tget_size(type);
+  const bool is_signed = H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
+  switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+      sum_.add(what + " float" + std::to_string(8 * size) + shape_text(space) + "\n");
+      return add_numbers<double>(n, [&](void* to) { return read(H5T_NATIVE_DOUBLE, to); });
+    case H5T_INTEGER:
+      sum_.add(what + (is_signed ? " int" : " uint") + std::to_string(8 * size) +
+               shape_text(space) + "\n");
+      return add_numbers<std::uint64_t>(
+          n, [&](void* to) { return read(is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, to); });
+    case H5T_STRING:
+      sum_.add(what + " text" + shape_text(space) + "\n");
+      if (H5Tis_variable_str(type) > 0) return add_texts(space, n, read);
+      {
+        std::vector<std::byte> raw(n * size);
+        checked(read(type, raw.data()));
+        return sum_.add(std::span<const std::byte>(raw));
+      }
+    default:
+      throw Hdf5Error(what + " is neither a number nor text: not written by jostle");
+  }
+}
+
+template <class Number, class Read>
+void Digest::add_numbers(std::size_t n, Read&& read) {
+  std::vector<Number> values(n);
+  if (n > 0) checked(read(values.data()));
+  if constexpr (std::is_floating_point_v<Number>)
+    for (Number& value : values)
+      if (std::isnan(value)) value = std::numeric_limits<Number>::quiet_NaN();
+  sum_.add(std::as_bytes(std::span(values)));
+}
+
+template <class Read>
+void Digest::add_texts(hid_t space, std::size_t n, Read&& read) {
+  if (n == 0) return;
+  const Hdf5Handle type = text_type();
+  std::vector<char*> texts(n, nullptr);
+  checked(read(type, texts.data()));
+  for (const char* text : texts) {
+    const std::string_view view = text ? text : "";
+    sum_.add(std::to_string(view.size()) + ":");
+    sum_.add(view);
+  }
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+}
+
+}  // namespace
+
+std::string digest_of(const std::string& path) {
+  verify_seal(path);
+  silence_hdf5();
+  return naming_file(path, [&] {
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    return Digest().of(file);
+  });
+}
+
+}  // namespace jostle

@@ -1,0 +1,71 @@
+#include "results/hdf5_read.hpp"
+
+namespace jostle {
+namespace {
+
+/// Texts of any length come as pointers that HDF5 owns until they are reclaimed.
+template <class Read>
+std::vector<std::string> collect_texts(hid_t space, Read&& read) {
+  const auto n = static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space)));
+  const Hdf5Handle type = text_type();
+  std::vector<char*> pointers(n, nullptr);
+  if (n == 0) return {};
+  checked(read(type, pointers.data()));
+  std::vector<std::string> texts;
+  for (const char* text : pointers) texts.emplace_back(text ? text : "");
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
+  return texts;
+}
+
+std::string only(const std::string& name, const std::vector<std::string>& texts) {
+  if (texts.size() != 1) throw Hdf5Error(name + " is not one text");
+  return texts.front();
+}
+
+}  // namespace
+
+Hdf5Handle open_group(hid_t parent, const std::string& name) {
+  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose};
+}
+
+Hdf5Handle open_dataset(hid_t parent, const std::string& name) {
+  return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose};
+}
+
+bool exists(hid_t parent, const std::string& path) {
+  for (std::size_t end = path.find('/', 1); end != std::string::npos; end = path.find('/', end + 1))
+    if (checked(H5Lexists(parent, path.substr(0, end).c_str(), H5P_DEFAULT)) == 0) return false;
+  return checked(H5Lexists(parent, path.c_str(), H5P_DEFAULT)) > 0;
+}
+
+Shape shape_of(hid_t dataset) {
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  Shape shape(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space))));
+  if (!shape.empty()) checked(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
+  return shape;
+}
+
+std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
+  const Hdf5Handle dataset = open_dataset(parent, name);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  return collect_texts(space, [&](hid_t type, char** pointers) {
+    return H5Dread(dataset, type, H5S_ALL, H5S_ALL, transfer_properties(), pointers);
+  });
+}
+
+std::string read_text(hid_t parent, const std::string& name) {
+  return only(name, read_texts(parent, name));
+}
+
+std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name) {
+  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+  return collect_texts(
+      space, [&](hid_t type, char** pointers) { return H5Aread(attribute, type, pointers); });
+}
+
+std::string read_text_attribute(hid_t object, const std::string& name) {
+  return only(name, read_texts_attribute(object, name));
+}
+
+}  // namespace jostle

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/hdf5_handle.hpp"
+#include "results/hdf5_write.hpp"
+
+// Reading back what hdf5_write.hpp writes. All throw Hdf5Error, also where a thing is not there.
+namespace jostle {
+
+Hdf5Handle open_group(hid_t parent, const std::string& name);
+Hdf5Handle open_dataset(hid_t parent, const std::string& name);
+/// Whether the path exists, intermediate groups included.
+bool exists(hid_t parent, const std::string& path);
+
+Shape shape_of(hid_t dataset);
+
+template <class Number>
+std::vector<Number> read_numbers(hid_t parent, const std::string& name) {
+  const Hdf5Handle dataset = open_dataset(parent, name);
+  std::vector<Number> values(n_elements(shape_of(dataset)));
+  checked(
+      H5Dread(dataset, Hdf5Number<Number>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  return values;
+}
+
+std::vector<std::string> read_texts(hid_t parent, const std::string& name);
+std::string read_text(hid_t parent, const std::string& name);
+
+std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name);
+std::string read_text_attribute(hid_t object, const std::string& name);
+template <class Number>
+std::vector<Number> read_numbers_attribute(hid_t object, const std::string& name) {
+  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+  std::vector<Number> numbers(
+      static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space))));
+  checked(H5Aread(attribute, Hdf5Number<Number>::memory(), numbers.data()));
+  return numbers;
+}
+template <class Number>
+Number read_number_attribute(hid_t object, const std::string& name) {
+  const auto numbers = read_numbers_attribute<Number>(object, name);
+  if (numbers.size() != 1) throw Hdf5Error("attribute " + name + " is not one number");
+  return numbers.front();
+}
+
+}  // namespace jostle

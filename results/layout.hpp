@@ -1,0 +1,43 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+
+#include "ensemble/sink.hpp"
+#include "results/study.hpp"
+
+// Names inside a results file; docs/format.md describes them.
+namespace jostle {
+
+/// Attribute `jostle_format` of the root; raised when a reader of the old layout would go wrong.
+inline constexpr std::uint32_t layout_version = 1;
+
+inline std::string point_name(std::uint32_t point) {
+  return fmt::format("point_{:04}", point);
+}
+inline std::string realization_name(std::uint32_t realization) {
+  return fmt::format("realization_{:05}", realization);
+}
+inline std::string particles_name(RealizationId id) {
+  return point_name(id.point) + "_" + realization_name(id.realization);
+}
+
+/// The datasets of /provenance, one text a process that worked on the file.
+struct ProvenanceField {
+  const char* name;
+  std::string Provenance::*field;
+};
+inline constexpr ProvenanceField provenance_fields[] = {
+    {"version", &Provenance::version},
+    {"git_revision", &Provenance::git_revision},
+    {"libraries", &Provenance::libraries},
+    {"host", &Provenance::host},
+    {"cpu", &Provenance::cpu},
+    {"instruction_set", &Provenance::instruction_set},
+    {"threads", &Provenance::threads},
+    {"command_line", &Provenance::command_line},
+    {"started", &Provenance::started}};
+
+}  // namespace jostle

@@ -1,0 +1,44 @@
+#include "results/live_run.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "results/error.hpp"
+#include "results/run_parts.hpp"
+
+namespace jostle {
+namespace {
+
+/// Replaces what a part knows better; a part may vanish while a live run folds.
+void take_parts(const ResultsFile& file, std::vector<RealizationSummary>& realizations) {
+  for (const RealizationId id : realizations_with_parts(file.path())) {
+    const auto place = std::find_if(realizations.begin(), realizations.end(),
+                                    [&](const RealizationSummary& one) { return one.id == id; });
+    if (place == realizations.end()) continue;
+    const std::string path = state_path(file.path(), id);
+    try {
+      *place = summary_of(id, read_state(path, {file.run_id(), id}));
+    } catch (const ResultsError&) {
+      struct stat status;
+      if (::stat(path.c_str(), &status) == 0) throw;
+    }
+  }
+}
+
+}  // namespace
+
+RunStatus run_status(const std::string& results_path) {
+  const ResultsFile file(results_path);
+  RunStatus status{.state = file.state(),
+                   .owner = lock_owner(results_path),
+                   .realizations = file.realizations()};
+  take_parts(file, status.realizations);
+  struct stat on_disk;
+  if (::stat(results_path.c_str(), &on_disk) == 0)
+    status.file_bytes = static_cast<std::uint64_t>(on_disk.st_size);
+  status.parts_bytes = parts_bytes(results_path);
+  return status;
+}
+
+}  // namespace jostle

@@ -1,0 +1,83 @@
+#include "results/merge.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <map>
+#include <vector>
+
+#include "results/checksum.hpp"
+#include "results/error.hpp"
+#include "results/lock.hpp"
+#include "results/results_file.hpp"
+#include "results/results_writer.hpp"
+
+namespace jostle {
+namespace {
+
+using Owners = std::map<RealizationId, const ResultsFile*>;
+
+std::string named(RealizationId id) {
+  return fmt::format("realization {} of sweep point {}", id.realization, id.point);
+}
+
+void check_same_study(const ResultsFile& first, const ResultsFile& other) {
+  if (first.study().resolved_scene != other.study().resolved_scene ||
+      first.study().realizations != other.study().realizations ||
+      first.study().points.size() != other.study().points.size())
+    throw ResultsError(other.path(), "holds another scene than " + first.path() +
+                                         "; compare /scene/resolved of both");
+}
+
+void claim(Owners& owners, const ResultsFile& file) {
+  if (file.state() != RunState::complete)
+    throw ResultsError(file.path(), "is not finished; finish it by jostle run --resume");
+  for (const RealizationSummary& summary : file.realizations()) {
+    if (summary.status == RealizationStatus::missing) continue;
+    const auto [owner, is_new] = owners.emplace(summary.id, &file);
+    if (!is_new)
+      throw ResultsError(file.path(), fmt::format("overlaps {}: both hold {}",
+                                                  owner->second->path(), named(summary.id)));
+  }
+}
+
+void check_gaps(const Owners& owners, const Study& study, const std::string& output) {
+  for (const RealizationId id : realizations_of(study, {}))
+    if (!owners.contains(id))
+      throw ResultsError(output, fmt::format("cannot be merged: no input holds {}; a shard is "
+                                             "missing",
+                                             named(id)));
+}
+
+std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
+                                      const Provenance& own) {
+  std::vector<Provenance> processes;
+  for (const ResultsFile& file : files)
+    processes.insert(processes.end(), file.provenance().begin(), file.provenance().end());
+  processes.push_back(own);
+  return processes;
+}
+
+}  // namespace
+
+void merge_files(std::span<const std::string> inputs, const std::string& output,
+                 const Provenance& provenance, bool force) {
+  const RunLock lock(output, force);
+  struct stat status;
+  if (!force && ::stat(output.c_str(), &status) == 0)
+    throw ResultsError(output, "exists already; overwrite it by --force, or choose another name");
+  if (inputs.empty()) throw ResultsError(output, "nothing to merge");
+  std::vector<ResultsFile> files;
+  for (const std::string& input : inputs) files.emplace_back(input);
+  Owners owners;
+  for (const ResultsFile& file : files) {
+    check_same_study(files.front(), file);
+    claim(owners, file);
+  }
+  const Study& study = files.front().study();
+  check_gaps(owners, study, output);
+  write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
+                         [&](RealizationId id) { return owners.at(id)->record(id); }});
+}
+
+}  // namespace jostle

@@ -1,0 +1,113 @@
+#include "results/part_content.hpp"
+
+namespace jostle {
+
+std::size_t SeriesPiece::bytes() const {
+  std::size_t n = rows.size() * sizeof(double);
+  for (const SnapshotRecord& record : snapshots)
+    n +=
+        64 + record.centres.size() * sizeof(Vec3) + record.height_histogram.size() * sizeof(double);
+  return n;
+}
+
+void put(ByteWriter& writer, const RealizationState& state) {
+  writer.put(state.rows);
+  writer.put(state.relaxing);
+  writer.put(state.relaxation.status);
+  writer.put(state.relaxation.trials);
+  writer.put(state.relaxation.accepted);
+  writer.put(state.relaxation.measured);
+  writer.put(state.relaxation.last_value);
+  writer.put(state.relaxation.passes);
+  writer.put(state.move.next_trial);
+  writer.put(state.move.step);
+  writer.put(state.move.window_trials);
+  writer.put(state.move.window_base);
+  writer.put(state.move.window_accepted);
+  writer.put(state.tap_stream_position);
+  writer.put(state.stop_window.low);
+  writer.put(state.stop_window.high);
+  writer.put(state.observable_windows);
+  writer.put(state.centres);
+}
+
+RealizationState get_realization_state(ByteReader& reader) {
+  RealizationState state;
+  state.rows = reader.get<std::uint64_t>();
+  state.relaxing = reader.get<bool>();
+  state.relaxation.status = reader.get<RelaxationStatus>();
+  state.relaxation.trials = reader.get<std::uint64_t>();
+  state.relaxation.accepted = reader.get<std::uint64_t>();
+  state.relaxation.measured = reader.get<bool>();
+  state.relaxation.last_value = reader.get<double>();
+  state.relaxation.passes = reader.get<std::uint32_t>();
+  state.move.next_trial = reader.get<std::uint64_t>();
+  state.move.step = reader.get<double>();
+  state.move.window_trials = reader.get<std::uint64_t>();
+  state.move.window_base = reader.get<std::uint64_t>();
+  state.move.window_accepted = reader.get<std::uint64_t>();
+  state.tap_stream_position = reader.get<std::uint64_t>();
+  state.stop_window.low = reader.get<double>();
+  state.stop_window.high = reader.get<double>();
+  state.observable_windows = reader.get_vector<HeightWindow>();
+  state.centres = reader.get_vector<Vec3>();
+  return state;
+}
+
+void put(ByteWriter& writer, const SeriesPiece& piece) {
+  writer.put(piece.first_row);
+  writer.put(piece.rows);
+  writer.put<std::uint64_t>(piece.snapshots.size());
+  for (const SnapshotRecord& record : piece.snapshots) {
+    writer.put(record.tap);
+    writer.put(record.centres);
+    writer.put(record.coordination.has_value());
+    writer.put(record.coordination.value_or(0));
+    writer.put(record.height_histogram);
+  }
+}
+
+SeriesPiece get_piece(ByteReader& reader) {
+  SeriesPiece piece;
+  piece.first_row = reader.get<std::uint64_t>();
+  piece.rows = reader.get_vector<double>();
+  const auto n_snapshots = reader.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < n_snapshots; ++i) {
+    SnapshotRecord record;
+    record.tap = reader.get<std::uint64_t>();
+    record.centres = reader.get_vector<Vec3>();
+    const bool has_coordination = reader.get<bool>();
+    const double coordination = reader.get<double>();
+    if (has_coordination) record.coordination = coordination;
+    record.height_histogram = reader.get_vector<double>();
+    piece.snapshots.push_back(std::move(record));
+  }
+  return piece;
+}
+
+void put(ByteWriter& writer, const PartState& part) {
+  writer.put(part.base_rows);
+  writer.put(part.n_segments);
+  put(writer, part.tail);
+  writer.put(part.status);
+  writer.put(part.reason);
+  writer.put(part.seconds);
+  writer.put(part.trials);
+  writer.put(part.state.has_value());
+  if (part.state) put(writer, *part.state);
+}
+
+PartState get_part_state(ByteReader& reader) {
+  PartState part;
+  part.base_rows = reader.get<std::uint64_t>();
+  part.n_segments = reader.get<std::uint32_t>();
+  part.tail = get_piece(reader);
+  part.status = reader.get<RealizationStatus>();
+  part.reason = reader.get_string();
+  part.seconds = reader.get<double>();
+  part.trials = reader.get<std::uint64_t>();
+  if (reader.get<bool>()) part.state = get_realization_state(reader);
+  return part;
+}
+
+}  // namespace jostle

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "results/bytes.hpp"
+#include "results/part.hpp"
+
+// The bytes inside parts.
+namespace jostle {
+
+void put(ByteWriter& writer, const SeriesPiece& piece);
+void put(ByteWriter& writer, const PartState& part);
+/// Throw std::out_of_range where the bytes end too early.
+SeriesPiece get_piece(ByteReader& reader);
+PartState get_part_state(ByteReader& reader);
+
+}  // namespace jostle

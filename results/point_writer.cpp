@@ -1,0 +1,183 @@
+#include "results/point_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/random.hpp"
+#include "results/axes.hpp"
+#include "results/layout.hpp"
+#include "results/part.hpp"
+#include "results/particles.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// All NaN look alike in the file.
+double canonical(double value) {
+  return std::isnan(value) ? nan : value;
+}
+
+/// What of a state the next trial depends on: between relaxations nothing of the last one.
+RealizationState essential(RealizationState state) {
+  if (!state.relaxing) state.relaxation = {};
+  return state;
+}
+
+}  // namespace
+
+void create_point_folders(hid_t file) {
+  for (const char* folder :
+       {"observables", "ensemble", "snapshots", "particles", "restart", "timing"})
+    create_group(file, folder);
+}
+
+std::vector<ObservableLabel> column_labels(const StudyPoint& point) {
+  std::vector<ObservableLabel> labels = point.observables;
+  labels.push_back(
+      {relaxation_columns[0], "1", "sweeps of the relaxation after the tap", "jostle"});
+  labels.push_back(
+      {relaxation_columns[1], "1", "accepted trials / trials of the relaxation", "jostle"});
+  labels.push_back({relaxation_columns[2], "1", "1 where the cap ended the relaxation", "jostle"});
+  static_assert(n_relaxation_columns == 3);
+  return labels;
+}
+
+PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
+    : file_(file),
+      point_(study.points[point]),
+      number_(point),
+      n_realizations_(study.realizations),
+      n_rows_(point_.taps + 1),
+      labels_(column_labels(point_)),
+      columns_(labels_.size(), std::vector<double>(n_rows_ * n_realizations_, nan)),
+      statuses_(n_realizations_, 0),
+      rows_(n_realizations_, 0),
+      trials_(n_realizations_, 0),
+      reasons_(n_realizations_),
+      seconds_(n_realizations_, 0),
+      coordination_(point_.snapshots.taps.size() * n_realizations_, nan),
+      histograms_(coordination_.size()) {
+  for (const char* folder : {"observables", "ensemble", "snapshots", "restart", "timing"})
+    create_group(file_, std::string(folder) + "/" + point_name(number_));
+}
+
+Hdf5Handle PointWriter::group_under(const char* folder) const {
+  const std::string path = std::string(folder) + "/" + point_name(number_);
+  return {H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose};
+}
+
+RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationRecord& record) {
+  RealizationStatus status = record.status;
+  take_series(realization, record);
+  if (status == RealizationStatus::done && rows_[realization] < n_rows_)
+    status = RealizationStatus::running;
+  statuses_[realization] = static_cast<std::uint8_t>(status);
+  reasons_[realization] = record.reason;
+  seconds_[realization] = record.seconds;
+  trials_[realization] = record.trials;
+  take_snapshots(realization, record);
+  if (record.state) write_restart(realization, record);
+  return status;
+}
+
+void PointWriter::take_series(std::uint32_t realization, const RealizationRecord& record) {
+  const std::uint64_t n_rows = std::min(record.rows.size() / columns_.size(), n_rows_);
+  rows_[realization] = n_rows;
+  for (std::uint64_t tap = 0; tap < n_rows; ++tap)
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      columns_[c][tap * n_realizations_ + realization] =
+          canonical(record.rows[tap * columns_.size() + c]);
+}
+
+void PointWriter::take_snapshots(std::uint32_t realization, const RealizationRecord& record) {
+  const auto& taps = point_.snapshots.taps;
+  std::vector<const SnapshotRecord*> frames;
+  for (const SnapshotRecord& snapshot : record.snapshots) {
+    const auto place = std::lower_bound(taps.begin(), taps.end(), snapshot.tap);
+    if (place == taps.end() || *place != snapshot.tap) continue;
+    const std::size_t cell =
+        static_cast<std::size_t>(place - taps.begin()) * n_realizations_ + realization;
+    coordination_[cell] = canonical(snapshot.coordination.value_or(nan));
+    histograms_[cell] = snapshot.height_histogram;
+    if (!snapshot.centres.empty()) frames.push_back(&snapshot);
+  }
+  if (!frames.empty())
+    write_particles(file_, particles_name({number_, realization}), point_.container, frames);
+}
+
+void PointWriter::write_restart(std::uint32_t realization, const RealizationRecord& record) {
+  ByteWriter bytes;
+  put(bytes, essential(*record.state));
+  const auto raw =
+      std::span(reinterpret_cast<const std::uint8_t*>(bytes.bytes().data()), bytes.bytes().size());
+  write_numbers<std::uint8_t>(group_under("restart"), realization_name(realization), {raw.size()},
+                              raw);
+}
+
+void PointWriter::finish() {
+  write_observables();
+  write_ensemble();
+  write_snapshots();
+  write_timing();
+}
+
+void PointWriter::write_observables() {
+  const Hdf5Handle group = group_under("observables");
+  const Hdf5Handle taps = write_tap_axis(group, n_rows_);
+  const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
+  const Hdf5Handle* const both[] = {&taps, &realizations};
+  const Hdf5Handle* const one[] = {&realizations};
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const Hdf5Handle column =
+        write_numbers<double>(group, labels_[c].name, {n_rows_, n_realizations_}, columns_[c],
+                              chunk_along_first({n_rows_, n_realizations_}));
+    write_label(column, labels_[c]);
+    attach_axes(column, both);
+  }
+  const Hdf5Handle status = write_numbers(group, "status", statuses_);
+  const std::uint8_t flags[] = {0, 1, 2, 3};
+  write_attribute<std::uint8_t>(status, "flag_values", flags);
+  write_attribute(status, "flag_meanings", std::string("missing running done failed"));
+  write_attribute(status, "long_name", std::string("how far the realization is"));
+  attach_axes(status, one);
+  const Hdf5Handle reason = write_texts(group, "reason", {n_realizations_}, reasons_);
+  write_attribute(reason, "long_name", std::string("why the realization failed"));
+  attach_axes(reason, one);
+  const Hdf5Handle rows = write_numbers(group, "rows", rows_);
+  write_attribute(rows, "long_name", std::string("taps recorded, the start included"));
+  attach_axes(rows, one);
+  std::vector<std::uint64_t> keys;
+  for (std::uint32_t r = 0; r < n_realizations_; ++r)
+    keys.push_back(
+        static_cast<std::uint64_t>(stream_key(point_.seed, point_.id, r, Purpose::trials)));
+  const Hdf5Handle key = write_numbers(group, "trial_key", keys);
+  write_attribute(key, "long_name", std::string("Philox key of the realization's trials"));
+  attach_axes(key, one);
+}
+
+void PointWriter::write_ensemble() {
+  write_ensemble_columns(group_under("ensemble"), labels_, columns_, n_realizations_);
+}
+
+void PointWriter::write_snapshots() {
+  if (point_.snapshots.taps.empty()) return;
+  write_snapshot_statistics(group_under("snapshots"), point_.snapshots, n_realizations_,
+                            coordination_, histograms_);
+}
+
+void PointWriter::write_timing() {
+  const Hdf5Handle group = group_under("timing");
+  const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
+  const Hdf5Handle* const axes[] = {&realizations};
+  const Hdf5Handle seconds = write_numbers(group, "seconds", seconds_);
+  write_label(seconds, {"seconds", "s", "wall time of the realization's work", "jostle"});
+  attach_axes(seconds, axes);
+  const Hdf5Handle trials = write_numbers(group, "trials", trials_);
+  write_label(trials, {"trials", "1", "trials made in that time", "jostle"});
+  attach_axes(trials, axes);
+}
+
+}  // namespace jostle

@@ -1,0 +1,219 @@
+#include "results/results_file.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "results/hdf5_read.hpp"
+#include "results/layout.hpp"
+#include "results/part.hpp"
+#include "results/particles.hpp"
+#include "results/point_writer.hpp"
+#include "results/seal.hpp"
+#include "results/study_writer.hpp"
+
+namespace jostle {
+namespace {
+
+Hdf5Handle open_sealed(const std::string& path) {
+  verify_seal(path);
+  silence_hdf5();
+  return naming_file(path, [&] {
+    return Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  });
+}
+
+/// What is stored of a point, but for positions and restart states.
+struct PointTables {
+  std::uint32_t point = 0;
+  std::vector<std::vector<double>> columns;  // [n_columns] of [n_rows, n_realizations]
+  std::vector<std::uint8_t> statuses;
+  std::vector<std::uint64_t> rows, trials;
+  std::vector<std::string> reasons;
+  std::vector<double> seconds;
+  std::vector<double> coordination;      // [n_snapshot_taps, n_realizations], or empty
+  std::vector<double> height_histogram;  // [n_snapshot_taps, n_realizations, n_bins], or empty
+};
+
+}  // namespace
+
+class ResultsFile::Impl {
+ public:
+  explicit Impl(const std::string& name) : path(name), file(open_sealed(name)) {
+    naming_file(path, [&] {
+      study = read_study(file);
+      provenance = read_provenance(file);
+      has_points = exists(file, "observables");
+    });
+  }
+
+  const PointTables& tables(std::uint32_t point) {
+    if (!cached_ || cached_->point != point) cached_ = read_tables(point);
+    return *cached_;
+  }
+
+  std::string path;
+  Hdf5Handle file;
+  Study study;
+  FileProvenance provenance;
+  bool has_points = false;  // false in the small file of a run that has just begun
+
+ private:
+  PointTables read_tables(std::uint32_t point) const;
+
+  std::optional<PointTables> cached_;
+};
+
+PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
+  PointTables tables;
+  tables.point = point;
+  const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+  for (const ObservableLabel& label : column_labels(study.points.at(point)))
+    tables.columns.push_back(read_numbers<double>(observables, label.name));
+  tables.statuses = read_numbers<std::uint8_t>(observables, "status");
+  tables.rows = read_numbers<std::uint64_t>(observables, "rows");
+  tables.reasons = read_texts(observables, "reason");
+  const Hdf5Handle timing = open_group(file, "timing/" + point_name(point));
+  tables.seconds = read_numbers<double>(timing, "seconds");
+  tables.trials = read_numbers<std::uint64_t>(timing, "trials");
+  const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
+  if (exists(snapshots, "coordination"))
+    tables.coordination = read_numbers<double>(snapshots, "coordination");
+  if (exists(snapshots, "height_histogram"))
+    tables.height_histogram = read_numbers<double>(snapshots, "height_histogram");
+  return tables;
+}
+
+ResultsFile::ResultsFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+ResultsFile::~ResultsFile() = default;
+ResultsFile::ResultsFile(ResultsFile&&) noexcept = default;
+
+const std::string& ResultsFile::path() const {
+  return impl_->path;
+}
+RunState ResultsFile::state() const {
+  return impl_->provenance.state;
+}
+const Shard& ResultsFile::shard() const {
+  return impl_->provenance.shard;
+}
+const Study& ResultsFile::study() const {
+  return impl_->study;
+}
+const std::string& ResultsFile::run_id() const {
+  return impl_->provenance.run_id;
+}
+const std::vector<Provenance>& ResultsFile::provenance() const {
+  return impl_->provenance.processes;
+}
+
+std::vector<RealizationSummary> ResultsFile::realizations() const {
+  return naming_file(impl_->path, [&] {
+    std::vector<RealizationSummary> all;
+    for (std::uint32_t p = 0; p < study().points.size(); ++p) {
+      for (std::uint32_t r = 0; r < study().realizations; ++r) {
+        RealizationSummary summary{.id = {p, r}, .reason = {}};
+        if (impl_->has_points) {
+          const PointTables& tables = impl_->tables(p);
+          summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
+          summary.rows = tables.rows.at(r);
+          summary.reason = tables.reasons.at(r);
+          summary.seconds = tables.seconds.at(r);
+          summary.trials = tables.trials.at(r);
+        }
+        all.push_back(summary);
+      }
+    }
+    return all;
+  });
+}
+
+std::vector<Series> ResultsFile::series(std::uint32_t point) const {
+  const StudyPoint& description = study().points.at(point);
+  const std::uint64_t n_taps = description.taps + 1;
+  return naming_file(impl_->path, [&] {
+    std::vector<Series> all;
+    for (const ObservableLabel& label : column_labels(description)) {
+      Series series{label, n_taps, study().realizations, {}};
+      series.values = impl_->has_points
+                          ? impl_->tables(point).columns.at(all.size())
+                          : std::vector<double>(n_taps * study().realizations, std::nan(""));
+      all.push_back(std::move(series));
+    }
+    return all;
+  });
+}
+
+std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
+  if (!impl_->has_points) return {};
+  return naming_file(impl_->path, [&] {
+    const Hdf5Handle group = open_group(impl_->file, "ensemble/" + point_name(point));
+    std::vector<EnsembleSeries> all;
+    for (const ObservableLabel& label : column_labels(study().points.at(point)))
+      all.push_back({label, read_numbers<double>(group, label.name + "_mean"),
+                     read_numbers<double>(group, label.name + "_sigma"),
+                     read_numbers<double>(group, label.name + "_error"),
+                     read_numbers<std::uint32_t>(group, label.name + "_count")});
+    return all;
+  });
+}
+
+std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
+  if (!impl_->has_points) return {};
+  return naming_file(impl_->path, [&] {
+    std::map<std::uint64_t, SnapshotRecord> by_tap;
+    for (SnapshotRecord& frame : read_particles(impl_->file, particles_name(id)))
+      by_tap[frame.tap] = std::move(frame);
+    const PointTables& tables = impl_->tables(id.point);
+    const auto& taps = study().points.at(id.point).snapshots.taps;
+    const std::size_t n_cells = taps.size() * study().realizations;
+    const std::size_t n_bins = n_cells == 0 ? 0 : tables.height_histogram.size() / n_cells;
+    for (std::size_t s = 0; s < taps.size(); ++s) {
+      const std::size_t cell = s * study().realizations + id.realization;
+      if (!tables.coordination.empty() && !std::isnan(tables.coordination.at(cell)))
+        by_tap[taps[s]].coordination = tables.coordination[cell];
+      if (n_bins == 0 || std::isnan(tables.height_histogram[cell * n_bins])) continue;
+      // The last bin of a histogram holds the highest centre: what follows is padding.
+      std::size_t n = n_bins;
+      while (n > 0 && tables.height_histogram[cell * n_bins + n - 1] == 0) --n;
+      const double* first = tables.height_histogram.data() + cell * n_bins;
+      by_tap[taps[s]].height_histogram.assign(first, first + n);
+    }
+    std::vector<SnapshotRecord> records;
+    for (auto& [tap, record] : by_tap) {
+      record.tap = tap;
+      records.push_back(std::move(record));
+    }
+    return records;
+  });
+}
+
+RealizationRecord ResultsFile::record(RealizationId id) const {
+  RealizationRecord record;
+  if (!impl_->has_points || id.realization >= study().realizations) return record;
+  record.snapshots = snapshots(id);
+  naming_file(impl_->path, [&] {
+    const PointTables& tables = impl_->tables(id.point);
+    record.status = static_cast<RealizationStatus>(tables.statuses.at(id.realization));
+    record.reason = tables.reasons.at(id.realization);
+    record.seconds = tables.seconds.at(id.realization);
+    record.trials = tables.trials.at(id.realization);
+    for (std::uint64_t tap = 0; tap < tables.rows.at(id.realization); ++tap)
+      for (const auto& column : tables.columns)
+        record.rows.push_back(column.at(tap * study().realizations + id.realization));
+  });
+  record.state = restart_state(id);
+  return record;
+}
+
+std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) const {
+  return naming_file(impl_->path, [&]() -> std::optional<RealizationState> {
+    const std::string name =
+        "restart/" + point_name(id.point) + "/" + realization_name(id.realization);
+    if (!exists(impl_->file, name)) return std::nullopt;
+    const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
+    ByteReader reader(std::as_bytes(std::span(bytes)));
+    return get_realization_state(reader);
+  });
+}
+
+}  // namespace jostle

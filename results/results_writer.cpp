@@ -1,0 +1,58 @@
+#include "results/results_writer.hpp"
+
+#include <unistd.h>
+
+#include "results/hdf5_new_file.hpp"
+#include "results/layout.hpp"
+#include "results/point_writer.hpp"
+#include "results/publish.hpp"
+#include "results/seal.hpp"
+#include "results/study_writer.hpp"
+
+namespace jostle {
+namespace {
+
+/// Writes every realization; returns whether all of the shard are done or failed.
+bool write_points(const NewHdf5File& file, const FileContent& content) {
+  bool complete = true;
+  const Study& study = content.study;
+  create_point_folders(file);
+  for (std::uint32_t p = 0; p < study.points.size(); ++p) {
+    PointWriter writer(file, study, p);
+    for (std::uint32_t r = 0; r < study.realizations; ++r) {
+      const RealizationStatus status = writer.add(r, content.record({p, r}));
+      const bool ended = status == RealizationStatus::done || status == RealizationStatus::failed;
+      if (in_share(content.shard, study, {p, r}) && !ended) complete = false;
+      file.check();
+    }
+    writer.finish();
+  }
+  return complete;
+}
+
+void write_hdf5(const std::string& path, const FileContent& content) {
+  NewHdf5File file(path);
+  write_root(file);
+  write_study(file, content.study);
+  RunState state = RunState::running;
+  if (content.record)
+    state = write_points(file, content) ? RunState::complete : RunState::interrupted;
+  write_provenance(file, content, state);
+  file.close();
+}
+
+}  // namespace
+
+void write_results(const std::string& path, const FileContent& content) {
+  const std::string temporary = temporary_name(path);
+  try {
+    naming_file(temporary, [&] { write_hdf5(temporary, content); });
+    seal(temporary);
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  publish_temporary(path);
+}
+
+}  // namespace jostle

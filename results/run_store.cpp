@@ -1,0 +1,225 @@
+#include "results/run_store.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <map>
+#include <mutex>
+
+#include "results/checksum.hpp"
+#include "results/error.hpp"
+#include "results/lock.hpp"
+#include "results/publish.hpp"
+#include "results/recorder.hpp"
+#include "results/results_file.hpp"
+#include "results/results_writer.hpp"
+#include "results/run_parts.hpp"
+
+namespace jostle {
+namespace {
+
+bool file_exists(const std::string& path) {
+  struct stat status;
+  return ::stat(path.c_str(), &status) == 0;
+}
+
+/// A study with another scene or other sizes: the file must say so before parts follow it.
+bool differs(const Study& stored, const Study& study) {
+  return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
+}
+
+}  // namespace
+
+class RunStore::Impl {
+ public:
+  Impl(const std::string& results_path, const Study& a_study, const Shard& a_shard, bool force)
+      : path(results_path), study(a_study), shard(a_shard), lock(results_path, force) {}
+
+  void start(const Provenance& provenance);
+  void go_on(const Provenance& provenance);
+  void fold();
+  RealizationSummary summary(RealizationId id) const;
+  PartState last_checkpoint(RealizationId id) const;
+  std::size_t n_columns(RealizationId id) const;
+  Recorder& recorder(RealizationId id);
+
+  std::string path;
+  Study study;
+  Shard shard;
+  std::string run_id;
+  std::vector<Provenance> processes;
+  std::optional<ResultsFile> file;                       // what the parts go on from
+  std::map<RealizationId, RealizationSummary> folded;    // what is in it
+  std::map<RealizationId, RealizationSummary> in_parts;  // last checkpoints
+  std::mutex mutex;  // of `recorders`, `in_parts` and everything that touches HDF5
+  std::map<RealizationId, std::unique_ptr<Recorder>> recorders;
+
+ private:
+  void open_file();
+  void check_shard_and_points() const;
+
+  RunLock lock;
+};
+
+void RunStore::Impl::start(const Provenance& provenance) {
+  require_free_space(path, disk_estimate(study, shard));
+  remove_parts(path);
+  run_id = random_identity();
+  processes = {provenance};
+  write_results(path, {study, shard, processes, run_id, {}});
+  open_file();
+}
+
+void RunStore::Impl::go_on(const Provenance& provenance) {
+  open_file();
+  check_shard_and_points();
+  run_id = file->run_id();
+  processes = file->provenance();
+  processes.push_back(provenance);
+  in_parts = verify_parts(path, run_id, study);
+  remove_file(temporary_name(path));
+  const std::uint64_t needed = disk_estimate(study, shard), have = parts_bytes(path);
+  if (needed > have) require_free_space(path, needed - have);
+  if (differs(file->study(), study))
+    fold();
+  else
+    study = file->study();
+}
+
+void RunStore::Impl::check_shard_and_points() const {
+  const Shard stored = file->shard();
+  if (stored != shard)
+    throw ResultsError(path, fmt::format("holds shard {}/{} of its study, not {}/{}; resume it "
+                                         "with --shard {}/{}",
+                                         stored.index, stored.count, shard.index, shard.count,
+                                         stored.index, stored.count));
+  if (file->study().points.size() != study.points.size())
+    throw ResultsError(path, fmt::format("has {} sweep points, but the scene has {}",
+                                         file->study().points.size(), study.points.size()));
+}
+
+void RunStore::Impl::open_file() {
+  file.emplace(path);
+  folded.clear();
+  for (RealizationSummary& summary : file->realizations()) folded[summary.id] = summary;
+}
+
+/// Replaces the file by one that also holds what the parts hold.
+void RunStore::Impl::fold() {
+  const auto record = [&](RealizationId id) {
+    RealizationRecord base = file->record(id);
+    if (!in_parts.contains(id)) return base;
+    return join(std::move(base), path, {run_id, id}, n_columns(id));
+  };
+  write_results(path, {study, shard, processes, run_id, record});
+  open_file();
+}
+
+std::size_t RunStore::Impl::n_columns(RealizationId id) const {
+  return study.points[id.point].observables.size() + n_relaxation_columns;
+}
+
+RealizationSummary RunStore::Impl::summary(RealizationId id) const {
+  if (const auto part = in_parts.find(id); part != in_parts.end()) return part->second;
+  if (const auto stored = folded.find(id); stored != folded.end()) return stored->second;
+  return {.id = id, .reason = {}};
+}
+
+/// The last checkpoint of a realization, or an empty one.
+PartState RunStore::Impl::last_checkpoint(RealizationId id) const {
+  PartState part;
+  const RealizationSummary last = summary(id);
+  if (last.status == RealizationStatus::failed) return part;
+  if (in_parts.contains(id)) return read_state(state_path(path, id), {run_id, id});
+  part.state = file->restart_state(id);
+  if (!part.state) return part;
+  part.base_rows = last.rows;
+  part.seconds = last.seconds;
+  part.trials = last.trials;
+  return part;
+}
+
+Recorder& RunStore::Impl::recorder(RealizationId id) {
+  const std::lock_guard guard(mutex);
+  return *recorders.at(id);
+}
+
+RunStore::RunStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RunStore::~RunStore() = default;
+
+std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study& study,
+                                           const Shard& shard, const Provenance& provenance,
+                                           bool force) {
+  auto impl = std::make_unique<Impl>(path, study, shard, force);
+  if (!force && file_exists(path))
+    throw ResultsError(path,
+                       "exists already; go on with it by --resume, overwrite it by --force, or "
+                       "choose another name by --output");
+  if (!force && parts_exist(path))
+    throw ResultsError(parts_folder(path),
+                       "holds parts of an earlier run whose results file is gone; restore that "
+                       "file, or discard the parts by --force");
+  impl->start(provenance);
+  return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
+}
+
+std::unique_ptr<RunStore> RunStore::resume(const std::string& path, const Study& study,
+                                           const Shard& shard, const Provenance& provenance,
+                                           bool force) {
+  auto impl = std::make_unique<Impl>(path, study, shard, force);
+  impl->go_on(provenance);
+  return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
+}
+
+std::vector<RealizationId> RunStore::pending(bool retry_failed) const {
+  const Impl& impl = *impl_;
+  std::vector<RealizationId> ids = realizations_of(impl.study, impl.shard);
+  std::erase_if(ids, [&](RealizationId id) {
+    const RealizationSummary last = impl.summary(id);
+    if (last.status == RealizationStatus::failed) return !retry_failed;
+    return last.status == RealizationStatus::done && last.rows > impl.study.points[id.point].taps;
+  });
+  return ids;
+}
+
+std::optional<RealizationState> RunStore::begin(RealizationId id) {
+  const std::lock_guard guard(impl_->mutex);
+  make_parts_folder(impl_->path);
+  PartState part = impl_->last_checkpoint(id);
+  part.status = RealizationStatus::running;
+  const std::optional<RealizationState> state = part.state;
+  impl_->recorders[id] = std::make_unique<Recorder>(impl_->path, PartIdentity{impl_->run_id, id},
+                                                    impl_->n_columns(id), std::move(part));
+  return state;
+}
+
+void RunStore::append(RealizationId id, const TapRow& row) {
+  impl_->recorder(id).append(row);
+}
+
+void RunStore::snapshot(RealizationId id, const SnapshotRecord& record) {
+  impl_->recorder(id).snapshot(record);
+}
+
+void RunStore::checkpoint(RealizationId id, const RealizationState& state) {
+  const RealizationSummary summary = impl_->recorder(id).checkpoint(state);
+  const std::lock_guard guard(impl_->mutex);
+  impl_->in_parts[id] = summary;
+}
+
+void RunStore::end(RealizationId id, const RealizationState& state, const Outcome& outcome) {
+  const RealizationSummary summary = impl_->recorder(id).end(state, outcome);
+  const std::lock_guard guard(impl_->mutex);
+  impl_->in_parts[id] = summary;
+  impl_->recorders.erase(id);
+}
+
+void RunStore::finish() {
+  const std::lock_guard guard(impl_->mutex);
+  impl_->recorders.clear();
+  impl_->fold();
+  remove_parts(impl_->path);
+  impl_->in_parts.clear();
+}
+
+}  // namespace jostle

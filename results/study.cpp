@@ -1,0 +1,109 @@
+#include "results/study.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <openssl/crypto.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+
+#include "results/record.hpp"
+
+namespace jostle {
+namespace {
+
+StudyPoint make_point(const Plan& plan) {
+  StudyPoint point{.label = plan.label,
+                   .sweep_values = plan.sweep_values,
+                   .id = plan.point_id,
+                   .seed = plan.seed,
+                   .container = plan.container,
+                   .n_spheres = plan.n_spheres,
+                   .taps = total_taps(plan),
+                   .observables = {},
+                   .snapshots = plan.snapshots};
+  for (const Observable& observable : plan.observables)
+    point.observables.push_back(label(observable));
+  return point;
+}
+
+std::uint64_t bytes_of_realization(const StudyPoint& point) {
+  const std::uint64_t columns = point.observables.size() + n_relaxation_columns;
+  const std::uint64_t positions = point.n_spheres * sizeof(Vec3);
+  const std::uint64_t bins = 4 * point.n_spheres;  // a very tall bed, or very narrow bins
+  const std::uint64_t a_snapshot = (point.snapshots.positions ? positions : 0) +
+                                   (point.snapshots.height_histogram ? bins * 8 : 0) + 8;
+  return (point.taps + 1) * columns * 8 + point.snapshots.taps.size() * a_snapshot + positions +
+         1024;
+}
+
+std::string processor_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1,
+                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+}  // namespace
+
+Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
+                 std::uint32_t realizations) {
+  Study study{std::move(scene), std::move(resolved_scene), realizations, {}};
+  for (const Plan& plan : plans) study.points.push_back(make_point(plan));
+  return study;
+}
+
+bool in_share(const Shard& shard, const Study& study, RealizationId id) {
+  const std::uint64_t place = std::uint64_t{id.realization} * study.points.size() + id.point;
+  return place % shard.count + 1 == shard.index;
+}
+
+std::vector<RealizationId> realizations_of(const Study& study, const Shard& shard) {
+  std::vector<RealizationId> ids;
+  for (std::uint32_t r = 0; r < study.realizations; ++r)
+    for (std::uint32_t p = 0; p < study.points.size(); ++p)
+      if (in_share(shard, study, {p, r})) ids.push_back({p, r});
+  return ids;
+}
+
+std::uint64_t disk_estimate(const Study& study, const Shard& shard) {
+  std::uint64_t bytes = 1 << 20;
+  for (const StudyPoint& point : study.points) {
+    const std::uint64_t ensemble = (point.taps + 1) * (point.observables.size() + 3) * 28;
+    bytes += ensemble + 65536;
+  }
+  for (const RealizationId id : realizations_of(study, shard))
+    bytes += 2 * bytes_of_realization(study.points[id.point]);
+  return bytes;
+}
+
+Provenance provenance_of_this_machine() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  Provenance provenance;
+  provenance.libraries =
+      fmt::format("HDF5 {}, {}", hdf5_version(), OpenSSL_version(OPENSSL_VERSION));
+  provenance.host = host.data();
+  provenance.cpu = processor_model();
+  provenance.started = utc_now();
+  return provenance;
+}
+
+}  // namespace jostle

@@ -1,0 +1,161 @@
+/* A disk that fails on demand. Preloaded (LD_PRELOAD), it counts the calls of write, pwrite,
+ * pwrite64, fsync, fdatasync, ftruncate, ftruncate64, rename, renameat, unlink and rmdir that touch
+ * a path beginning with JOSTLE_FAULT_PATH (or a descriptor open on one), 1, 2, 3, ... in the order
+ * in which they come, and acts on one of them:
+ *
+ *   JOSTLE_FAULT_PATH    prefix of the absolute paths that count; unset: nothing is done at all
+ *   JOSTLE_FAULT_COUNT   a file outside that prefix; at exit the number of calls so far is written
+ *                        to it as text
+ *   JOSTLE_FAULT_AT      the number of the call to act on
+ *   JOSTLE_FAULT_ACTION  kill_before  SIGKILL instead of the call
+ *                        kill_after   the call, then SIGKILL
+ *                        kill_within  half the bytes of a write, then SIGKILL (else as kill_before)
+ *                        no_space     the call and every later write or ftruncate fail with ENOSPC
+ *                        fsync_fails  the call and every later fsync fail with EIO
+ *
+ * No action or no number: calls are only counted. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+static atomic_long calls;
+
+static const char* prefix(void) { return getenv("JOSTLE_FAULT_PATH"); }
+
+static int counts_path(const char* path) {
+  const char* start = prefix();
+  if (!start || !path) return 0;
+  char absolute[8192];
+  if (path[0] != '/') {
+    char folder[4096];
+    if (!getcwd(folder, sizeof folder)) return 0;
+    snprintf(absolute, sizeof absolute, "%s/%s", folder, path);
+    path = absolute;
+  }
+  return strncmp(path, start, strlen(start)) == 0;
+}
+
+static int counts_descriptor(int descriptor) {
+  if (!prefix()) return 0;
+  char link[64], path[4096];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  const ssize_t n = readlink(link, path, sizeof path - 1);
+  if (n <= 0) return 0;
+  path[n] = 0;
+  return counts_path(path);
+}
+
+static void die(void) {
+  syscall(SYS_kill, getpid(), SIGKILL);
+  for (;;) pause();
+}
+
+enum kind { writes, syncs, others };
+struct verdict {
+  int error;      /* errno to fail with, 0: go on */
+  int kill_after; /* die once the call is done */
+  int halve;      /* write half, then die */
+};
+
+static struct verdict judge(enum kind kind) {
+  struct verdict verdict = {0, 0, 0};
+  const long number = atomic_fetch_add(&calls, 1) + 1;
+  const char* at_text = getenv("JOSTLE_FAULT_AT");
+  const char* action = getenv("JOSTLE_FAULT_ACTION");
+  if (!at_text || !action) return verdict;
+  const long at = atol(at_text);
+  if (number >= at && kind == writes && !strcmp(action, "no_space")) verdict.error = ENOSPC;
+  if (number >= at && kind == syncs && !strcmp(action, "fsync_fails")) verdict.error = EIO;
+  if (number != at) return verdict;
+  if (!strcmp(action, "kill_before")) die();
+  if (!strcmp(action, "kill_after")) verdict.kill_after = 1;
+  if (!strcmp(action, "kill_within")) {
+    if (kind != writes) die();
+    verdict.halve = 1;
+  }
+  return verdict;
+}
+
+#define NEXT(name) (__extension__(__typeof__(&name))dlsym(RTLD_NEXT, #name))
+
+#define ACT(kind, call)                  \
+  const struct verdict v = judge(kind);  \
+  if (v.error) {                         \
+    errno = v.error;                     \
+    return -1;                           \
+  }                                      \
+  const __typeof__(call) result = (call); \
+  if (v.kill_after || v.halve) die();    \
+  return result
+
+ssize_t write(int descriptor, const void* bytes, size_t n) {
+  if (!counts_descriptor(descriptor)) return NEXT(write)(descriptor, bytes, n);
+  ACT(writes, NEXT(write)(descriptor, bytes, v.halve ? n / 2 : n));
+}
+
+ssize_t pwrite(int descriptor, const void* bytes, size_t n, off_t offset) {
+  if (!counts_descriptor(descriptor)) return NEXT(pwrite)(descriptor, bytes, n, offset);
+  ACT(writes, NEXT(pwrite)(descriptor, bytes, v.halve ? n / 2 : n, offset));
+}
+
+ssize_t pwrite64(int descriptor, const void* bytes, size_t n, off64_t offset) {
+  if (!counts_descriptor(descriptor)) return NEXT(pwrite64)(descriptor, bytes, n, offset);
+  ACT(writes, NEXT(pwrite64)(descriptor, bytes, v.halve ? n / 2 : n, offset));
+}
+
+int ftruncate(int descriptor, off_t size) {
+  if (!counts_descriptor(descriptor)) return NEXT(ftruncate)(descriptor, size);
+  ACT(writes, NEXT(ftruncate)(descriptor, size));
+}
+
+int ftruncate64(int descriptor, off64_t size) {
+  if (!counts_descriptor(descriptor)) return NEXT(ftruncate64)(descriptor, size);
+  ACT(writes, NEXT(ftruncate64)(descriptor, size));
+}
+
+int fsync(int descriptor) {
+  if (!counts_descriptor(descriptor)) return NEXT(fsync)(descriptor);
+  ACT(syncs, NEXT(fsync)(descriptor));
+}
+
+int fdatasync(int descriptor) {
+  if (!counts_descriptor(descriptor)) return NEXT(fdatasync)(descriptor);
+  ACT(syncs, NEXT(fdatasync)(descriptor));
+}
+
+int rename(const char* from, const char* to) {
+  if (!counts_path(to)) return NEXT(rename)(from, to);
+  ACT(others, NEXT(rename)(from, to));
+}
+
+int renameat(int from_folder, const char* from, int to_folder, const char* to) {
+  if (!counts_path(to)) return NEXT(renameat)(from_folder, from, to_folder, to);
+  ACT(others, NEXT(renameat)(from_folder, from, to_folder, to));
+}
+
+int unlink(const char* path) {
+  if (!counts_path(path)) return NEXT(unlink)(path);
+  ACT(others, NEXT(unlink)(path));
+}
+
+int rmdir(const char* path) {
+  if (!counts_path(path)) return NEXT(rmdir)(path);
+  ACT(others, NEXT(rmdir)(path));
+}
+
+__attribute__((destructor)) static void report(void) {
+  const char* path = getenv("JOSTLE_FAULT_COUNT");
+  if (!path) return;
+  FILE* file = fopen(path, "w");
+  if (!file) return;
+  fprintf(file, "%ld\n", atomic_load(&calls));
+  fclose(file);
+}

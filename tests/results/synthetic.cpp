@@ -1,0 +1,137 @@
+#include "synthetic.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace jostle::synthetic {
+namespace {
+
+constexpr std::uint64_t steps_a_tap = 3;
+
+double noise(std::uint64_t a, std::uint64_t b) {
+  std::uint64_t h = a * 0x9e3779b97f4a7c15u ^ (b + 0x165667b19e3779f9u);
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<double>((h ^ (h >> 31)) >> 11) * 0x1p-53;
+}
+
+RealizationState begin_state(const StudyPoint& point, RealizationId id) {
+  RealizationState state;
+  for (std::uint32_t i = 0; i < point.n_spheres; ++i)
+    state.centres.push_back({noise(i, id.realization), noise(i, point.id), 0.5 + i});
+  state.move.step = 0.1;
+  state.stop_window = {0.25, 4};
+  state.observable_windows = {{0, 0}, {1, 3}};
+  return state;
+}
+
+/// One step of a relaxation, by numbers that the state alone decides.
+void step(RealizationState& state) {
+  for (Vec3& r : state.centres) {
+    r.x = noise(++state.move.next_trial, static_cast<std::uint64_t>(1e6 * r.x));
+    r.z *= 1 + 1e-3 * r.x;
+  }
+  state.move.step *= 0.995;
+  ++state.relaxation.trials;
+}
+
+TapRow row_of(const RealizationState& state) {
+  TapRow row{.tap = state.rows, .observables = {0, 0}, .relaxation = {}};
+  for (const Vec3 r : state.centres) {
+    row.observables[0] += r.z;
+    row.observables[1] += r.x;
+  }
+  row.relaxation.sweeps = static_cast<double>(state.relaxation.trials);
+  row.relaxation.acceptance = state.rows == 0 ? -std::nan("") : state.move.step;
+  return row;
+}
+
+SnapshotRecord snapshot_of(const RealizationState& state) {
+  return {state.rows, state.centres, state.centres[0].x, {0.25, 0, state.centres[1].x}};
+}
+
+/// Records the tap that is due and leaves the state between relaxations.
+void record(Sink& sink, const StudyPoint& point, RealizationId id, RealizationState& state) {
+  const auto& taps = point.snapshots.taps;
+  if (std::binary_search(taps.begin(), taps.end(), state.rows))
+    sink.snapshot(id, snapshot_of(state));
+  sink.append(id, row_of(state));
+  ++state.rows;
+  state.relaxing = false;
+}
+
+class Rows : public Sink {
+ public:
+  std::optional<RealizationState> begin(RealizationId) override { return std::nullopt; }
+  void append(RealizationId, const TapRow& row) override { rows.push_back(row); }
+  void snapshot(RealizationId, const SnapshotRecord&) override {}
+  void checkpoint(RealizationId, const RealizationState&) override {}
+  void end(RealizationId, const RealizationState&, const Outcome&) override {}
+
+  std::vector<TapRow> rows;
+};
+
+}  // namespace
+
+Study study(const Sizes& sizes) {
+  Study study;
+  study.scene = "{\"name\": \"synthetic\"} // as typed, with an \xc3\xbc\n";
+  study.resolved_scene = fmt::format("taps {}, realizations {}", sizes.taps, sizes.realizations);
+  study.realizations = sizes.realizations;
+  for (std::uint32_t p = 0; p < sizes.points; ++p) {
+    StudyPoint point{.label = fmt::format("epsilon = {}", p),
+                     .sweep_values = {{"/tap/epsilon", fmt::format("{}", p)}},
+                     .id = 0xfedcba9876543210u + p,
+                     .seed = 7,
+                     .container = PeriodicBox{4, 5},
+                     .n_spheres = sizes.spheres,
+                     .taps = sizes.taps,
+                     .observables = {{"mean_height", "diameter", "mean height", "a paper"},
+                                     {"bulk_fraction", "1", "bulk fraction", "another"}},
+                     .snapshots = {}};
+    point.snapshots.taps = sizes.snapshot_taps;
+    study.points.push_back(point);
+  }
+  return study;
+}
+
+void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduct) {
+  const StudyPoint& point = study.points[id.point];
+  const auto last = sink.begin(id);
+  RealizationState state = last ? *last : begin_state(point, id);
+  if (!last) record(sink, point, id, state);
+  std::uint64_t steps = 0;
+  while (state.rows <= point.taps) {
+    if (state.rows == conduct.fail_at_tap)
+      return sink.end(id, state, {RealizationStatus::failed, "it was told to", 0.5, steps});
+    if (steps == conduct.steps) {
+      if (conduct.leave_without_end) return;
+      return sink.end(id, state, {RealizationStatus::running, "", 0.5, steps});
+    }
+    if (!state.relaxing) {
+      state.relaxing = true;
+      state.relaxation = {};
+    }
+    step(state);
+    if (state.relaxation.trials == steps_a_tap) record(sink, point, id, state);
+    if (++steps % conduct.checkpoint_every == 0) sink.checkpoint(id, state);
+  }
+  sink.end(id, state, {RealizationStatus::done, "", 0.5, steps});
+}
+
+TapRow expected_row(const Study& study, RealizationId id, std::uint64_t tap) {
+  Rows rows;
+  run(rows, study, id);
+  return rows.rows.at(tap);
+}
+
+Provenance provenance() {
+  Provenance provenance = provenance_of_this_machine();
+  provenance.version = std::string("0");
+  provenance.command_line = "test";
+  return provenance;
+}
+
+}  // namespace jostle::synthetic

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "ensemble/sink.hpp"
+#include "results/study.hpp"
+
+// A stand-in for the engine: realizations whose numbers are made of hashes, but which depend on
+// their state as real ones do, so that a wrong restart gives wrong rows.
+namespace jostle::synthetic {
+
+struct Sizes {
+  std::uint32_t points = 2, realizations = 3, spheres = 5;
+  std::uint64_t taps = 6;
+  std::vector<std::uint64_t> snapshot_taps = {0, 2, 6};
+};
+
+/// A study with two observables; its resolved scene names the sizes.
+Study study(const Sizes& sizes = {});
+
+struct Conduct {
+  std::uint64_t checkpoint_every = 2;  // steps, of which a tap takes three
+  std::uint64_t steps = std::numeric_limits<std::uint64_t>::max();  // then stop, as by a signal
+  bool leave_without_end = false;  // stop as by SIGKILL: neither checkpoint nor end
+  std::uint64_t fail_at_tap = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Runs one realization from its last checkpoint.
+void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduct = {});
+
+/// The row that a straight run records at a tap.
+TapRow expected_row(const Study& study, RealizationId id, std::uint64_t tap);
+
+Provenance provenance();
+
+}  // namespace jostle::synthetic
