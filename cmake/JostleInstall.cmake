@@ -6,7 +6,7 @@ get_property(libraries GLOBAL PROPERTY jostle_libraries)
 install(TARGETS ${libraries} EXPORT jostle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS jostle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(
-  DIRECTORY engine structure ensemble config results
+  DIRECTORY engine structure fitting ensemble config results
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle
   FILES_MATCHING
   PATTERN "*.hpp"

@@ -1,0 +1,86 @@
+#include "fitting/curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace jostle {
+
+namespace {
+
+// "t is not finite at 2 points, the first being number 3 (nan)"
+template <typename Bad>
+void report(const std::vector<double>& values, const char* what, Bad bad,
+            std::vector<std::string>& faults) {
+  const auto first = std::find_if(values.begin(), values.end(), bad);
+  if (first == values.end()) return;
+  std::ostringstream text;
+  text << what << " at " << std::count_if(first, values.end(), bad) << " of " << values.size()
+       << " points, the first being number " << first - values.begin() + 1 << " (" << *first << ")";
+  faults.push_back(text.str());
+}
+
+}  // namespace
+
+std::vector<std::string> faults(const Curve& curve) {
+  std::vector<std::string> found;
+  const std::size_t n = curve.t.size();
+  if (n == 0) found.push_back("the curve has no points");
+  if (curve.x.size() != n || (!curve.sigma.empty() && curve.sigma.size() != n)) {
+    std::ostringstream text;
+    text << "the columns differ in length: t " << n << ", X " << curve.x.size() << ", sigma "
+         << curve.sigma.size();
+    found.push_back(text.str());
+    return found;
+  }
+  const auto not_finite = [](double value) { return !std::isfinite(value); };
+  report(curve.t, "t is not finite", not_finite, found);
+  report(curve.x, "X is not finite", not_finite, found);
+  report(curve.sigma, "sigma is not finite", not_finite, found);
+  report(
+      curve.sigma, "sigma is not positive", [](double value) { return value <= 0; }, found);
+  return found;
+}
+
+Curve within(const Curve& curve, double first, double last) {
+  Curve part;
+  for (std::size_t i = 0; i < curve.t.size(); ++i) {
+    if (!(curve.t[i] >= first && curve.t[i] <= last)) continue;
+    part.t.push_back(curve.t[i]);
+    part.x.push_back(curve.x[i]);
+    if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
+  }
+  return part;
+}
+
+Curve thinned(const Curve& curve, std::size_t n) {
+  if (curve.t.size() <= n) return curve;
+  std::vector<std::size_t> order(curve.t.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return curve.t[a] < curve.t[b]; });
+  const double first = curve.t[order.front()], last = curve.t[order.back()];
+  const bool logarithmic = first > 0 && last > 100 * first;
+  Curve part;
+  std::size_t taken = order.size();  // the rank taken last
+  for (std::size_t k = 0; k < n; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(n - 1);
+    std::size_t rank = static_cast<std::size_t>(share * static_cast<double>(order.size() - 1));
+    if (logarithmic) {
+      const double wanted = first * std::pow(last / first, share) * (1 - 1e-12);
+      const auto at = std::partition_point(order.begin(), order.end(),
+                                           [&](std::size_t i) { return curve.t[i] < wanted; });
+      rank = std::min<std::size_t>(static_cast<std::size_t>(at - order.begin()), order.size() - 1);
+    }
+    if (rank == taken) continue;
+    taken = rank;
+    const std::size_t i = order[rank];
+    part.t.push_back(curve.t[i]);
+    part.x.push_back(curve.x[i]);
+    if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
+  }
+  return part;
+}
+
+}  // namespace jostle

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fitting/curve.hpp"
+#include "fitting/diagnostics.hpp"
+#include "fitting/levenberg_marquardt.hpp"
+#include "fitting/model.hpp"
+
+namespace jostle {
+
+struct FitOptions {
+  /// The first start tried, [n_parameters]; without one, starts come from the data.
+  std::optional<ParameterValues> start = std::nullopt;
+  /// Whether further starts from the data are tried after the first.
+  bool multi_start = true;
+  /// Parameters that keep a value, by name.
+  std::map<std::string, double> fixed = {};
+  /// Whether intervals are computed: some hundred fits with one parameter held.
+  bool profiles = true;
+  SolverOptions solver = {};
+};
+
+/// The probabilities of the two intervals: that of one standard error, and 95 %.
+inline constexpr double interval_levels[] = {0.682689492137086, 0.95};
+
+/// A confidence interval; an infinite end means that the data set no limit on this side (or not
+/// within a factor 10^6 for a bounded parameter, 10^4 ranges of the data or errors for others).
+struct Interval {
+  double lower = 0, upper = 0;
+  bool closed() const;
+};
+
+/// What the data say of a parameter, from its 95 % interval.
+enum class Identifiability {
+  fixed,             // by the user
+  not_examined,      // no intervals asked for, or no degree of freedom left
+  identified,        // closed
+  wide,              // closed, but over a factor 3, or over more than the whole range of X
+  bounded_below,     // no upper limit
+  bounded_above,     // no lower limit, or none but the parameter's own bound
+  not_identifiable,  // no limit at all
+};
+
+struct Estimate {
+  Parameter parameter;
+  double value = 0;
+  /// From the covariance; infinite without degrees of freedom, 0 for a fixed parameter.
+  double standard_error = 0;
+  Interval intervals[2];  // profile likelihood at interval_levels; the value itself if fixed
+  Identifiability identifiability = Identifiability::not_examined;
+  std::string statement;  // the same in words
+};
+
+/// A fit and what can be said of it. No number is NaN; what does not exist is infinite.
+struct Fit {
+  std::string model, formula, source;
+  std::vector<Estimate> estimates;  // [n_parameters]
+  /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
+  /// residual variance where no errors were given, absolute where they were.
+  Eigen::MatrixXd covariance, correlation;
+
+  std::size_t n_points = 0, n_free = 0, dof = 0;
+  bool sigma_given = false;
+  bool logarithmic = false;   // residuals are those of ln X
+  double residual_sum = 0;    // of squares, weighted: chi2 where errors were given
+  double reduced_chi2 = 0;    // residual_sum / dof; infinite without dof
+  double r2 = 0;              // 1 - residual_sum / weighted sum about the weighted mean
+  double aic = 0, bic = 0;    // -2 ln L + 2 k, + k ln n; k counts the variance if estimated
+  double condition = 0;       // of J^T J for columns of J of unit length
+  RunsTest runs;              // of the residuals in order of t
+  double effective_size = 0;  // points that independent residuals would be worth
+  double error_factor = 1;    // sqrt(n_points / effective_size): honest errors are longer
+  double aic_effective = 0, bic_effective = 0;  // with likelihoods to the power effective_size/n
+
+  std::vector<double> fitted;     // [n_points], the model at t
+  std::vector<double> residuals;  // [n_points], X - fitted (ln X - ln fitted), unweighted
+  EndReason reason = EndReason::not_finite;
+  /// Of the descent that won; `fallback` as in Minimum; `start` which of the starts it came from.
+  int iterations = 0, evaluations = 0, jacobian_evaluations = 0, fallback = 0, start = 0;
+  int starts_tried = 0;
+  std::vector<std::string> remarks;  // whatever a reader must know, a sentence each
+
+  ParameterValues values() const;
+};
+
+enum class RefusalKind {
+  bad_curve,
+  bad_options,
+  too_few_points,
+  constant_curve,
+  bad_domain,
+  no_start
+};
+
+/// Why there is no fit.
+struct Refusal {
+  RefusalKind kind = RefusalKind::bad_curve;
+  std::string message;
+};
+
+/// Fits a model to a curve by least squares, weighted where the curve has errors.
+std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve,
+                               const FitOptions& options = {});
+
+}  // namespace jostle

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fitting/fit.hpp"
+
+namespace jostle {
+
+/// Inverse of J^T J, and the condition number of J^T J for columns of unit length, from the
+/// singular values of J's triangle. Directions that J does not see get a variance as large as
+/// rounding allows, never an infinite one.
+struct InverseNormal {
+  Eigen::MatrixXd matrix;  // [n_variables, n_variables]
+  double condition = 1;
+};
+InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian);
+
+/// Fills what follows from residuals and counts: residual sum, reduced chi2, R2, AIC, BIC, runs,
+/// effective size. `weighted`: [n_points], the residuals over their errors; the fit's n_points,
+/// n_free, dof, sigma_given and residuals are set.
+void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& fit);
+
+/// Judges every estimate by its 95 % interval and says so; `span`: range of X. Adds remarks on
+/// parameters that can replace each other, and on residuals that hang together.
+void judge(double span, Fit& fit);
+
+}  // namespace jostle

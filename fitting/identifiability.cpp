@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "fitting/fit_statistics.hpp"
+
+namespace jostle {
+
+namespace {
+
+// About 10^3 in good fits of the inverse log, 10^6 where its triplet is free to drift: in between
+// the linear errors and the profiles part company.
+constexpr double poor_condition = 1e5;
+constexpr double wide_factor = 3;
+
+bool is_wide(const Estimate& estimate, double span) {
+  const Interval& interval = estimate.intervals[1];
+  if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
+  if (estimate.parameter.unit == ParameterUnit::value) {
+    return interval.upper - interval.lower > span;
+  }
+  return interval.upper - interval.lower > wide_factor * std::abs(estimate.value);
+}
+
+Identifiability verdict(const Estimate& estimate, double span) {
+  const Interval& interval = estimate.intervals[1];
+  const bool above = std::isfinite(interval.lower), below = std::isfinite(interval.upper);
+  if (!above && !below) return Identifiability::not_identifiable;
+  if (!below) return Identifiability::bounded_below;
+  if (!above) return Identifiability::bounded_above;
+  return is_wide(estimate, span) ? Identifiability::wide : Identifiability::identified;
+}
+
+std::string statement(const Estimate& estimate) {
+  const Interval& interval = estimate.intervals[1];
+  const std::string& name = estimate.parameter.name;
+  std::ostringstream text;
+  text.precision(4);
+  switch (estimate.identifiability) {
+    case Identifiability::fixed:
+      text << name << " is fixed at " << estimate.value;
+      break;
+    case Identifiability::not_examined:
+      text << name << " was not examined";
+      break;
+    case Identifiability::identified:
+      text << name << " is identified: " << interval.lower << " to " << interval.upper << " (95 %)";
+      break;
+    case Identifiability::wide:
+      text << name << " is wide: " << interval.lower << " to " << interval.upper
+           << " fit the curve as well (95 %)";
+      break;
+    case Identifiability::bounded_below:
+      text << name << " is not identifiable: the data say only " << name << " > " << interval.lower
+           << " (95 %)";
+      break;
+    case Identifiability::bounded_above:
+      text << name << " is not identifiable: the data say only " << name << " < " << interval.upper
+           << " (95 %)";
+      break;
+    case Identifiability::not_identifiable:
+      text << name << " is not identifiable: the data set no limit on either side";
+      break;
+  }
+  return text.str();
+}
+
+bool is_loose(const Estimate& estimate) {
+  return estimate.identifiability == Identifiability::wide ||
+         estimate.identifiability == Identifiability::bounded_below ||
+         estimate.identifiability == Identifiability::bounded_above ||
+         estimate.identifiability == Identifiability::not_identifiable;
+}
+
+// Those that can make up for each other: loose, and tied to another free one.
+void remark_on_exchange(Fit& fit) {
+  std::vector<std::string> names;
+  for (const Estimate& estimate : fit.estimates) {
+    if (is_loose(estimate)) names.push_back(estimate.parameter.name);
+  }
+  if (names.empty()) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "The parameters are not unique: ";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text << (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") << names[i];
+  }
+  text << (names.size() > 1 ? " can make up for each other" : " can make up for the others")
+       << " over the range of t fitted (condition number " << fit.condition
+       << "); quote intervals, not standard errors, and compare only fits over the same range.";
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_condition(Fit& fit) {
+  if (fit.condition < poor_condition) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "The problem is ill-conditioned (condition number " << fit.condition
+       << "): standard errors are those of a linear problem and mislead; use the intervals.";
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_residuals(Fit& fit) {
+  if (fit.reason == EndReason::exact) return;
+  std::ostringstream text;
+  text.precision(3);
+  if (fit.runs.z < 0 && fit.runs.p < 0.01) {
+    text << "The residuals hang together (" << fit.runs.runs << " runs, " << fit.runs.expected
+         << " expected): the model misses the curve, or neighbouring points are not independent. ";
+  }
+  if (fit.effective_size < 0.5 * static_cast<double>(fit.n_points)) {
+    text << "The " << fit.n_points << " points are worth about " << fit.effective_size
+         << " independent ones: multiply errors by " << fit.error_factor
+         << ", or refit resampled realizations.";
+  }
+  if (!text.str().empty()) fit.remarks.push_back(text.str());
+}
+
+}  // namespace
+
+bool Interval::closed() const {
+  return std::isfinite(lower) && std::isfinite(upper);
+}
+
+void judge(double span, Fit& fit) {
+  for (Estimate& estimate : fit.estimates) {
+    const bool open = estimate.identifiability == Identifiability::identified;
+    if (open) estimate.identifiability = verdict(estimate, span);
+    estimate.statement = statement(estimate);
+  }
+  remark_on_exchange(fit);
+  remark_on_condition(fit);
+  remark_on_residuals(fit);
+}
+
+}  // namespace jostle

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fitting/curve.hpp"
+
+namespace jostle {
+
+/// What a parameter is measured in.
+enum class ParameterUnit { none, value, time, value_per_time, value_time };
+
+struct Parameter {
+  std::string name;     // X_inf
+  std::string meaning;  // "value after infinitely many taps"
+  ParameterUnit unit = ParameterUnit::none;
+  double lower = -std::numeric_limits<double>::infinity();  // exclusive
+  double upper = std::numeric_limits<double>::infinity();   // exclusive
+  bool linear = false;  // the model is linear in it (plus what does not depend on it)
+};
+
+/// Whether residuals are differences of X, or of ln X with sigma / X for errors.
+enum class ResidualScale { linear, logarithmic };
+
+/// A starting point, or candidates for the nonlinear parameters: [n_parameters] values.
+using ParameterValues = std::vector<double>;
+
+/// A curve with parameters that can be fitted. To make one's own, derive and give `name`,
+/// `parameters` and `value`; the rest has defaults. Nothing in a model changes after construction.
+class Model {
+ public:
+  virtual ~Model() = default;
+
+  virtual std::string name() const = 0;
+  virtual std::string formula() const { return ""; }
+  virtual std::string source() const { return ""; }
+  /// [n_parameters], always the same.
+  virtual const std::vector<Parameter>& parameters() const = 0;
+
+  /// The model at t. p: [n_parameters], within their bounds.
+  virtual double value(double t, const double* p) const = 0;
+  /// The same value, and its derivatives by the parameters in gradient [n_parameters]. By default
+  /// fourth-order differences of `value`, good to about 12 digits.
+  virtual double value_and_gradient(double t, const double* p, double* gradient) const;
+
+  virtual ResidualScale residual_scale() const { return ResidualScale::linear; }
+  /// Why the model has no meaning for this curve ("t must not be negative"), or "". The curve is
+  /// free of `faults`.
+  virtual std::string refusal(const Curve& curve) const;
+
+  /// Candidates for each nonlinear parameter of a curve, [n_parameters][any]; entries of linear
+  /// ones are ignored. By default 13 decades about 1 for a positive parameter (times the range of t
+  /// for a time), and 0 and +-1 otherwise.
+  virtual std::vector<std::vector<double>> candidates(const Curve& curve) const;
+  /// Starting points, best first, at most `n`: by default the best of all combinations of
+  /// candidates, the linear parameters solved for (variable projection). A parameter with a
+  /// finite value in `fixed` [n_parameters] keeps it; NaN marks those that are free.
+  virtual std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
+                                              std::size_t n) const;
+  /// The same curve with its parameters in standard order (as tau1 <= tau2).
+  virtual ParameterValues canonical(const ParameterValues& p) const { return p; }
+};
+
+/// `n` values from first to last in geometric progression. Requires 0 < first, 0 < last, n >= 2.
+std::vector<double> geometric(double first, double last, std::size_t n);
+
+}  // namespace jostle

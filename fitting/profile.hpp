@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "fitting/fit.hpp"
+
+namespace jostle {
+
+/// A minimum whose neighbourhood is explored with one parameter held at a time.
+struct ProfileProblem {
+  const Model& model;
+  const Curve& curve;
+  ParameterValues minimum;        // [n_parameters]
+  std::vector<bool> free;         // [n_parameters]
+  double cost = 0;                // at the minimum
+  double variance = 0;            // of a residual: 1 where errors were given
+  double thresholds[2] = {0, 0};  // sqrt of how much cost / variance may rise, ascending
+  SolverOptions solver;
+};
+
+struct ParameterProfile {
+  Interval intervals[2];  // in the order of the thresholds
+  /// Parameters of a lower cost than the minimum's, where one was met; the intervals are then void.
+  std::optional<ParameterValues> better;
+};
+
+/// The profile of free parameter `index`, whose standard error is about `error` (any positive
+/// number).
+ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error);
+
+}  // namespace jostle
