@@ -27,16 +27,16 @@ std::vector<double> theta_inverse() {
 // Taylor polynomials, good to 1e-8 on [-pi/2, pi/2].
 inline double sine(double x) {
   const double z = x * x;
-  return x * (1 + z * (-1.0 / 6 +
-                       z * (1.0 / 120 +
-                            z * (-1.0 / 5040 + z * (1.0 / 362880 + z * (-1.0 / 39916800))))));
+  return x *
+         (1 + z * (-1.0 / 6 + z * (1.0 / 120 + z * (-1.0 / 5040 +
+                                                    z * (1.0 / 362880 + z * (-1.0 / 39916800))))));
 }
 inline double cosine(double x) {
   const double z = x * x;
-  return 1 + z * (-1.0 / 2 +
-                  z * (1.0 / 24 +
-                       z * (-1.0 / 720 +
-                            z * (1.0 / 40320 + z * (-1.0 / 3628800 + z * (1.0 / 479001600))))));
+  return 1 +
+         z * (-1.0 / 2 +
+              z * (1.0 / 24 + z * (-1.0 / 720 + z * (1.0 / 40320 + z * (-1.0 / 3628800 +
+                                                                        z * (1.0 / 479001600))))));
 }
 
 }  // namespace
@@ -45,7 +45,8 @@ Yardstick::Yardstick(const std::vector<std::array<double, 3>>& centres, double w
                      double width_y, double height, YardstickMove move, double max_step)
     : width_{width_x, width_y, height}, move_(move), max_step_(max_step), theta_(theta_inverse()) {
   for (const auto& c : centres) at_.push_back({c[0], c[1], c[2], 0});
-  skin_ = std::max(0.3, 2 * std::sqrt(3.0) * max_step * 1.001);
+  skin_ = move == YardstickMove::polar ? std::max(0.3, 2 * max_step)
+                                       : 0.3 + 2 * std::sqrt(3.0) * max_step;
   std::uint64_t seed = 12345;
   for (auto& word : state_) {
     for (auto& lane : word) {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-// The yardstick of the trial loop: a plain loop, kept as it is. Scalar doubles, one Verlet list, the
-// lower neighbours first, xoshiro256+ in eight lanes, proposals in batches of 1024, prefetch. It
-// shares nothing with the engine, has periodic sides only, and promises no reproducible bits: rates
-// of the engine are quoted as ratios to it. Do not improve it.
+// The yardstick of the trial loop: a plain loop, kept as it is. Scalar doubles, one Verlet list,
+// the lower neighbours first, xoshiro256+ in eight lanes, proposals in batches of 1024, prefetch.
+// It shares nothing with the engine, has periodic sides only, and promises no reproducible bits:
+// rates of the engine are quoted as ratios to it. Do not improve it.
 namespace jostle::bench {
 
 enum class YardstickMove { polar, metropolis_cold, metropolis_free };
