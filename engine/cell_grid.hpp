@@ -11,10 +11,10 @@
 
 namespace jostle {
 
-/// Spheres sorted into cells at least `cutoff` wide, so that whatever lies within the cutoff of a
-/// point lies in its cell or a neighbouring one. Holds the order of one moment; build it anew after
-/// spheres have moved. A periodic direction with room for fewer than three cells gets a single one
-/// (all pairs), so that no image is met twice.
+/// Spheres in cells at least `cutoff` wide, so that whatever lies within the cutoff of a point lies
+/// in its cell or a neighbouring one. Holds the positions it was told of: build it anew, or
+/// relocate spheres, after they have moved. A periodic direction with room for fewer than three
+/// cells gets a single one (all pairs), so that no image is met twice.
 class CellGrid {
  public:
   /// The grid over positions 0 .. n - 1, `position(i)` in diameters and wrapped.
@@ -23,16 +23,20 @@ class CellGrid {
   template <class Position>
   void build(const Container& container, double cutoff, std::uint32_t n, Position&& position) {
     set_shape(container, cutoff, n, position);
-    starts_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] + 1, 0);
+    heads_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2], none);
+    next_.resize(n);
     cell_of_.resize(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      cell_of_[i] = cell_at(position(i));
-      ++starts_[cell_of_[i] + 1];
-    }
-    for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
-    order_.resize(n);
-    next_.assign(starts_.begin(), starts_.end() - 1);
-    for (std::uint32_t i = 0; i < n; ++i) order_[next_[cell_of_[i]]++] = i;
+    for (std::uint32_t i = n; i-- > 0;) link(i, cell_at(position(i)));
+  }
+
+  /// Sphere i, of the grid, now stands at `r`.
+  void relocate(std::uint32_t i, Vec3 r) {
+    const std::uint32_t cell = cell_at(r);
+    if (cell == cell_of_[i]) return;
+    std::uint32_t* place = &heads_[cell_of_[i]];
+    while (*place != i) place = &next_[*place];
+    *place = next_[i];
+    link(i, cell);
   }
 
   /// Calls visit(j) for every sphere in the cell of `r` and the cells around it.
@@ -46,18 +50,25 @@ class CellGrid {
       for (int b = 0; b < length[1]; ++b) {
         for (int c = 0; c < length[0]; ++c) {
           const std::size_t cell = cell_number(line[0][c], line[1][b], line[2][a]);
-          for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) visit(order_[k]);
+          for (std::uint32_t j = heads_[cell]; j != none; j = next_[j]) visit(j);
         }
       }
     }
   }
 
   std::size_t bytes() const {
-    return sizeof(std::uint32_t) *
-           (starts_.capacity() + order_.capacity() + cell_of_.capacity() + next_.capacity());
+    return sizeof(std::uint32_t) * (heads_.capacity() + next_.capacity() + cell_of_.capacity());
   }
 
  private:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  void link(std::uint32_t i, std::uint32_t cell) {
+    next_[i] = heads_[cell];
+    heads_[cell] = i;
+    cell_of_[i] = cell;
+  }
+
   template <class Position>
   void set_shape(const Container& container, double cutoff, std::uint32_t n, Position& position) {
     const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
@@ -110,7 +121,9 @@ class CellGrid {
   std::array<bool, 3> periodic_{};
   std::array<int, 3> counts_{1, 1, 1};
   std::array<double, 3> per_length_{1, 1, 1};
-  std::vector<std::uint32_t> starts_, order_, cell_of_, next_;
+  std::vector<std::uint32_t> heads_;    // [n_cells], first sphere of each, or none
+  std::vector<std::uint32_t> next_;     // [n], the next sphere of the same cell, or none
+  std::vector<std::uint32_t> cell_of_;  // [n]
 };
 
 }  // namespace jostle

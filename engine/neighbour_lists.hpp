@@ -10,54 +10,55 @@
 
 namespace jostle {
 
-/// Verlet lists: for every sphere the others within 1 + skin of it, the likeliest blockers first.
-/// A list holds every sphere that can be touched as long as no sphere has moved farther than
-/// skin / 2 from where it stood at the last build. What a list holds beyond that, and its order,
-/// decides no trial: only how fast it is made.
+/// Verlet lists: for every sphere the others whose origins lie within 1 + skin of its own, the
+/// likeliest blockers first. An origin is where a sphere stood when its list was last made; a list
+/// holds every sphere that can be touched as long as no sphere is farther than skin / 2 from its
+/// origin. A sphere that goes farther gets a new origin and a new list, alone. What a list holds
+/// beyond that, and its order, decides no trial: only how fast it is made.
 class NeighbourLists {
  public:
   using Index = std::uint32_t;
 
-  /// Rebuilds all lists. `drift` is the mean displacement of a trial that geometry decides: the
+  /// Makes all lists. `drift` is the mean displacement of a trial that geometry decides: the
   /// neighbours nearest to a sphere so displaced block it most often and come first.
   template <class Box>
   void build(const Box& box, const std::vector<PackedCentre>& centres, double skin, Vec3 drift) {
     const auto n = static_cast<Index>(centres.size());
-    const double reach = (1 + skin) * (1 + skin);
-    grid_.build(Container{box}, 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
-    half_skin_squared_ = 0.25 * skin * skin;
+    skin_ = skin;
+    drift_ = drift;
     origins_ = centres;
-    first_.resize(n + 1);
-    entries_.clear();
-    for (Index i = 0; i < n; ++i) {
-      first_[i] = static_cast<Index>(entries_.size());
-      candidates_.clear();
-      const Vec3 centre = unpacked(centres[i]);
-      grid_.for_each_near(centre, [&](Index j) {
-        if (j == i) return;
-        const Vec3 away = separation(box, centre, unpacked(centres[j]));
-        if (norm_squared(away) < reach) candidates_.push_back({norm_squared(away + drift), j});
-      });
-      std::sort(candidates_.begin(), candidates_.end());
-      for (const Candidate& candidate : candidates_) entries_.push_back(candidate.sphere);
+    grid_.build(Container{box}, 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
+    for (bool all_fit = false; !all_fit; stride_ *= 2) {
+      rows_.assign(static_cast<std::size_t>(n) * stride_, 0);
+      all_fit = true;
+      for (Index i = 0; i < n && all_fit; ++i) all_fit = make_row(box, i);
+      if (all_fit) break;
     }
-    first_[n] = static_cast<Index>(entries_.size());
   }
 
-  /// The list of sphere i is entries()[first()[i]] .. entries()[first()[i + 1] - 1].
-  const Index* first() const { return first_.data(); }
-  const Index* entries() const { return entries_.data(); }
-  double mean_length() const {
-    return first_.size() < 2 ? 0 : static_cast<double>(entries_.size()) / (first_.size() - 1.0);
+  /// Gives sphere i a new origin and list and enters it in the lists of its neighbours. False if a
+  /// list is full: then all must be built anew.
+  template <class Box>
+  bool renew(const Box& box, Index i, const PackedCentre& centre) {
+    origins_[i] = centre;
+    grid_.relocate(i, unpacked(centre));
+    if (!make_row(box, i)) return false;
+    for (const Candidate& neighbour : candidates_) {
+      if (!enter(neighbour.sphere, i)) return false;
+    }
+    return true;
   }
 
-  /// Where spheres stood at the build, [n]; a sphere farther than sqrt(half_skin_squared()) from
-  /// there has left the region for which the lists were built.
+  /// Row i is rows() + i * stride(): its length, then the spheres.
+  const Index* rows() const { return rows_.data(); }
+  std::size_t stride() const { return stride_; }
+  /// [n] origins; lists are good while no sphere is farther than sqrt(half_skin_squared()) from
+  /// its.
   const PackedCentre* origins() const { return origins_.data(); }
-  double half_skin_squared() const { return half_skin_squared_; }
+  double half_skin_squared() const { return 0.25 * skin_ * skin_; }
 
   std::size_t bytes() const {
-    return grid_.bytes() + sizeof(Index) * (first_.capacity() + entries_.capacity()) +
+    return grid_.bytes() + sizeof(Index) * rows_.capacity() +
            sizeof(PackedCentre) * origins_.capacity();
   }
 
@@ -70,11 +71,42 @@ class NeighbourLists {
     }
   };
 
+  template <class Box>
+  bool make_row(const Box& box, Index i) {
+    const double reach = (1 + skin_) * (1 + skin_);
+    const Vec3 centre = unpacked(origins_[i]);
+    candidates_.clear();
+    grid_.for_each_near(centre, [&](Index j) {
+      const Vec3 away = separation(box, centre, unpacked(origins_[j]));
+      if (j != i && norm_squared(away) < reach) {
+        candidates_.push_back({norm_squared(away + drift_), j});
+      }
+    });
+    if (candidates_.size() >= stride_ - stride_ / 4) return false;  // room for newcomers
+    std::sort(candidates_.begin(), candidates_.end());
+    Index* row = &rows_[i * stride_];
+    *row = static_cast<Index>(candidates_.size());
+    for (const Candidate& candidate : candidates_) *++row = candidate.sphere;
+    return true;
+  }
+
+  bool enter(Index i, Index newcomer) {
+    Index* const row = &rows_[i * stride_];
+    const Index length = *row;
+    if (std::find(row + 1, row + 1 + length, newcomer) != row + 1 + length) return true;
+    if (length + 1 >= stride_) return false;
+    row[1 + length] = newcomer;
+    *row = length + 1;
+    return true;
+  }
+
   CellGrid grid_;
-  std::vector<Index> first_, entries_;
+  double skin_ = 0;
+  Vec3 drift_;
   std::vector<PackedCentre> origins_;
+  std::size_t stride_ = 16;  // of the rows: a cache line
+  std::vector<Index> rows_;
   std::vector<Candidate> candidates_;
-  double half_skin_squared_ = 0;
 };
 
 }  // namespace jostle

@@ -26,7 +26,8 @@ struct TrialTally {
   std::uint64_t trials = 0;
   std::uint64_t accepted = 0;
   std::uint64_t distance_tests = 0;
-  std::uint64_t list_rebuilds = 0;
+  std::uint64_t list_builds = 0;    // of all neighbour lists at once
+  std::uint64_t list_renewals = 0;  // of one sphere's list
 };
 
 enum class InstructionSet { baseline, avx2, avx512 };

@@ -39,6 +39,11 @@ std::vector<PackedCentre> packed_centres(const Packing& packing) {
   return centres;
 }
 
+std::vector<std::uint32_t> list_of(const NeighbourLists& lists, std::uint32_t i) {
+  const auto* row = lists.rows() + i * lists.stride();
+  return {row + 1, row + 1 + *row};
+}
+
 // Lists against all pairs: each neighbour exactly once, none missing, none too far.
 void check_lists(const Packing& packing, double skin) {
   std::visit(
@@ -46,9 +51,7 @@ void check_lists(const Packing& packing, double skin) {
         NeighbourLists lists;
         lists.build(box, packed_centres(packing), skin, {0, 0, -0.04});
         for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
-          std::vector<std::uint32_t> found(lists.entries() + lists.first()[i],
-                                           lists.entries() + lists.first()[i + 1]),
-              expected;
+          std::vector<std::uint32_t> found = list_of(lists, i), expected;
           for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
             const Vec3 away = separation(box, packing.centres[i], packing.centres[j]);
             if (j != i && norm_squared(away) < (1 + skin) * (1 + skin)) expected.push_back(j);
@@ -79,6 +82,59 @@ TEST_CASE("neighbour lists hold on a crystal whose rows lie on the seams") {
     check_lists(cubic_packing(PeriodicBox{6, 6}, 6, 1), skin);
     check_lists(cubic_packing(FullyPeriodicBox{6, 6, 6}, 6, 1), skin);
     check_lists(cubic_packing(PeriodicBox{3, 3}, 3, 1), skin);
+  }
+}
+
+TEST_CASE("lists renewed one by one still hold all that can be touched") {
+  // Spheres walk at random, every one that leaves half a skin gets a new list, as in the trial
+  // loop.
+  for (const Container& container : containers()) {
+    CAPTURE(container.index(), width_x(container), width_y(container));
+    constexpr double skin = 0.4, longest = 0.1;
+    const std::uint32_t n = 60;
+    Packing packing = points(container, n, 6, 9);
+    std::visit(
+        [&](const auto& box) {
+          RandomStream random(stream_key(10, 0, 0, Purpose::trials));
+          auto centres = packed_centres(packing);
+          NeighbourLists lists;
+          lists.build(box, centres, skin, {0, 0, -0.04});
+          int renewals = 0, builds = 0;
+          for (int step = 0; step < 30'000; ++step) {
+            const auto i = static_cast<std::uint32_t>(random.below(n));
+            const auto shift = [&] { return longest * (random.uniform() - 0.5); };
+            Vec3 r = wrapped(box, unpacked(centres[i]) + Vec3{shift(), shift(), shift()});
+            if (!clear_of_boundaries(box, r)) continue;
+            if (norm_squared(separation(box, r, unpacked(lists.origins()[i]))) >
+                lists.half_skin_squared()) {
+              ++renewals;
+              if (!lists.renew(box, i, centres[i])) {
+                lists.build(box, centres, skin, {0, 0, -0.04});
+                ++builds;
+              }
+            }
+            centres[i] = packed(r);
+            if (step % 97 != 0) continue;
+            for (std::uint32_t a = 0; a < n; ++a) {
+              const auto list = list_of(lists, a);
+              REQUIRE(std::set(list.begin(), list.end()).size() == list.size());
+              REQUIRE(std::ranges::find(list, a) == list.end());
+              // A trial may carry sphere a to the rim of its half skin.
+              for (std::uint32_t b = 0; b < n; ++b) {
+                const Vec3 away =
+                    separation(box, unpacked(lists.origins()[a]), unpacked(centres[b]));
+                const double reach = 1 + 0.5 * skin;
+                if (b != a && norm_squared(away) < reach * reach) {
+                  REQUIRE(std::ranges::find(list, b) != list.end());
+                }
+              }
+            }
+          }
+          // In the narrowest containers nothing can walk.
+          if (width_x(container) > 1) CHECK(renewals > 100);
+          CHECK(builds < 1 + renewals / 20);
+        },
+        container);
   }
 }
 
