@@ -83,18 +83,15 @@ Observable read_observable(const Reader& in) {
 }
 
 std::vector<std::uint64_t> read_tap_list(const Reader& in) {
-  std::vector<std::uint64_t> taps;
-  if (!in.is_list(0, 100'000, "tap numbers")) return taps;
+  std::set<std::uint64_t> taps;
+  if (!in.is_list(0, 100'000, "tap numbers")) return {};
   for (std::size_t i = 0; i < in.value().size(); ++i) {
     const auto tap = in.element(i).whole_number(0, most_taps);
-    if (!tap) continue;
-    if (std::find(taps.begin(), taps.end(), *tap) != taps.end()) {
+    if (tap && !taps.insert(*tap).second) {
       in.element(i).fault(fmt::format("tap {} is listed twice", *tap));
     }
-    taps.push_back(*tap);
   }
-  std::sort(taps.begin(), taps.end());
-  return taps;
+  return {taps.begin(), taps.end()};
 }
 
 LogarithmicTaps read_logarithmic_taps(const Reader& in) {

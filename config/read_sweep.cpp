@@ -13,9 +13,8 @@ constexpr std::size_t most_values = 100'000;
 /// Numbers as plain_number writes them, so that 8 and 8.0 are one value.
 Json with_plain_numbers(Json value) {
   if (value.is_number_float()) return plain_number(value.get<double>());
-  for (auto& member : value) {
-    if (value.is_structured()) member = with_plain_numbers(member);
-  }
+  if (!value.is_structured()) return value;
+  for (auto& member : value) member = with_plain_numbers(member);
   return value;
 }
 

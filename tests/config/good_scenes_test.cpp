@@ -113,4 +113,19 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(snapshots["bin_width"]["default"] == Snapshots{}.bin_width);
 }
 
+TEST_CASE("The scenes of the reference page are scenes") {
+  const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
+  const std::string fence = "```json\n";
+  std::size_t scenes = 0;
+  for (auto begin = page.find(fence); begin != page.npos; begin = page.find(fence, begin)) {
+    begin += fence.size();
+    const std::string block = page.substr(begin, page.find("```", begin) - begin);
+    if (block.find("\"seed\"") == block.npos) continue;  // a part of a scene
+    INFO(block);
+    CHECK(lines(parse_scene(block).faults).empty());
+    ++scenes;
+  }
+  CHECK(scenes == 2);
+}
+
 }  // namespace jostle
