@@ -281,7 +281,6 @@ std::variant<Fit, Refusal> Fitter::operator()() {
     return Refusal{RefusalKind::no_start, "the model has no finite value and slope at any start"};
   }
   const bool any_fixed = n_free() < free_.size();
-  const auto [low, high] = std::minmax_element(curve_.x.begin(), curve_.x.end());
   for (int attempt = 0;; ++attempt) {
     const ParameterValues canonical = any_fixed ? values_ : model_.canonical(values_);
     if (canonical != values_) {
@@ -299,7 +298,7 @@ std::variant<Fit, Refusal> Fitter::operator()() {
     if (fit.dof == 0) {
       fit.remarks.push_back("As many parameters as points: there are no errors to estimate.");
     }
-    judge(*high - *low, fit);
+    judge(curve_, fit);
     return fit;
   }
 }

@@ -41,7 +41,7 @@ enum class Identifiability {
   fixed,             // by the user
   not_examined,      // no intervals asked for, or no degree of freedom left
   identified,        // closed
-  wide,              // closed, but over a factor 3, or over more than the whole range of X
+  wide,              // closed, but over more than a factor 2, or than an eighth of the curve
   bounded_below,     // no upper limit
   bounded_above,     // no lower limit, or none but the parameter's own bound
   not_identifiable,  // no limit at all

@@ -20,8 +20,8 @@ InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian);
 /// n_free, dof, sigma_given and residuals are set.
 void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& fit);
 
-/// Judges every estimate by its 95 % interval and says so; `span`: range of X. Adds remarks on
-/// parameters that can replace each other, and on residuals that hang together.
-void judge(double span, Fit& fit);
+/// Judges every estimate by its 95 % interval and says so. Adds remarks on parameters that can make
+/// up for each other, and on residuals that hang together.
+void judge(const Curve& curve, Fit& fit);
 
 }  // namespace jostle

@@ -11,24 +11,30 @@ namespace {
 // About 10^3 in good fits of the inverse log, 10^6 where its triplet is free to drift: in between
 // the linear errors and the profiles part company.
 constexpr double poor_condition = 1e5;
-constexpr double wide_factor = 3;
+constexpr double wide_factor = 2;     // of a positive parameter
+constexpr double wide_share = 0.125;  // of the curve, for a place or a level
 
-bool is_wide(const Estimate& estimate, double span) {
-  const Interval& interval = estimate.intervals[1];
-  if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
-  if (estimate.parameter.unit == ParameterUnit::value) {
-    return interval.upper - interval.lower > span;
-  }
-  return interval.upper - interval.lower > wide_factor * std::abs(estimate.value);
+double span(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
 }
 
-Identifiability verdict(const Estimate& estimate, double span) {
+bool is_wide(const Estimate& estimate, const Curve& curve) {
+  const Interval& interval = estimate.intervals[1];
+  const double width = interval.upper - interval.lower;
+  const ParameterUnit unit = estimate.parameter.unit;
+  if (unit == ParameterUnit::value) return width > wide_share * span(curve.x);
+  if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
+  return unit == ParameterUnit::time && width > wide_share * span(curve.t);
+}
+
+Identifiability verdict(const Estimate& estimate, const Curve& curve) {
   const Interval& interval = estimate.intervals[1];
   const bool above = std::isfinite(interval.lower), below = std::isfinite(interval.upper);
   if (!above && !below) return Identifiability::not_identifiable;
   if (!below) return Identifiability::bounded_below;
   if (!above) return Identifiability::bounded_above;
-  return is_wide(estimate, span) ? Identifiability::wide : Identifiability::identified;
+  return is_wide(estimate, curve) ? Identifiability::wide : Identifiability::identified;
 }
 
 std::string statement(const Estimate& estimate) {
@@ -122,10 +128,10 @@ bool Interval::closed() const {
   return std::isfinite(lower) && std::isfinite(upper);
 }
 
-void judge(double span, Fit& fit) {
+void judge(const Curve& curve, Fit& fit) {
   for (Estimate& estimate : fit.estimates) {
-    const bool open = estimate.identifiability == Identifiability::identified;
-    if (open) estimate.identifiability = verdict(estimate, span);
+    const bool examined = estimate.identifiability == Identifiability::identified;
+    if (examined) estimate.identifiability = verdict(estimate, curve);
     estimate.statement = statement(estimate);
   }
   remark_on_exchange(fit);

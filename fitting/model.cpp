@@ -11,7 +11,7 @@ namespace {
 
 // How far a parameter may be moved without leaving its bounds on either side.
 double difference_step(const Parameter& parameter, double p) {
-  const double wanted = 7e-4 * std::max(std::abs(p), 1e-8);
+  const double wanted = 1e-4 * std::max(std::abs(p), 1e-8);
   const double room = std::min(p - parameter.lower, parameter.upper - p);
   return std::min(wanted, room / 4);
 }

@@ -42,7 +42,7 @@ class Model {
   /// The model at t. p: [n_parameters], within their bounds.
   virtual double value(double t, const double* p) const = 0;
   /// The same value, and its derivatives by the parameters in gradient [n_parameters]. By default
-  /// fourth-order differences of `value`, good to about 12 digits.
+  /// fourth-order differences of `value`, good to about 10 digits.
   virtual double value_and_gradient(double t, const double* p, double* gradient) const;
 
   virtual ResidualScale residual_scale() const { return ResidualScale::linear; }

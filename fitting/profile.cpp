@@ -21,21 +21,24 @@ class Side {
         index_(index),
         direction_(direction),
         transform_(problem.model.parameters()[index]),
-        centre_(transform_.to_variable(problem.minimum[index])),
-        nearest_(problem.minimum) {}
+        centre_(transform_.to_variable(problem.minimum[index])) {}
 
   /// Fills the ends of the intervals on this side. `step`: about one standard error of u.
   void find_ends(double step, double ends[2]);
   const std::optional<ParameterValues>& better() const { return better_; }
 
  private:
+  /// A fit with the parameter held at `distance` from the minimum.
   struct Point {
     double distance, z;
+    ParameterValues p;
   };
-  double z_at(double distance);
+  Point at(double distance, const Point& from);
+  ParameterValues guess(double distance, const Point& from) const;
   double parameter(double distance) const {
     return transform_.to_parameter(centre_ + direction_ * distance);
   }
+  std::vector<Point> march(double step);
   double crossing(Point low, Point high, double threshold);
 
   const ProfileProblem& problem_;
@@ -43,16 +46,31 @@ class Side {
   double direction_;
   Transform transform_;
   double centre_;
-  ParameterValues nearest_;  // the last fit: where the next begins
   std::optional<ParameterValues> better_;
 };
 
-double Side::z_at(double distance) {
+// Along the line from the minimum through `from`, in variables.
+ParameterValues Side::guess(double distance, const Point& from) const {
+  ParameterValues p = from.p;
+  for (std::size_t j = 0; j < p.size() && from.distance > 0; ++j) {
+    if (!problem_.free[j]) continue;
+    const Transform transform(problem_.model.parameters()[j]);
+    const double start = transform.to_variable(problem_.minimum[j]);
+    const double rate = (transform.to_variable(from.p[j]) - start) / from.distance;
+    const double there = transform.to_parameter(start + rate * distance);
+    // Far out the line means nothing.
+    if (distance < 3 * from.distance && std::isfinite(there)) p[j] = there;
+  }
+  p[index_] = parameter(distance);
+  return p;
+}
+
+Side::Point Side::at(double distance, const Point& from) {
   std::vector<bool> free = problem_.free;
   free[index_] = false;
-  ParameterValues values = nearest_;
-  values[index_] = parameter(distance);
-  if (!std::isfinite(values[index_])) return infinite;
+  const ParameterValues values = guess(distance, from);
+  Point point{distance, infinite, values};
+  if (!std::isfinite(values[index_])) return point;
   const CurveResiduals residuals(problem_.model, problem_.curve, values, free);
   double cost = infinite;
   if (residuals.n_variables() == 0) {
@@ -67,53 +85,68 @@ double Side::z_at(double distance) {
     options.data_norm = residuals.data_norm();
     const Minimum held = minimise(residuals, residuals.to_variables(values), options);
     cost = held.cost;
-    if (std::isfinite(cost)) nearest_ = residuals.to_parameters(held.x);
+    if (std::isfinite(cost)) point.p = residuals.to_parameters(held.x);
   }
-  if (!std::isfinite(cost)) return infinite;
+  if (!std::isfinite(cost)) return point;
   const double rise = (cost - problem_.cost) / problem_.variance;
   // Lower by what the thresholds could notice: the minimum was not one.
-  if (rise < -1e-4 * problem_.thresholds[0] * problem_.thresholds[0]) better_ = nearest_;
-  return std::sqrt(std::max(rise, 0.0));
+  if (rise < -1e-4 * problem_.thresholds[0] * problem_.thresholds[0]) better_ = point.p;
+  point.z = std::sqrt(std::max(rise, 0.0));
+  return point;
 }
 
 // Illinois variant of false position: z is close to linear in u.
 double Side::crossing(Point low, Point high, double threshold) {
-  double at = high.distance;
+  double distance = high.distance;
   double f_low = low.z - threshold, f_high = high.z - threshold;
   for (int i = 0; i < 60; ++i) {
     const double width = high.distance - low.distance;
-    at = std::isfinite(f_high) ? low.distance - f_low * width / (f_high - f_low)
-                               : low.distance + 0.5 * width;
-    at = std::clamp(at, low.distance + 1e-3 * width, high.distance - 1e-3 * width);
+    distance = std::isfinite(f_high) ? low.distance - f_low * width / (f_high - f_low)
+                                     : low.distance + 0.5 * width;
+    distance = std::clamp(distance, low.distance + 1e-3 * width, high.distance - 1e-3 * width);
     if (width <= 1e-7 * high.distance) break;
-    const double f = z_at(at) - threshold;
+    const Point point = at(distance, low);
+    const double f = point.z - threshold;
     if (std::abs(f) <= 1e-6 * threshold || better_) break;
     if (f < 0) {
-      low.distance = at;
+      low = point;
       f_low = f;
       f_high *= 0.5;
     } else {
-      high.distance = at;
+      high = point;
       f_high = f;
       f_low *= 0.5;
     }
   }
-  return at;
+  return distance;
+}
+
+// Outwards until z has passed both thresholds, or as far as it is of interest.
+std::vector<Side::Point> Side::march(double step) {
+  const bool logarithmic = !transform_.is_identity();
+  const double reach =
+      logarithmic ? reach_of_logarithm : reach_of_errors * std::max(step, std::abs(centre_));
+  if (logarithmic) step = std::min(step, 1.0);
+  std::vector<Point> points = {{0, 0, problem_.minimum}};
+  int retries = 0;
+  while (points.back().z < problem_.thresholds[1] && points.back().distance < reach && !better_) {
+    const Point& last = points.back();
+    Point next = at(std::min(last.distance + step, reach), last);
+    // Too far to be a neighbour of the last: its fit may have gone astray.
+    if (next.z > last.z + 2 * problem_.thresholds[1] && retries < 20) {
+      step *= 0.3;
+      ++retries;
+      continue;
+    }
+    if (next.z - last.z < 0.5 * problem_.thresholds[0]) step *= 2;
+    if (logarithmic) step = std::min(step, 2.0);
+    points.push_back(std::move(next));
+  }
+  return points;
 }
 
 void Side::find_ends(double step, double ends[2]) {
-  const double reach = transform_.is_identity()
-                           ? reach_of_errors * std::max(step, std::abs(centre_))
-                           : reach_of_logarithm;
-  if (!transform_.is_identity()) step = std::min(step, 1.0);
-  std::vector<Point> points = {{0, 0}};
-  while (points.back().z < problem_.thresholds[1] && points.back().distance < reach && !better_) {
-    const double distance = std::min(points.back().distance + step, reach);
-    const double z = z_at(distance);
-    if (z - points.back().z < 0.5 * problem_.thresholds[0]) step *= 2;
-    if (!transform_.is_identity()) step = std::min(step, 2.0);
-    points.push_back({distance, z});
-  }
+  const std::vector<Point> points = march(step);
   for (int level = 0; level < 2 && !better_; ++level) {
     const double threshold = problem_.thresholds[level];
     const auto above = std::find_if(points.begin(), points.end(),

@@ -232,15 +232,16 @@ double StretchedExponential::value(double t, const double* p) const {
 }
 
 double StretchedExponential::value_and_gradient(double t, const double* p, double* gradient) const {
-  const double power = std::pow(t / p[2], p[3]);
+  // At t = 0 the slope in t is infinite, but nothing depends on tau and beta.
+  const double log = t > 0 ? std::log(t / p[2]) : 0;
+  const double power = t > 0 ? std::exp(p[3] * log) : 0;
   const double left = std::exp(-power);
-  // At t = 0 the slope in t is infinite, but nothing depends on tau and beta; far out left * power
-  // is 0 though power may be infinite.
+  // Far out left * power is 0, though power may be infinite.
   const double change = left > 0 ? (p[0] - p[1]) * left * power : 0;
-  gradient[0] = -std::expm1(-power);
+  gradient[0] = 1 - left;
   gradient[1] = left;
   gradient[2] = -change * p[3] / p[2];
-  gradient[3] = power > 0 ? change * std::log(t / p[2]) : 0;
+  gradient[3] = change * log;
   return p[0] - (p[0] - p[1]) * left;
 }
 
