@@ -15,7 +15,7 @@ namespace jostle {
 struct PackingSelector {
   std::uint32_t point = 0;
   std::uint32_t realization = 0;
-  std::optional<std::uint64_t> tap;  // the last kept snapshot if absent
+  std::optional<std::uint64_t> tap{};  // the last kept snapshot if absent
 };
 
 /// Reads one packing: from our HDF5, or from extended XYZ (name ends in .xyz or .extxyz) with

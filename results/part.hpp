@@ -36,7 +36,7 @@ struct PartState {
   RealizationStatus status = RealizationStatus::running;
   std::string reason;
   double seconds = 0;
-  std::uint64_t trials = 0;
+  std::uint64_t trials = 0, distance_tests = 0;
   std::optional<RealizationState> state;
 };
 

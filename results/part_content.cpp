@@ -93,6 +93,7 @@ void put(ByteWriter& writer, const PartState& part) {
   writer.put(part.reason);
   writer.put(part.seconds);
   writer.put(part.trials);
+  writer.put(part.distance_tests);
   writer.put(part.state.has_value());
   if (part.state) put(writer, *part.state);
 }
@@ -106,6 +107,7 @@ PartState get_part_state(ByteReader& reader) {
   part.reason = reader.get_string();
   part.seconds = reader.get<double>();
   part.trials = reader.get<std::uint64_t>();
+  part.distance_tests = reader.get<std::uint64_t>();
   if (reader.get<bool>()) part.state = get_realization_state(reader);
   return part;
 }

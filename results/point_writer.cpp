@@ -56,6 +56,7 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       statuses_(n_realizations_, 0),
       rows_(n_realizations_, 0),
       trials_(n_realizations_, 0),
+      distance_tests_(n_realizations_, 0),
       reasons_(n_realizations_),
       seconds_(n_realizations_, 0),
       coordination_(point_.snapshots.taps.size() * n_realizations_, nan),
@@ -78,6 +79,7 @@ RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationR
   reasons_[realization] = record.reason;
   seconds_[realization] = record.seconds;
   trials_[realization] = record.trials;
+  distance_tests_[realization] = record.distance_tests;
   take_snapshots(realization, record);
   if (record.state) write_restart(realization, record);
   return status;
@@ -178,6 +180,9 @@ void PointWriter::write_timing() {
   const Hdf5Handle trials = write_numbers(group, "trials", trials_);
   write_label(trials, {"trials", "1", "trials made in that time", "jostle"});
   attach_axes(trials, axes);
+  const Hdf5Handle tests = write_numbers(group, "distance_tests", distance_tests_);
+  write_label(tests, {"distance_tests", "1", "pair distances computed in them", "jostle"});
+  attach_axes(tests, axes);
 }
 
 }  // namespace jostle

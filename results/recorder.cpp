@@ -66,6 +66,7 @@ RealizationSummary Recorder::end(const RealizationState& state, const Outcome& o
   part_.reason = outcome.reason;
   part_.seconds += outcome.seconds;
   part_.trials += outcome.trials;
+  part_.distance_tests += outcome.distance_tests;
   part_.state = state;
   if (outcome.status == RealizationStatus::failed) {
     part_.base_rows = 0;

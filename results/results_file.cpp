@@ -27,7 +27,7 @@ struct PointTables {
   std::uint32_t point = 0;
   std::vector<std::vector<double>> columns;  // [n_columns] of [n_rows, n_realizations]
   std::vector<std::uint8_t> statuses;
-  std::vector<std::uint64_t> rows, trials;
+  std::vector<std::uint64_t> rows, trials, distance_tests;
   std::vector<std::string> reasons;
   std::vector<double> seconds;
   std::vector<double> coordination;      // [n_snapshot_taps, n_realizations], or empty
@@ -75,6 +75,7 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   const Hdf5Handle timing = open_group(file, "timing/" + point_name(point));
   tables.seconds = read_numbers<double>(timing, "seconds");
   tables.trials = read_numbers<std::uint64_t>(timing, "trials");
+  tables.distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests");
   const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
     tables.coordination = read_numbers<double>(snapshots, "coordination");
@@ -119,6 +120,7 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
           summary.reason = tables.reasons.at(r);
           summary.seconds = tables.seconds.at(r);
           summary.trials = tables.trials.at(r);
+          summary.distance_tests = tables.distance_tests.at(r);
         }
         all.push_back(summary);
       }
@@ -197,6 +199,7 @@ RealizationRecord ResultsFile::record(RealizationId id) const {
     record.reason = tables.reasons.at(id.realization);
     record.seconds = tables.seconds.at(id.realization);
     record.trials = tables.trials.at(id.realization);
+    record.distance_tests = tables.distance_tests.at(id.realization);
     for (std::uint64_t tap = 0; tap < tables.rows.at(id.realization); ++tap)
       for (const auto& column : tables.columns)
         record.rows.push_back(column.at(tap * study().realizations + id.realization));

@@ -117,7 +117,8 @@ RealizationSummary summary_of(RealizationId id, const PartState& part) {
           .rows = part.state ? part.state->rows : 0,
           .reason = part.reason,
           .seconds = part.seconds,
-          .trials = part.trials};
+          .trials = part.trials,
+          .distance_tests = part.distance_tests};
 }
 
 std::map<RealizationId, RealizationSummary> verify_parts(const std::string& results_path,
@@ -159,6 +160,7 @@ RealizationRecord join(RealizationRecord base, const std::string& results_path,
   base.reason = part.reason;
   base.seconds = part.seconds;
   base.trials = part.trials;
+  base.distance_tests = part.distance_tests;
   base.state = std::move(part.state);
   return base;
 }

@@ -136,6 +136,7 @@ PartState RunStore::Impl::last_checkpoint(RealizationId id) const {
   part.base_rows = last.rows;
   part.seconds = last.seconds;
   part.trials = last.trials;
+  part.distance_tests = last.distance_tests;
   return part;
 }
 

@@ -5,34 +5,24 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "results/error.hpp"
 #include "results/live_run.hpp"
-#include "results/results_file.hpp"
-#include "synthetic.hpp"
+#include "runs.hpp"
 #include "temporary_folder.hpp"
 
 using namespace jostle;
 using Catch::Matchers::Contains;
 using synthetic::Conduct;
 using synthetic::provenance;
+using synthetic::run_pending;
 using synthetic::Sizes;
 
 namespace {
 
-void run_pending(RunStore& store, const Study& study, const Conduct& conduct = {}) {
-  for (const RealizationId id : store.pending()) synthetic::run(store, study, id, conduct);
-}
-
 std::string straight_digest(const TemporaryFolder& folder, const Sizes& sizes = {}) {
-  const std::string path = folder / "straight.h5";
-  const Study study = synthetic::study(sizes);
-  const auto store = RunStore::create(path, study, {}, provenance(), true);
-  run_pending(*store, study);
-  store->finish();
-  return digest_of(path);
+  return synthetic::run_to_end(folder / "straight.h5", sizes);
 }
 
 bool same(double a, double b) {
