@@ -1,0 +1,56 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/run.hpp"
+#include "tests/config/scene_files.hpp"
+#include "tests/ensemble/memory_sink.hpp"
+
+namespace jostle {
+
+/// A shipped scene cut down to a test's means: `change` is merged into it (RFC 7386).
+inline Plan short_plan(const std::string& scene, const nlohmann::json& change) {
+  auto json = nlohmann::json::parse(text_of(shipped_scenes / scene));
+  json.erase("sweep");
+  json.merge_patch(change);
+  return make_plans(scene_of(json.dump()), {}).at(0);
+}
+
+/// The series of one observable, [realization][tap].
+using Series = std::vector<std::vector<double>>;
+
+/// Runs realizations 0 .. n - 1 of a plan on two threads; every one must succeed.
+inline Series run_series(const Plan& plan, std::uint32_t n, const std::string& observable) {
+  std::size_t column = plan.observables.size();
+  for (std::size_t k = 0; k < plan.observables.size(); ++k) {
+    if (label(plan.observables[k]).name == observable) column = k;
+  }
+  if (column == plan.observables.size()) throw std::runtime_error(observable + " is not observed");
+  std::vector<RealizationId> ids;
+  for (std::uint32_t r = 0; r < n; ++r) ids.push_back({0, r});
+  MemorySink sink;
+  Progress progress;
+  const RunSummary summary = run_ensemble({&plan, 1}, ids, {.threads = 2}, sink, progress);
+  if (summary.done != n) throw std::runtime_error("a realization failed");
+  Series series;
+  for (const auto& [id, record] : sink.records()) {
+    std::vector<double>& values = series.emplace_back();
+    for (const TapRow& row : record.rows) {
+      values.push_back(row.observables[column]);
+      if (row.relaxation.capped != 0) throw std::runtime_error("a relaxation met its cap");
+    }
+  }
+  return series;
+}
+
+/// Mean over realizations of the value at one tap less that at another, paired.
+inline Moments change(const Series& series, std::size_t from, std::size_t to) {
+  Moments moments;
+  for (const auto& values : series) moments.add(values.at(to) - values.at(from));
+  return moments;
+}
+
+}  // namespace jostle
