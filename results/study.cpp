@@ -30,14 +30,23 @@ StudyPoint make_point(const Plan& plan) {
   return point;
 }
 
+/// Bins of n(z) up to the top of a bed that is looser than any that settles.
+std::uint64_t histogram_bins(const StudyPoint& point) {
+  constexpr double loose_fraction = 0.4;
+  const auto* fluid = std::get_if<FullyPeriodicBox>(&point.container);
+  const double volume = sphere_volume * point.n_spheres / loose_fraction;
+  const double depth = fluid ? fluid->height : volume / footprint_area(point.container) + 2;
+  return static_cast<std::uint64_t>(depth / point.snapshots.bin_width) + 1;
+}
+
 std::uint64_t bytes_of_realization(const StudyPoint& point) {
   const std::uint64_t columns = point.observables.size() + n_relaxation_columns;
   const std::uint64_t positions = point.n_spheres * sizeof(Vec3);
-  const std::uint64_t bins = 4 * point.n_spheres;  // a very tall bed, or very narrow bins
-  const std::uint64_t a_snapshot = (point.snapshots.positions ? positions : 0) +
-                                   (point.snapshots.height_histogram ? bins * 8 : 0) + 8;
-  return (point.taps + 1) * columns * 8 + point.snapshots.taps.size() * a_snapshot + positions +
-         1024;
+  const std::uint64_t a_snapshot =
+      (point.snapshots.positions ? positions : 0) +
+      (point.snapshots.height_histogram ? histogram_bins(point) * sizeof(double) : 0) + 64;
+  return (point.taps + 1) * columns * sizeof(double) + point.snapshots.taps.size() * a_snapshot +
+         positions + 4096;
 }
 
 std::string processor_model() {

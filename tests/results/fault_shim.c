@@ -6,6 +6,7 @@
  *   JOSTLE_FAULT_PATH    prefix of the absolute paths that count; unset: nothing is done at all
  *   JOSTLE_FAULT_COUNT   a file outside that prefix; at exit the number of calls so far is written
  *                        to it as text
+ *   JOSTLE_FAULT_LOG     a file outside that prefix; a line "name path" is added to it for each call
  *   JOSTLE_FAULT_AT      the number of the call to act on
  *   JOSTLE_FAULT_ACTION  kill_before  SIGKILL instead of the call
  *                        kill_after   the call, then SIGKILL
@@ -43,14 +44,31 @@ static int counts_path(const char* path) {
   return strncmp(path, start, strlen(start)) == 0;
 }
 
-static int counts_descriptor(int descriptor) {
-  if (!prefix()) return 0;
-  char link[64], path[4096];
+/* The path that a descriptor is open on, in a buffer of 4096; empty if it has none. */
+static const char* path_of(int descriptor, char* path) {
+  char link[64];
   snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
-  const ssize_t n = readlink(link, path, sizeof path - 1);
-  if (n <= 0) return 0;
-  path[n] = 0;
-  return counts_path(path);
+  const ssize_t n = readlink(link, path, 4095);
+  path[n > 0 ? n : 0] = 0;
+  return path;
+}
+
+static int counts_descriptor(int descriptor) {
+  char path[4096];
+  return prefix() && counts_path(path_of(descriptor, path));
+}
+
+static void note(const char* name, const char* path) {
+  const char* log = getenv("JOSTLE_FAULT_LOG");
+  FILE* file = log ? fopen(log, "a") : NULL;
+  if (!file) return;
+  fprintf(file, "%s %s\n", name, path);
+  fclose(file);
+}
+
+static void note_descriptor(const char* name, int descriptor) {
+  char path[4096];
+  if (getenv("JOSTLE_FAULT_LOG")) note(name, path_of(descriptor, path));
 }
 
 static void die(void) {
@@ -98,56 +116,67 @@ static struct verdict judge(enum kind kind) {
 
 ssize_t write(int descriptor, const void* bytes, size_t n) {
   if (!counts_descriptor(descriptor)) return NEXT(write)(descriptor, bytes, n);
+  note_descriptor("write", descriptor);
   ACT(writes, NEXT(write)(descriptor, bytes, v.halve ? n / 2 : n));
 }
 
 ssize_t pwrite(int descriptor, const void* bytes, size_t n, off_t offset) {
   if (!counts_descriptor(descriptor)) return NEXT(pwrite)(descriptor, bytes, n, offset);
+  note_descriptor("pwrite", descriptor);
   ACT(writes, NEXT(pwrite)(descriptor, bytes, v.halve ? n / 2 : n, offset));
 }
 
 ssize_t pwrite64(int descriptor, const void* bytes, size_t n, off64_t offset) {
   if (!counts_descriptor(descriptor)) return NEXT(pwrite64)(descriptor, bytes, n, offset);
+  note_descriptor("pwrite64", descriptor);
   ACT(writes, NEXT(pwrite64)(descriptor, bytes, v.halve ? n / 2 : n, offset));
 }
 
 int ftruncate(int descriptor, off_t size) {
   if (!counts_descriptor(descriptor)) return NEXT(ftruncate)(descriptor, size);
+  note_descriptor("ftruncate", descriptor);
   ACT(writes, NEXT(ftruncate)(descriptor, size));
 }
 
 int ftruncate64(int descriptor, off64_t size) {
   if (!counts_descriptor(descriptor)) return NEXT(ftruncate64)(descriptor, size);
+  note_descriptor("ftruncate64", descriptor);
   ACT(writes, NEXT(ftruncate64)(descriptor, size));
 }
 
 int fsync(int descriptor) {
   if (!counts_descriptor(descriptor)) return NEXT(fsync)(descriptor);
+  note_descriptor("fsync", descriptor);
   ACT(syncs, NEXT(fsync)(descriptor));
 }
 
 int fdatasync(int descriptor) {
   if (!counts_descriptor(descriptor)) return NEXT(fdatasync)(descriptor);
+  note_descriptor("fdatasync", descriptor);
   ACT(syncs, NEXT(fdatasync)(descriptor));
 }
 
 int rename(const char* from, const char* to) {
   if (!counts_path(to)) return NEXT(rename)(from, to);
+  note("rename", to);
   ACT(others, NEXT(rename)(from, to));
 }
 
 int renameat(int from_folder, const char* from, int to_folder, const char* to) {
   if (!counts_path(to)) return NEXT(renameat)(from_folder, from, to_folder, to);
+  note("renameat", to);
   ACT(others, NEXT(renameat)(from_folder, from, to_folder, to));
 }
 
 int unlink(const char* path) {
   if (!counts_path(path)) return NEXT(unlink)(path);
+  note("unlink", path);
   ACT(others, NEXT(unlink)(path));
 }
 
 int rmdir(const char* path) {
   if (!counts_path(path)) return NEXT(rmdir)(path);
+  note("rmdir", path);
   ACT(others, NEXT(rmdir)(path));
 }
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "forked.hpp"
 #include "results/results_file.hpp"
@@ -126,4 +128,34 @@ TEST_CASE("a failing fsync is not taken for success") {
   const Place place;
   CHECK(work_with_fault(place, "fsync_fails", 1).code == 1);
   CHECK_THAT(text_of(place.messages), Contains("cannot fsync"));
+}
+
+TEST_CASE("whatever is published is on disk before it has its name, and its name before all else") {
+  const Place place;
+  const std::string log = place.folder / "log";
+  REQUIRE(run_forked({{"JOSTLE_FAULT_PATH", place.folder.path()}, {"JOSTLE_FAULT_LOG", log}},
+                     place.messages, [&] { work_on(place.path, whole); })
+              .code == 0);
+  std::vector<std::pair<std::string, std::string>> calls;
+  std::ifstream file(log);
+  for (std::string name, path; file >> name >> path;) calls.emplace_back(name, path);
+  int renames = 0;
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const auto& [name, path] = calls[i];
+    if (name != "rename") continue;
+    ++renames;
+    CAPTURE(path);
+    REQUIRE(i > 1);
+    REQUIRE(i + 1 < calls.size());
+    CHECK(calls[i - 2].second == path + ".tmp");
+    CHECK(calls[i - 1] == std::pair<std::string, std::string>("fsync", path + ".tmp"));
+    const std::string folder = std::filesystem::path(path).parent_path();
+    CHECK(calls[i + 1] == std::pair<std::string, std::string>("fsync", folder));
+  }
+  CHECK(renames > 6);
+  for (const auto& [name, path] : calls) {  // nothing but the lock is written in place
+    CAPTURE(name, path);
+    if (name.find("write") != std::string::npos || name.find("truncate") != std::string::npos)
+      CHECK((path.ends_with(".tmp") || path.ends_with(".lock")));
+  }
 }
