@@ -11,7 +11,7 @@
 namespace jostle {
 
 /// What a stream of a realization is for. The numbers are part of the results' identity.
-enum class Purpose : std::uint32_t { start = 1, tap = 2, trials = 3 };
+enum class Purpose : std::uint32_t { start = 1, tap = 2, trials = 3, resampling = 4 };
 
 enum class StreamKey : std::uint64_t {};
 
