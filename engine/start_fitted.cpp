@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/geometry.hpp"
-#include "engine/sphere_cells.hpp"
+#include "engine/moving_spheres.hpp"
 #include "engine/start_parts.hpp"
 
 namespace jostle {
@@ -19,38 +18,34 @@ double wall_overlap(const WalledBox& box, Vec3 r) {
 
 class WallFitter {
  public:
-  WallFitter(const WalledBox& box, const std::vector<Vec3>& poured)
-      : box_(box), cells_(box, static_cast<std::uint32_t>(poured.size()), 0) {
-    for (const Vec3& centre : poured) {
-      cells_.insert(centre);
-      if (wall_overlap(box, centre) > 0) ++overlapping_;
-    }
+  WallFitter(const WalledBox& box, const std::vector<Vec3>& poured) : spheres_(box, poured) {
+    for (const Vec3& centre : poured) overlapping_ += wall_overlap(box, centre) > 0 ? 1 : 0;
   }
 
   // One random step of a sphere, taken if it opens no overlap and deepens none with the walls.
   void try_step(std::uint32_t sphere, double max_step, RandomStream& random) {
-    const Vec3 from = cells_.centres()[sphere];
+    const Vec3 from = spheres_.centres()[sphere];
     const double dx = max_step * (1 - 2 * random.uniform());
     const double dy = max_step * (1 - 2 * random.uniform());
     const double dz = max_step * (1 - 2 * random.uniform());
     const Vec3 to = {from.x + dx, from.y + dy, from.z + dz};
-    if (to.z < sphere_radius) return;
-    const double before = wall_overlap(box_, from), after = wall_overlap(box_, to);
+    if (to.z < sphere_radius || !spheres_.in_reach(sphere, to)) return;
+    const double before = wall_overlap(spheres_.box(), from);
+    const double after = wall_overlap(spheres_.box(), to);
     if (after > before) return;
-    const bool blocked = cells_.any_near(to, 1, [&](std::uint32_t other, Vec3 r) {
-      return other != sphere && overlaps(box_, to, r);
-    });
-    if (blocked) return;
-    cells_.move(sphere, to);
+    for (const std::uint32_t other : spheres_.near(sphere)) {
+      if (spheres_.squared_distance(to, other) < 1) return;
+    }
+    spheres_.move(sphere, to);
     if (before > 0 && after == 0) --overlapping_;
   }
 
+  void renew_lists() { spheres_.renew(); }
   std::uint32_t overlapping() const { return overlapping_; }
-  const std::vector<Vec3>& centres() const { return cells_.centres(); }
+  const std::vector<Vec3>& centres() const { return spheres_.centres(); }
 
  private:
-  WalledBox box_;
-  SphereCells cells_;
+  MovingSpheres<WalledBox> spheres_;
   std::uint32_t overlapping_ = 0;
 };
 
@@ -68,7 +63,9 @@ std::vector<Vec3> fit_pour(const FittedPour& fitted, const WalledBox& box, std::
                      "; choose one in (0, 1] diameters");
   }
   WallFitter fitter(box, pour(sides, n_spheres, random));
+  constexpr std::uint64_t renewal = 50;  // sweeps
   for (std::uint64_t sweep = 0; sweep < fitted.max_sweeps && fitter.overlapping() > 0; ++sweep) {
+    if (sweep % renewal == 0) fitter.renew_lists();
     for (std::uint32_t trial = 0; trial < n_spheres; ++trial) {
       fitter.try_step(static_cast<std::uint32_t>(random.below(n_spheres)), fitted.max_step, random);
     }

@@ -22,15 +22,18 @@ struct SteepestDescentPour {
 
 /// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
 /// sides, then random moves that never increase the total overlap with the walls, until it is zero.
-/// The relaxation that follows it is the scene's own. A residue after `max_sweeps` is an error.
+/// During these moves the sides are walls already: spheres that touched through a seam no longer
+/// meet. The bed expands by about a tenth (at max_step 0.05) while the spheres near the walls push
+/// inwards; the relaxation that follows is the scene's own. max_step in (0, 1]. A residue after
+/// `max_sweeps` is an error, as are other containers and widths of 2 diameters or less.
 struct FittedPour {
   double max_step = 0.05;
   std::uint64_t max_sweeps = 100'000;
   bool operator==(const FittedPour&) const = default;
 };
 
-/// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap.
-/// Rosato et al. 2010, sec. II.
+/// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap
+/// (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
   double dilute_fraction = 0.1;  // at most 0.25
   bool operator==(const RandomSettle&) const = default;
@@ -38,11 +41,14 @@ struct RandomSettle {
 
 enum class Lattice { hcp, fcc };
 
-/// A close-packed crystal on the floor, filled layer by layer from below. hcp: layers parallel to
-/// the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even. fcc: (100) layers at
-/// z = 1/2 + k / sqrt(2), footprint n x m. Any other footprint is an error that names the two
-/// nearest, unless `stretch`, which spaces the rows out to the footprint. Rosato et al. 2010, sec.
-/// II.
+/// A close-packed crystal on the floor, filled layer by layer and row by row from below. hcp:
+/// layers parallel to the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even.
+/// fcc: (100) layers at z = 1/2 + k / sqrt(2), footprint n x m. Any other footprint (too large by
+/// more than 1e-9 of it, or too small by more than rounding) is an error that names the two
+/// nearest, unless `stretch`, which spaces the rows out to the footprint; the layers then sink
+/// until they touch. In a fully periodic box the height must be a whole even number of layers as
+/// well. Between walls and in a tube the perfect lattice loses the sites that do not fit: no
+/// footprint is refused, and `stretch` is an error. Rosato et al. 2010, sec. II.
 struct Crystal {
   Lattice lattice = Lattice::hcp;
   bool stretch = false;
@@ -50,13 +56,15 @@ struct Crystal {
 };
 
 /// Random points whose diameters grow by Monte Carlo until the spheres of diameter 1 fill the fully
-/// periodic box; at most solids fraction 0.64.
+/// periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly and may leave a residue
+/// after `max_sweeps`, an error.
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;
 };
 
-/// A packing read from a file: [n_spheres] centres.
+/// A packing read from a file: [n_spheres] centres, brought into the box where it is periodic.
+/// Overlaps beyond overlap_bound, with each other or the container, are an error.
 struct GivenPacking {
   std::shared_ptr<const std::vector<Vec3>> centres;
   bool operator==(const GivenPacking&) const = default;
