@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/available_cpus.hpp"
+#include "cli/commands.hpp"
+#include "cli/durations.hpp"
+#include "cli/pilot.hpp"
+#include "cli/scene_file.hpp"
+#include "cli/text_table.hpp"
+
+namespace jostle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t pilot_budget = 60'000'000;  // trials, shared by the points tried
+constexpr double process_bytes = 40e6;              // libraries and bookkeeping
+
+struct CheckArguments {
+  std::string scene;
+  bool no_pilot = false;
+};
+
+/// First, middle and last point: costs differ along a sweep.
+std::vector<std::size_t> pilot_points(std::size_t n_points) {
+  std::vector<std::size_t> points{0, n_points / 2, n_points - 1};
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+/// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
+std::string in_words(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_structured()) return value.dump();
+  std::string words;
+  for (const auto& [key, member] : value.items()) {
+    const std::string text = in_words(member);
+    if (!words.empty()) words += value.is_array() ? "; " : ", ";
+    if (value.is_array()) {
+      words += text;
+    } else if (member.is_object()) {
+      words += member.empty() ? key : fmt::format("{} ({})", key, text);
+    } else {
+      words += fmt::format("{} {}", key, text);
+    }
+  }
+  return words;
+}
+
+void print_effects(const LoadedScene& loaded) {
+  const auto scene = Json::parse(loaded.resolved);
+  fmt::print("effects\n");
+  for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots"}) {
+    if (scene.contains(part)) fmt::print("  {:<11}{}\n", part, in_words(scene[part]));
+  }
+}
+
+void print_size(const LoadedScene& loaded, const Study& study) {
+  std::uint64_t taps = 0;
+  for (const auto& point : study.points) taps += point.taps * study.realizations;
+  fmt::print("size\n  {} sweep point{} x {} realization{}, {} spheres, {} taps in all\n",
+             study.points.size(), study.points.size() == 1 ? "" : "s", study.realizations,
+             study.realizations == 1 ? "" : "s", loaded.scene.n_spheres, taps);
+  for (const auto& point : study.points) {
+    if (!point.label.empty()) fmt::print("  {}\n", point.label);
+  }
+  fmt::print("  disk: at most {}, parts and results together\n",
+             format_bytes(static_cast<double>(disk_estimate(study, Shard{}))));
+}
+
+void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
+  std::string spheres = fmt::to_string(estimate.n_spheres);
+  if (estimate.n_spheres < plan.n_spheres) spheres += fmt::format(" of {}", plan.n_spheres);
+  fmt::print(
+      "  {}{}{} spheres, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a "
+      "realization\n",
+      plan.label, plan.label.empty() ? "" : ": ", spheres,
+      format_count(static_cast<double>(estimate.trials)), format_count(estimate.trials_per_second),
+      estimate.settled ? "about" : "at least", estimate.sweeps_per_tap,
+      estimate.settled ? "about" : "at least", format_duration(estimate.realization));
+}
+
+void print_pilot(const LoadedScene& loaded) {
+  fmt::print("cost, extrapolated from the first tap of a pilot\n");
+  const auto points = pilot_points(loaded.plans.size());
+  Seconds mean{0};
+  std::size_t bytes = 0;
+  bool settled = true;
+  for (const std::size_t point : points) {
+    const PilotEstimate estimate = pilot(loaded.plans[point], pilot_budget / points.size());
+    print_pilot_line(loaded.plans[point], estimate);
+    mean += estimate.realization / static_cast<double>(points.size());
+    bytes = std::max(bytes, estimate.bytes);
+    settled = settled && estimate.settled;
+  }
+  const std::size_t realizations = loaded.plans.size() * loaded.scene.realizations;
+  const std::size_t threads = std::min(static_cast<std::size_t>(available_cpus()), realizations);
+  const std::size_t rounds = (realizations + threads - 1) / threads;
+  const char* const about = settled ? "about" : "at least";
+  fmt::print("  time: {} {} on {} thread{}, {:.3g} core-hours\n", about,
+             format_duration(mean * static_cast<double>(rounds)), threads, threads == 1 ? "" : "s",
+             mean.count() * static_cast<double>(realizations) / 3600);
+  fmt::print("  memory: about {}\n",
+             format_bytes(process_bytes + static_cast<double>(threads * bytes)));
+}
+
+void check(const CheckArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene);
+  fmt::print("{}\n\n", loaded.resolved);
+  print_effects(loaded);
+  print_size(loaded, study_of(loaded));
+  std::fflush(stdout);
+  if (arguments.no_pilot) return;
+  try {
+    print_pilot(loaded);
+  } catch (const StartError& error) {
+    throw BadInput(fmt::format("{}: /start: {}", arguments.scene, error.what()));
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("check", "Say what a scene means and what it will cost");
+  auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("scene", arguments->scene, "The scene, a JSON file")->required();
+  command->add_flag("--no-pilot", arguments->no_pilot,
+                    "Leave out the short trial that time and memory are estimated from");
+  command->footer(
+      "Examples:\n"
+      "  jostle check scene.json              a few seconds\n"
+      "  jostle check scene.json --no-pilot   at once, without estimates of time and memory\n"
+      "\n"
+      "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
+  command->callback([arguments, &code] {
+    check(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

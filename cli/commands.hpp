@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/exit_codes.hpp"
+
+// One function a subcommand: it describes its options to the parser, and leaves its exit code in
+// `code` once the parser has called it.
+namespace jostle {
+
+void add_run(CLI::App& app, int& code);
+void add_check(CLI::App& app, int& code);
+void add_schema(CLI::App& app, int& code);
+void add_info(CLI::App& app, int& code);
+void add_merge(CLI::App& app, int& code);
+
+}  // namespace jostle

@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/report.hpp"
+#include "cli/text_table.hpp"
+#include "results/live_run.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name(RunState state) {
+  switch (state) {
+    case RunState::running:
+      return "running";
+    case RunState::interrupted:
+      return "interrupted";
+    case RunState::complete:
+      return "complete";
+  }
+  return "unknown";
+}
+
+const char* name(RealizationStatus status) {
+  switch (status) {
+    case RealizationStatus::missing:
+      return "missing";
+    case RealizationStatus::running:
+      return "running";
+    case RealizationStatus::done:
+      return "done";
+    case RealizationStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+/// A file whose run was killed says "running" still: the lock tells.
+std::string state_of(const RunStatus& status) {
+  if (status.state != RunState::running) return name(status.state);
+  if (status.owner && status.owner->alive) return "running";
+  return "killed; --resume goes on";
+}
+
+Json realization_json(const RealizationSummary& one) {
+  Json json{{"point", one.id.point},      {"realization", one.id.realization},
+            {"status", name(one.status)}, {"taps_recorded", one.rows},
+            {"trials", one.trials},       {"seconds", one.seconds}};
+  if (!one.reason.empty()) json["reason"] = one.reason;
+  return json;
+}
+
+Json info_json(const ResultsFile& file, const RunStatus& status) {
+  const Study& study = file.study();
+  Json points = Json::array(), realizations = Json::array();
+  for (const auto& point : study.points) {
+    Json values = Json::object();
+    for (const auto& [pointer, value] : point.sweep_values) values[pointer] = Json::parse(value);
+    points.push_back({{"label", point.label},
+                      {"values", values},
+                      {"spheres", point.n_spheres},
+                      {"taps", point.taps},
+                      {"seed", point.seed}});
+  }
+  for (const auto& one : status.realizations) realizations.push_back(realization_json(one));
+  return {{"file", file.path()},
+          {"state", name(status.state)},
+          {"alive", status.owner && status.owner->alive},
+          {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
+          {"version", file.provenance().front().version},
+          {"git_revision", file.provenance().front().git_revision},
+          {"scene", Json::parse(study.resolved_scene)},
+          {"points", points},
+          {"realizations", realizations},
+          {"bytes", {{"file", status.file_bytes}, {"parts", status.parts_bytes}}}};
+}
+
+std::string counts(const ResultsFile& file, const RunStatus& status) {
+  std::map<RealizationStatus, std::uint64_t> by_status;
+  std::uint64_t rows = 0, all_rows = 0;
+  for (const auto& one : status.realizations) {
+    if (!in_share(file.shard(), file.study(), one.id)) continue;
+    ++by_status[one.status];
+    rows += one.rows;
+    all_rows += file.study().points[one.id.point].taps + 1;
+  }
+  std::string text;
+  for (const auto& [status_of_some, n] : by_status) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, name(status_of_some));
+  }
+  return text + fmt::format("; {} of {} taps", rows, all_rows);
+}
+
+std::string info_text(const ResultsFile& file, const RunStatus& status) {
+  const Study& study = file.study();
+  const Json scene = Json::parse(study.resolved_scene);
+  std::string text =
+      fmt::format("{}: {}, {}\n", file.path(), scene.value("name", ""), state_of(status));
+  if (const std::string about = scene.value("description", ""); !about.empty()) {
+    text += about + "\n";
+  }
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  {:<13}{}\n", key, value);
+  };
+  line("sweep points", fmt::to_string(study.points.size()));
+  line("realizations", fmt::format("{} a point: {}", study.realizations, counts(file, status)));
+  if (file.shard().count > 1) {
+    line("shard", fmt::format("{}/{}", file.shard().index, file.shard().count));
+  }
+  line("seed", fmt::to_string(study.points.front().seed));
+  line("size", fmt::format("{} and {} of parts", format_bytes(double(status.file_bytes)),
+                           format_bytes(double(status.parts_bytes))));
+  for (const auto& process : file.provenance()) {
+    line("made by",
+         fmt::format("jostle {} ({}) on {}, {}, {} threads", process.version, process.git_revision,
+                     process.host, process.started, process.threads));
+  }
+  return text + "\n" + report(file);
+}
+
+struct InfoArguments {
+  std::string file;
+  bool digest = false, json = false;
+};
+
+void info(const InfoArguments& arguments) {
+  if (arguments.digest) {
+    fmt::print("{}\n", digest_of(arguments.file));
+    return;
+  }
+  const ResultsFile file(arguments.file);
+  const RunStatus status = run_status(arguments.file);
+  if (arguments.json) {
+    fmt::print("{}\n", info_json(file, status).dump(2));
+  } else {
+    fmt::print("{}", info_text(file, status));
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("info", "Summarise a results file, also of a live run");
+  auto arguments = std::make_shared<InfoArguments>();
+  command->add_option("file", arguments->file, "The results")->required();
+  auto* digest = command->add_flag("--digest", arguments->digest,
+                                   "Print the SHA-256 of the data alone, the same for equal runs");
+  command->add_flag("--json", arguments->json, "Print the summary as JSON")->excludes(digest);
+  command->footer(
+      "Examples:\n"
+      "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
+      "  jostle info quickstart.h5 --digest   tells whether two runs gave the same numbers");
+  command->callback([arguments, &code] {
+    info(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

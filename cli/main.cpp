@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <exception>
+
+#include "cli/commands.hpp"
+#include "cli/scene_file.hpp"
+#include "cli/version.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr const char* footer =
+    "Examples:\n"
+    "  jostle check config/scenes/quickstart.json   what a scene means and costs\n"
+    "  jostle run config/scenes/quickstart.json     writes quickstart.h5\n"
+    "  jostle info quickstart.h5                    what is in it\n"
+    "\n"
+    "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
+    "failed,\n"
+    "the rest is stored; 4 a file or the disk; 75 stopped by a signal or the time limit, --resume\n"
+    "goes on.";
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app{"Ensembles of tapped granular packings", "jostle"};
+  app.set_version_flag("--version", version_text());
+  app.footer(footer);
+  app.require_subcommand(1);
+  int code = exit_ok;
+  add_run(app, code);
+  add_check(app, code);
+  add_schema(app, code);
+  add_info(app, code);
+  add_merge(app, code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+  }
+  return code;
+}
+
+/// Every error ends here, and says on stderr what is wrong.
+int run_program(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const BadInput& error) {
+    fmt::print(stderr, "jostle: {}\n", error.what());
+    return exit_bad_input;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "jostle: {}\n", error.what());
+    return exit_broken_surroundings;
+  }
+}
+
+}  // namespace
+}  // namespace jostle
+
+int main(int argc, char** argv) {
+  const auto log = spdlog::stderr_color_mt("jostle");
+  log->set_pattern("%T jostle: %v");
+  spdlog::set_default_logger(log);
+  return jostle::run_program(argc, argv);
+}

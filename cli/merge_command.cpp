@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/provenance.hpp"
+#include "results/merge.hpp"
+
+namespace jostle {
+namespace {
+
+struct MergeArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  bool force = false;
+};
+
+}  // namespace
+
+void add_merge(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("merge", "Join the files of all shards of a run into one");
+  auto arguments = std::make_shared<MergeArguments>();
+  command->add_option("files", arguments->inputs, "The shards' results, in any order")->required();
+  command->add_option("-o,--output", arguments->output, "The file to write")->required();
+  command->add_flag("--force", arguments->force, "Replace the output file if it exists");
+  command->footer(
+      "Example:\n"
+      "  jostle run scene.json --shard 1/2 -o a.h5\n"
+      "  jostle run scene.json --shard 2/2 -o b.h5\n"
+      "  jostle merge a.h5 b.h5 -o all.h5      the digest of all.h5 is that of an undivided run\n"
+      "\n"
+      "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
+      "different scenes, naming which.");
+  command->callback([arguments, &code] {
+    merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"),
+                arguments->force);
+    fmt::print("{}: {} files merged\n", arguments->output, arguments->inputs.size());
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

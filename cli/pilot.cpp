@@ -1,0 +1,72 @@
+#include "cli/pilot.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "engine/relaxation.hpp"
+#include "engine/slab.hpp"
+#include "engine/starts.hpp"
+#include "engine/taps.hpp"
+#include "engine/trial_loop.hpp"
+
+namespace jostle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A cut-down bed is a shallower one of the same kind; a file's packing and a fluid without gravity
+/// would be something else.
+std::uint32_t pilot_spheres(const Plan& plan, std::uint32_t max_spheres) {
+  const bool shallower_is_alike =
+      has_gravity(plan.container) && !std::holds_alternative<GivenPacking>(plan.start);
+  return shallower_is_alike ? std::min(plan.n_spheres, max_spheres) : plan.n_spheres;
+}
+
+HeightWindow pilot_window(const Stop& stop, const Packing& packing) {
+  const auto* rule = std::get_if<BulkFractionStop>(&stop.rule);
+  return rule == nullptr ? HeightWindow{} : resolve(rule->window, packing);
+}
+
+}  // namespace
+
+PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_spheres) {
+  PilotEstimate estimate{.n_spheres = pilot_spheres(plan, max_spheres)};
+  const auto key = [&](Purpose purpose) {
+    return stream_key(plan.seed, plan.point_id, 0, purpose);
+  };
+  const auto began = Clock::now();
+  RandomStream start_stream(key(Purpose::start)), tap_stream(key(Purpose::tap));
+  Packing packing = make_start(plan.start, plan.container, estimate.n_spheres, start_stream);
+  const Seconds start_time = Clock::now() - began;
+
+  const auto loop = make_trial_loop(plan.container, plan.move, key(Purpose::trials));
+  const auto relax_began = Clock::now();
+  RelaxationProgress before;
+  if (relaxes_before_recording(plan.start)) {
+    loop->load(packing);
+    loop->begin_tap();
+    relax(*loop, plan.stop, pilot_window(plan.stop, packing), before, budget / 2);
+    loop->store(packing);
+  }
+  RelaxationProgress tap;
+  const HeightWindow window = pilot_window(plan.stop, packing);
+  if (total_taps(plan) > 0) excite(packing, tap_number(plan, 1), tap_stream);
+  loop->load(packing);
+  loop->begin_tap();
+  relax(*loop, plan.stop, window, tap, budget - std::min(budget / 2, before.trials));
+  const Seconds relax_time = Clock::now() - relax_began;
+
+  estimate.trials = loop->tally().trials;
+  estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
+  estimate.settled = tap.status != RelaxationStatus::running;
+  estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;
+  const double scale = static_cast<double>(plan.n_spheres) / estimate.n_spheres;
+  const double trials = static_cast<double>(before.trials) +
+                        static_cast<double>(tap.trials) * static_cast<double>(total_taps(plan));
+  estimate.realization = scale * (start_time + Seconds(trials / estimate.trials_per_second));
+  const double bytes = static_cast<double>(loop->bytes() + packing.centres.size() * sizeof(Vec3));
+  estimate.bytes = static_cast<std::size_t>(scale * bytes);
+  return estimate;
+}
+
+}  // namespace jostle

@@ -1,0 +1,70 @@
+#include "cli/progress_display.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/durations.hpp"
+#include "cli/text_table.hpp"
+
+namespace jostle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds live_interval{500};
+constexpr std::chrono::seconds plain_interval{30};
+constexpr const char* clear_line = "\r\033[K";
+
+}  // namespace
+
+std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
+                          std::chrono::duration<double> elapsed) {
+  const std::uint64_t taps = progress.taps_done;
+  std::string line = fmt::format(
+      "{}/{} done, {} running, {} failed; taps {}/{}; {} trials/s",
+      progress.realizations_done.load(), ahead.realizations, progress.realizations_running.load(),
+      progress.realizations_failed.load(), taps, ahead.taps, format_count(rate));
+  if (taps > 0 && taps <= ahead.taps) {
+    const double left = static_cast<double>(ahead.taps - taps) / static_cast<double>(taps);
+    line += fmt::format("; {} left", format_duration(elapsed * left));
+  }
+  return line;
+}
+
+ProgressDisplay::ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style)
+    : progress_(progress), ahead_(ahead), style_(style) {
+  if (style == ProgressStyle::none) return;
+  clock_ = std::jthread([this](std::stop_token token) { show_until(token); });
+}
+
+ProgressDisplay::~ProgressDisplay() {
+  if (!clock_.joinable()) return;
+  clock_.request_stop();
+  clock_.join();
+  if (style_ == ProgressStyle::live) fmt::print(stderr, "{}", clear_line);
+}
+
+void ProgressDisplay::show_until(std::stop_token token) {
+  const bool live = style_ == ProgressStyle::live;
+  const Clock::duration interval = live ? Clock::duration(live_interval) : plain_interval;
+  const auto began = Clock::now();
+  auto last_time = began;
+  std::uint64_t last_trials = progress_.trials_done;
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, token, interval, [&] { return token.stop_requested(); })) {
+    const auto now = Clock::now();
+    const std::uint64_t trials = progress_.trials_done;
+    const std::chrono::duration<double> since = now - last_time;
+    const double rate = static_cast<double>(trials - last_trials) / since.count();
+    const std::string line = progress_line(progress_, ahead_, rate, now - began);
+    if (live) {
+      fmt::print(stderr, "{}{}", clear_line, line);
+    } else {
+      fmt::print(stderr, "jostle: {}\n", line);
+    }
+    std::fflush(stderr);
+    last_time = now;
+    last_trials = trials;
+  }
+}
+
+}  // namespace jostle

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "ensemble/run.hpp"
+
+namespace jostle {
+
+/// How progress is shown on stderr: a line rewritten in place, a plain line every half minute, or
+/// not at all.
+enum class ProgressStyle { live, plain, none };
+
+/// What lies ahead when the run begins.
+struct WorkAhead {
+  std::uint64_t realizations = 0;
+  std::uint64_t taps = 0;  // of all of them, without the starts
+};
+
+/// Shows a run's progress from its own thread while it lives.
+class ProgressDisplay {
+ public:
+  ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style);
+  /// Clears a live line; says nothing further.
+  ~ProgressDisplay();
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+ private:
+  void show_until(std::stop_token token);
+
+  const Progress& progress_;
+  WorkAhead ahead_;
+  ProgressStyle style_;
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::jthread clock_;
+};
+
+/// One line of progress: "3/8 done, 2 running, 0 failed; taps 120/408; 41.0 M trials/s; 1 min 5 s
+/// left". `rate` in trials/s; `elapsed` since the run began.
+std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
+                          std::chrono::duration<double> elapsed);
+
+}  // namespace jostle

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// For every sweep point a table over taps, about three a decade, of mean +- standard error and
+/// sigma of every observable, with mean sweeps and acceptance of the relaxations; below it capped
+/// relaxations, cost, and failed realizations with seed and reason.
+std::string report(const ResultsFile& file);
+
+/// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.
+std::vector<std::uint64_t> reported_taps(std::uint64_t last);
+
+}  // namespace jostle

@@ -1,0 +1,269 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/available_cpus.hpp"
+#include "cli/commands.hpp"
+#include "cli/durations.hpp"
+#include "cli/progress_display.hpp"
+#include "cli/provenance.hpp"
+#include "cli/report.hpp"
+#include "cli/scene_file.hpp"
+#include "cli/stop_request.hpp"
+#include "cli/text_table.hpp"
+#include "results/error.hpp"
+#include "results/live_run.hpp"
+#include "results/run_store.hpp"
+
+namespace jostle {
+namespace {
+
+struct RunArguments {
+  std::string scene, output;
+  int threads = 0;  // 0: what the process may use
+  bool resume = false, force = false, retry_failed = false;
+  std::optional<Seconds> time_limit;
+  Seconds checkpoint_every{60};
+  Shard shard;
+  bool quiet = false, no_progress = false;
+};
+
+Shard parse_shard(std::string_view text) {
+  Shard shard{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  const bool slash = index.ptr != end && *index.ptr == '/';
+  const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
+  if (!slash || count.ptr != end || index.ec != std::errc{} || count.ec != std::errc{} ||
+      shard.index < 1 || shard.index > shard.count) {
+    throw CLI::ValidationError(
+        "--shard", fmt::format("\"{}\" is not a share i/n with 1 <= i <= n, as 1/4", text));
+  }
+  return shard;
+}
+
+Seconds duration_argument(const std::string& option, const std::string& text) {
+  const auto duration = parse_duration(text);
+  if (!duration) {
+    throw CLI::ValidationError(
+        option, fmt::format("\"{}\" is not a duration, as 90s, 30m, 2h or 1h30m", text));
+  }
+  return *duration;
+}
+
+/// What a resume would change, named; nothing else may differ from the file's scene.
+void require_same_scene(const std::string& output, const LoadedScene& loaded, const Shard& shard) {
+  const ResultsFile file(output);
+  const auto stored = nlohmann::ordered_json::parse(file.study().resolved_scene);
+  const auto faults = resume_faults(stored, nlohmann::ordered_json::parse(loaded.resolved));
+  if (!faults.empty()) {
+    throw BadInput(
+        fmt::format("{} was begun with another scene and cannot be resumed with this one:\n{}\n"
+                    "Undo the change, or write to another file with -o.",
+                    output, fault_lines(faults)));
+  }
+  if (file.shard() != shard) {
+    throw BadInput(fmt::format("{} holds shard {}/{}, not {}/{}: resume it with --shard {}/{}",
+                               output, file.shard().index, file.shard().count, shard.index,
+                               shard.count, file.shard().index, file.shard().count));
+  }
+}
+
+/// What a run works on once its scene is read and its file opened.
+struct OpenedRun {
+  Study study;
+  std::string output;
+  std::unique_ptr<RunStore> store;
+  std::uint64_t taps_recorded = 0;  // of pending realizations, by earlier processes
+};
+
+std::uint64_t recorded_taps(const std::string& output, const std::vector<RealizationId>& pending) {
+  std::uint64_t taps = 0;
+  for (const auto& one : run_status(output).realizations) {
+    const bool counts = one.status == RealizationStatus::running &&
+                        std::ranges::find(pending, one.id) != pending.end();
+    if (counts && one.rows > 0) taps += one.rows - 1;  // row 0 is the start
+  }
+  return taps;
+}
+
+OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
+  OpenedRun run{.study = study_of(loaded),
+                .output = arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output,
+                .store = nullptr};
+  const bool exists = std::filesystem::exists(run.output);
+  const Provenance provenance = provenance_of_this_run(fmt::to_string(threads));
+  if (exists && (arguments.resume || arguments.retry_failed)) {
+    require_same_scene(run.output, loaded, arguments.shard);
+    run.store =
+        RunStore::resume(run.output, run.study, arguments.shard, provenance, arguments.force);
+    run.taps_recorded = recorded_taps(run.output, run.store->pending(arguments.retry_failed));
+    return run;
+  }
+  if (exists && !arguments.force) {
+    throw BadInput(
+        fmt::format("{} exists and is kept. Go on with it with --resume, write elsewhere with -o "
+                    "FILE, or replace it with --force.",
+                    run.output));
+  }
+  run.store = RunStore::create(run.output, run.study, arguments.shard, provenance, arguments.force);
+  return run;
+}
+
+WorkAhead work_ahead(const OpenedRun& run, const std::vector<RealizationId>& pending) {
+  WorkAhead ahead{.realizations = pending.size()};
+  for (const auto& id : pending) ahead.taps += run.study.points[id.point].taps;
+  ahead.taps -= std::min(ahead.taps, run.taps_recorded);
+  return ahead;
+}
+
+/// This command again, as it goes on after a stop.
+std::string resume_command(const RunArguments& arguments) {
+  auto words = command_line();
+  std::erase(words, "--force");
+  if (!arguments.resume) words.emplace_back("--resume");
+  return shell_words(words);
+}
+
+/// What this process computed, all sweep points together.
+std::string process_line(const Progress& progress, Seconds elapsed, int threads) {
+  std::string line = fmt::format("this run: {} on {} thread{}", format_duration(elapsed), threads,
+                                 threads == 1 ? "" : "s");
+  const auto trials = static_cast<double>(progress.trials_done);
+  const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
+  if (trials > 0 && relaxing > 0) {
+    line += fmt::format("; relaxing, {} trials/s a core and {:.3f} distance tests a trial",
+                        format_count(trials / relaxing),
+                        static_cast<double>(progress.distance_tests) / trials);
+  }
+  return line + "\n";
+}
+
+ProgressStyle progress_style(const RunArguments& arguments) {
+  if (arguments.quiet || arguments.no_progress) return ProgressStyle::none;
+  return isatty(STDERR_FILENO) != 0 ? ProgressStyle::live : ProgressStyle::plain;
+}
+
+int exit_code_of(const ResultsFile& file) {
+  for (const auto& one : file.realizations()) {
+    if (one.status == RealizationStatus::failed) return exit_failed_realizations;
+  }
+  return exit_ok;
+}
+
+/// Runs what is pending and folds it into the file. Returns whether it was stopped before the end.
+bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run,
+             int threads) {
+  const auto pending = run.store->pending(arguments.retry_failed);
+  const auto began = std::chrono::steady_clock::now();
+  const StopRequest stop(arguments.time_limit);
+  Progress progress;
+  RunSummary summary;
+  spdlog::info("{}: {} realizations of {} to do on {} threads", run.output, pending.size(),
+               loaded.plans.size() * loaded.scene.realizations, threads);
+  {
+    const ProgressDisplay display(progress, work_ahead(run, pending), progress_style(arguments));
+    summary = run_ensemble(
+        loaded.plans, pending,
+        {.threads = threads, .checkpoint_every = arguments.checkpoint_every, .stop = &stop.flag()},
+        *run.store, progress);
+  }
+  run.store->finish();
+  if (!arguments.quiet) {
+    fmt::print("{}{}", report(ResultsFile(run.output)),
+               process_line(progress, std::chrono::steady_clock::now() - began, threads));
+  }
+  const bool stopped = summary.done + summary.failed < pending.size();
+  if (stopped) {
+    fmt::print(stderr, "jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
+               resume_command(arguments));
+  }
+  return stopped;
+}
+
+int run(const RunArguments& arguments) {
+  if (arguments.quiet) spdlog::set_level(spdlog::level::warn);
+  if (arguments.force && (arguments.resume || arguments.retry_failed)) {
+    spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
+  }
+  const LoadedScene loaded = load_scene(arguments.scene);
+  const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
+  OpenedRun run = open_run(arguments, loaded, threads);
+  try {
+    if (compute(arguments, loaded, run, threads)) return exit_stopped;
+  } catch (const ResultsError& error) {
+    fmt::print(stderr,
+               "jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "
+               "with\n  {}\n",
+               error.what(), resume_command(arguments));
+    return exit_broken_surroundings;
+  }
+  return exit_code_of(ResultsFile(run.output));
+}
+
+void add_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("scene", arguments.scene, "The scene, a JSON file")->required();
+  command.add_option("-o,--output", arguments.output,
+                     "The results (default: the scene's name + .h5, here)");
+  command
+      .add_option("--threads", arguments.threads,
+                  "Threads (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
+  command.add_flag("--resume", arguments.resume,
+                   "Go on with the output file, or begin it if there is none");
+  command.add_flag("--force", arguments.force,
+                   "Replace an existing output file; with --resume, take over another host's lock");
+  command.add_flag("--retry-failed", arguments.retry_failed,
+                   "Run failed realizations again (resumes)");
+  command
+      .add_option_function<std::string>(
+          "--time-limit",
+          [&arguments](const std::string& text) {
+            arguments.time_limit = duration_argument("--time-limit", text);
+          },
+          "Stop after this long, as a signal would: 90s, 30m, 2h, 1h30m")
+      ->envname("JOSTLE_TIME_LIMIT");
+  command
+      .add_option_function<std::string>(
+          "--checkpoint-every",
+          [&arguments](const std::string& text) {
+            arguments.checkpoint_every = duration_argument("--checkpoint-every", text);
+          },
+          "What a kill may cost (default: 60s)")
+      ->envname("JOSTLE_CHECKPOINT_EVERY");
+  command
+      .add_option_function<std::string>(
+          "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
+          "Run share i/n of the realizations; jostle merge joins the files")
+      ->envname("JOSTLE_SHARD");
+  command.add_flag("--quiet", arguments.quiet, "Print errors only")->envname("JOSTLE_QUIET");
+  command.add_flag("--no-progress", arguments.no_progress, "Print no progress")
+      ->envname("JOSTLE_NO_PROGRESS");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("run", "Run a scene and write its results");
+  auto arguments = std::make_shared<RunArguments>();
+  add_options(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  jostle run scene.json                              writes NAME.h5, prints its curves\n"
+      "  jostle run scene.json --resume --time-limit 23h    the same line for every job of a "
+      "chain\n"
+      "  jostle run scene.json --shard 3/8 -o part3.h5      one eighth of the realizations\n"
+      "\n"
+      "SIGINT, SIGTERM, SIGUSR1 and the time limit stop at the end of a sweep: all is stored, the\n"
+      "command that goes on is printed, and the exit code is 75.");
+  command->callback([arguments, &code] { code = run(*arguments); });
+}
+
+}  // namespace jostle

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "results/study.hpp"
+
+namespace jostle {
+
+/// A scene or a command line that cannot be run; what() says what, why and what to do. Exit code 2.
+class BadInput : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A scene file, read, with all that is needed to run it.
+struct LoadedScene {
+  Scene scene;
+  std::string text;      // the file, word for word
+  std::string resolved;  // with every default written out
+  std::vector<Plan> plans;
+};
+
+/// Reads a scene and the packings it starts from. Throws BadInput listing every fault.
+LoadedScene load_scene(const std::string& path);
+
+Study study_of(const LoadedScene& loaded);
+
+/// "pointer: message", one fault a line.
+std::string fault_lines(const std::vector<Fault>& faults);
+
+}  // namespace jostle

@@ -1,0 +1,21 @@
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "config/scene.hpp"
+
+namespace jostle {
+
+void add_schema(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("schema", "Print the JSON Schema of scenes (draft-07)");
+  command->footer(
+      "Example:\n"
+      "  jostle schema > scene.schema.json\n"
+      "and \"$schema\": \"scene.schema.json\" in a scene lets an editor complete and check it.");
+  command->callback([&code] {
+    fmt::print("{}", scene_schema());
+    if (!scene_schema().ends_with('\n')) fmt::print("\n");
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

@@ -1,0 +1,28 @@
+# cmake -D SOURCE=... -D OUTPUT=... -P Revision.cmake, at every build: writes the git revision as a
+# source, and touches it only where the revision changed. "unknown" outside a checkout.
+cmake_minimum_required(VERSION 3.25)
+set(revision "")
+find_program(git git)
+if(git)
+  execute_process(
+    COMMAND ${git} -C ${SOURCE} rev-parse --show-toplevel
+    OUTPUT_VARIABLE toplevel OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  file(REAL_PATH ${SOURCE} real_source)
+  if(toplevel STREQUAL real_source)
+    execute_process(
+      COMMAND ${git} -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
+      OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  endif()
+endif()
+if(revision STREQUAL "")
+  set(revision unknown)
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
+#include "cli/version.hpp"
+
+namespace jostle {
+
+const char* git_revision() { return "${revision}"; }
+
+}  // namespace jostle
+]])
