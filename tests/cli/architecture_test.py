@@ -1,0 +1,66 @@
+"""The arrows between folders: engine <- structure <- ensemble; fitting stands alone; config and
+results stand on those; cli joins. Read off the include lines, whatever CMake links."""
+
+import os
+import pathlib
+import re
+import unittest
+
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+
+MAY_INCLUDE = {
+    "engine": {"engine"},
+    "structure": {"engine", "structure"},
+    "fitting": {"fitting"},
+    "ensemble": {"engine", "structure", "fitting", "ensemble"},
+    "config": {"engine", "structure", "ensemble", "config"},
+    "results": {"engine", "structure", "ensemble", "results"},
+    "cli": {"engine", "structure", "fitting", "ensemble", "config", "results", "cli"},
+}
+
+# What else only some may see.
+RESERVED = {
+    r"hdf5|H5\w*\.h": {"results"},
+    r"openssl/": {"results"},
+    r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/version.cpp"},
+    r"nlohmann/": {"config", "results", "cli"},
+    r"CLI/": {"cli"},
+    r"Eigen/": {"fitting"},
+    r"spdlog/": {"cli"},
+    r"Random123/": {"engine"},
+    r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "results", "cli"},
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def includes():
+    """(file, kind of quotes, what it includes) of every source, files relative to the root."""
+    for folder in MAY_INCLUDE:
+        for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):
+            for quote, name in INCLUDE.findall(path.read_text()):
+                yield path.relative_to(SOURCE), quote, name
+
+
+class Architecture(unittest.TestCase):
+    def test_there_is_something_to_look_at(self):
+        folders = {file.parts[0] for file, _, _ in includes()}
+        self.assertEqual(folders, set(MAY_INCLUDE))
+
+    def test_own_headers_are_named_from_the_root_and_follow_the_arrows(self):
+        wrong = [f"{file} includes {name}" for file, quote, name in includes()
+                 if quote == '"' and name.split("/")[0] not in MAY_INCLUDE[file.parts[0]]]
+        self.assertEqual(wrong, [])
+
+    def test_libraries_are_seen_only_where_they_belong(self):
+        wrong = []
+        for file, quote, name in includes():
+            for pattern, places in RESERVED.items():
+                seen = quote == "<" and re.match(pattern, name)
+                if seen and not {file.parts[0], str(file)} & places:
+                    wrong.append(f"{file} includes <{name}>, which is for {sorted(places)}")
+        self.assertEqual(wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,170 @@
+"""Exit codes, messages, and what each command prints."""
+
+import json
+import unittest
+
+from support import BAD_INPUT, BROKEN, SOURCE, TINY, Case, changed
+
+
+class Help(Case):
+    def test_every_command_has_help_with_an_example(self):
+        for command in ("run", "check", "schema", "info", "merge"):
+            with self.subTest(command=command):
+                text = self.jostle(command, "--help").stdout
+                self.assertIn("Example", text)
+                self.assertIn(f"jostle {command}", text)
+
+    def test_version_names_revision_compiler_and_libraries(self):
+        text = self.jostle("--version").stdout
+        for part in ("jostle 0.", "(git ", "compiler ", "HDF5 ", "oneTBB ", "OpenSSL "):
+            self.assertIn(part, text)
+
+    def test_a_wrong_command_line_is_bad_input(self):
+        self.write(TINY)
+        for arguments in ([], ["walk"], ["run"], ["run", "scene.json", "--treads", "2"],
+                          ["run", "scene.json", "--threads", "0"],
+                          ["run", "scene.json", "--shard", "3/2"],
+                          ["run", "scene.json", "--shard", "1"],
+                          ["run", "scene.json", "--time-limit", "soon"],
+                          ["merge", "a.h5"], ["info", "a.h5", "--json", "--digest"]):
+            with self.subTest(arguments=arguments):
+                result = self.jostle(*arguments, expect=BAD_INPUT)
+                self.assertNotEqual(result.stderr, "")
+                self.assertEqual(self.files(), ["scene.json"])
+
+
+class Scenes(Case):
+    def test_a_bad_scene_runs_and_writes_nothing_and_lists_every_fault(self):
+        bad = changed(TINY, sphere=3, realizations=0,
+                      protocol=[{"tap": {"dilat": 0.02}, "count": 4}])
+        del bad["sweep"]
+        self.write(bad)
+        for command in ("run", "check"):
+            with self.subTest(command=command):
+                result = self.jostle(command, "scene.json", expect=BAD_INPUT)
+                self.assertEqual(result.stdout, "")
+                for line in ("/sphere: ", "/realizations: ", "/protocol/0/tap/dilat: "):
+                    self.assertRegex(result.stderr, f"(?m)^{line}")
+                self.assertIn('Did you mean "dilate"?', result.stderr)
+                self.assertEqual(self.files(), ["scene.json"])
+
+    def test_a_scene_that_cannot_be_read_is_named(self):
+        self.assertIn("nowhere.json", self.jostle("run", "nowhere.json", expect=BAD_INPUT).stderr)
+        (self.folder / "folder").mkdir()
+        self.assertIn("folder", self.jostle("check", "folder", expect=BAD_INPUT).stderr)
+        self.write("", "empty.json")
+        self.jostle("run", "empty.json", expect=BAD_INPUT)
+
+    def test_a_packing_file_is_looked_for_beside_the_scene(self):
+        self.write(TINY)
+        self.run_scene("-o", "first.h5")
+        (self.folder / "later").mkdir()
+        scene = changed(TINY, start={"file": {"path": "../first.h5", "point": 1, "tap": 4}})
+        self.write(scene, "later/scene.json")
+        self.run_scene("-o", "second.h5", scene="later/scene.json")
+        scene["start"]["file"]["path"] = "first.h5"
+        self.write(scene, "later/scene.json")
+        result = self.run_scene("-o", "third.h5", scene="later/scene.json", expect=BAD_INPUT)
+        self.assertIn("/start/file", result.stderr)
+        self.assertIn("first.h5", result.stderr)
+
+    def test_check_prints_the_resolved_scene_its_size_and_estimates(self):
+        self.write(TINY)
+        text = self.jostle("check", "scene.json").stdout
+        resolved, rest = text.split("\n}\n", 1)
+        self.assertEqual(json.loads(resolved + "\n}")["relax"]["polar"]["max_step"], 0.1)
+        self.assertIn("2 sweep points x 3 realizations", rest)
+        for part in ("effects", "pilot", "time: ", "memory: ", "disk: "):
+            self.assertIn(part, rest)
+        without = self.jostle("check", "scene.json", "--no-pilot").stdout
+        self.assertNotIn("pilot", without)
+        self.assertIn("disk: ", without)
+
+    def test_check_bounds_its_pilot_for_a_large_scene(self):
+        self.write(changed(TINY, spheres=200000, container={"sides": "periodic", "width": 50}))
+        text = self.jostle("check", "scene.json").stdout
+        self.assertIn("20000 of 200000 spheres", text)
+
+    def test_the_schema_is_the_shipped_one(self):
+        printed = self.jostle("schema").stdout
+        shipped = (SOURCE / "config/scene.schema.json").read_text()
+        self.assertEqual(json.loads(printed), json.loads(shipped))
+
+
+class Runs(Case):
+    def test_a_run_prints_a_table_a_sweep_point_and_names_its_file_after_the_scene(self):
+        self.write(TINY)
+        result = self.run_scene()
+        self.assertEqual(self.files(), ["scene.json", "tiny.h5"])
+        self.assertEqual(result.stdout.count("mean_height"), 2)
+        self.assertEqual(result.stdout.count("no relaxation ended at the cap"), 2)
+        self.assertRegex(result.stdout, r"distance tests a trial")
+        heights = [line.split() for line in result.stdout.splitlines() if line.startswith("  4 ")]
+        self.assertEqual(len(heights), 2, result.stdout)
+
+    def test_quiet_prints_nothing(self):
+        self.write(TINY)
+        result = self.jostle("run", "scene.json", "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        self.jostle("run", "scene.json", "--force", environment={"JOSTLE_QUIET": "1"})
+
+    def test_an_existing_file_is_kept_unless_forced(self):
+        self.write(TINY)
+        self.run_scene()
+        before = (self.folder / "tiny.h5").read_bytes()
+        result = self.run_scene(expect=BAD_INPUT)
+        self.assertIn("tiny.h5 exists", result.stderr)
+        self.assertIn("--force", result.stderr)
+        self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
+        digest = self.digest("tiny.h5")
+        self.run_scene("--force")
+        self.assertEqual(self.digest("tiny.h5"), digest)
+
+    def test_a_capped_relaxation_is_reported(self):
+        scene = changed(TINY, relax={"polar": {}, "max_sweeps": 10, "stop": {"mean_height": {
+            "eta": 1e-9, "every_sweeps": 5}}})
+        self.write(scene)
+        self.assertEqual(
+            self.run_scene().stdout.count("12 of 12 relaxations ended at the cap"), 2)
+
+    def test_output_in_a_missing_folder_is_a_broken_surrounding(self):
+        self.write(TINY)
+        result = self.run_scene("-o", "nowhere/out.h5", expect=BROKEN)
+        self.assertIn("nowhere/out.h5", result.stderr)
+
+
+class Information(Case):
+    def test_info_summarises_in_words_and_in_json(self):
+        self.write(changed(TINY, description="A bed of forty-eight."))
+        self.run_scene()
+        text = self.jostle("info", "tiny.h5").stdout
+        for part in ("complete", "A bed of forty-eight.", "6 done", "30 of 30 taps", "mean_height"):
+            self.assertIn(part, text)
+        summary = self.info("tiny.h5")
+        self.assertEqual(summary["state"], "complete")
+        self.assertEqual(len(summary["realizations"]), 6)
+        self.assertEqual(summary["points"][1]["values"], {"/protocol/0/tap/dilate": 0.1})
+
+    def test_what_is_no_results_file_is_refused_by_name(self):
+        self.write("not HDF5", "text.h5")
+        self.assertIn("text.h5", self.jostle("info", "text.h5", expect=BROKEN).stderr)
+        self.assertIn("none.h5", self.jostle("info", "none.h5", expect=BROKEN).stderr)
+
+    def test_a_damaged_file_is_refused(self):
+        self.write(TINY)
+        self.run_scene()
+        file = self.folder / "tiny.h5"
+        whole = file.read_bytes()
+        for place in range(100, len(whole), len(whole) // 9):
+            with self.subTest(place=place):
+                damaged = bytearray(whole)
+                damaged[place] ^= 0x10
+                file.write_bytes(damaged)
+                self.assertIn("tiny.h5", self.jostle("info", "tiny.h5", expect=BROKEN).stderr)
+                self.run_scene("--resume", expect=BROKEN)
+        file.write_bytes(whole[:-100])
+        self.jostle("info", "tiny.h5", "--digest", expect=BROKEN)
+
+
+if __name__ == "__main__":
+    unittest.main()

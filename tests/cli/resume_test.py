@@ -1,0 +1,91 @@
+"""Graceful stops: signals and the time limit, inside a relaxation, and going on from there."""
+
+import signal
+import time
+import unittest
+
+from support import FAILED, STOPPED, TINY, Case, changed
+
+# Relaxations of 2e7 trials, so that a stop falls inside one; two seconds on one core.
+SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
+               relax={"polar": {}, "stop": {"sweeps": 400000}}, snapshots={"taps": [0, 2]})
+del SLOW["sweep"]
+
+
+class Stops(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(SLOW)
+
+    def wait_for_file(self, process, name="tiny.h5"):
+        while not (self.folder / name).exists():
+            self.assertIsNone(process.poll(), "ended before it wrote a file")
+            time.sleep(0.01)
+
+    def resume_by_the_printed_command(self, err):
+        command = err.strip().splitlines()[-1].split()
+        self.assertIn("--resume", command, err)
+        return self.jostle(*command[1:])
+
+    def test_each_signal_stops_resumably_with_the_same_digest_in_the_end(self):
+        self.run_scene("-o", "straight.h5")
+        straight = self.digest("straight.h5")
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            with self.subTest(signal=number.name):
+                process = self.popen("run", "scene.json", "--threads", "2", "--force")
+                self.wait_for_file(process)
+                time.sleep(0.1)
+                process.send_signal(number)
+                _, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, STOPPED, err)
+                self.assertIn(f"stopped by {number.name}", err)
+                self.assertEqual(self.info("tiny.h5")["state"], "interrupted")
+                self.assertNotIn("tiny.parts", self.files())
+                self.resume_by_the_printed_command(err)
+                self.assertEqual(self.digest("tiny.h5"), straight)
+                (self.folder / "tiny.h5").unlink()
+
+    def test_a_chain_of_time_limits_reaches_the_end_with_the_same_digest(self):
+        self.run_scene("-o", "straight.h5")
+        stops = 0
+        while True:
+            result = self.run_scene("--resume", "--time-limit", "300ms", expect=None)
+            if result.returncode != STOPPED:
+                break
+            self.assertIn("stopped by the time limit", result.stderr)
+            stops += 1
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater(stops, 0)
+        self.assertEqual(self.digest("tiny.h5"), self.digest("straight.h5"))
+
+    def test_info_reads_a_live_run_and_a_second_run_is_kept_out(self):
+        process = self.popen("run", "scene.json", "--checkpoint-every", "0")
+        self.addCleanup(process.kill)
+        self.wait_for_file(process)
+        summary = self.info("tiny.h5")
+        self.assertEqual(summary["state"], "running")
+        self.assertTrue(summary["alive"])
+        second = self.run_scene("--resume", expect=4)
+        self.assertIn(str(process.pid), second.stderr)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0)
+
+
+class Retry(Case):
+    def test_failed_realizations_are_run_again_only_when_asked(self):
+        # Walls need more than one sweep of agitation: the first point fails, the second does not.
+        self.write(changed(TINY, start={"pour": {"fitted": {"max_sweeps": 1}}},
+                           container={"sides": "walls", "width": 4},
+                           sweep={"/start/pour/fitted/max_sweeps": [1, 100000]}))
+        first = self.run_scene(expect=FAILED)
+        self.assertRegex(first.stdout, r"realization 0 failed \(seed 4711\): \S")
+        self.assertIn("3 done, 0 failed", first.stdout)
+        digest = self.digest("tiny.h5")
+        self.assertIn("0 realizations of 6 to do", self.run_scene("--resume", expect=FAILED).stderr)
+        again = self.run_scene("--retry-failed", expect=FAILED)
+        self.assertIn("3 realizations of 6 to do", again.stderr)
+        self.assertEqual(self.digest("tiny.h5"), digest)
+
+
+if __name__ == "__main__":
+    unittest.main()

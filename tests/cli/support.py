@@ -1,0 +1,83 @@
+"""Running the program as a user does, on scenes of seconds."""
+
+import copy
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+JOSTLE = os.environ["JOSTLE"]
+FAULT_SHIM = os.environ["FAULT_SHIM"]
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+
+OK, BAD_INPUT, FAILED, BROKEN, STOPPED = 0, 2, 3, 4, 75
+
+# Tens of milliseconds: two sweep points of three realizations and four taps.
+TINY = {
+    "name": "tiny",
+    "seed": 4711,
+    "realizations": 3,
+    "container": {"sides": "periodic", "width": 4},
+    "spheres": 48,
+    "start": {"pour": "steepest_descent"},
+    "protocol": [{"tap": {"dilate": 0.05}, "count": 4}],
+    "relax": {"polar": {}, "stop": {"sweeps": 200}},
+    "observe": ["mean_height", "bottom_fraction"],
+    "snapshots": {"taps": [0, 4]},
+    "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]},
+}
+
+# Of the program's surroundings only what it needs, and nothing that configures it.
+PLAIN = {key: value for key, value in os.environ.items()
+         if not key.startswith(("JOSTLE", "SLURM"))}
+
+
+def changed(scene, **changes):
+    return {**copy.deepcopy(scene), **changes}
+
+
+class Case(unittest.TestCase):
+    """A test in a folder of its own, where it runs the program."""
+
+    maxDiff = None
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="jostle-cli-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(os.path.realpath(folder.name))
+
+    def write(self, scene, name="scene.json"):
+        text = scene if isinstance(scene, str) else json.dumps(scene)
+        (self.folder / name).write_text(text)
+        return name
+
+    def popen(self, *arguments, environment=None, folder=None):
+        return subprocess.Popen([JOSTLE, *map(str, arguments)], cwd=folder or self.folder,
+                                env={**PLAIN, **(environment or {})}, text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE)
+
+    def jostle(self, *arguments, expect=OK, environment=None, folder=None):
+        """Runs the program; an exit code other than `expect` (None: any) fails the test."""
+        process = self.popen(*arguments, environment=environment, folder=folder)
+        out, err = process.communicate(timeout=600)
+        if expect is not None and process.returncode != expect:
+            self.fail(f"jostle {' '.join(map(str, arguments))}\n  exit code {process.returncode}, "
+                      f"not {expect}\n--- stdout\n{out}--- stderr\n{err}")
+        return subprocess.CompletedProcess(arguments, process.returncode, out, err)
+
+    def run_scene(self, *arguments, scene="scene.json", **keywords):
+        return self.jostle("run", scene, "--no-progress", *arguments, **keywords)
+
+    def digest(self, file, folder=None):
+        digest = self.jostle("info", file, "--digest", folder=folder).stdout.strip()
+        self.assertRegex(digest, r"^[0-9a-f]{64}$")
+        return digest
+
+    def info(self, file, folder=None):
+        return json.loads(self.jostle("info", file, "--json", folder=folder).stdout)
+
+    def files(self):
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
