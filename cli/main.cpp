@@ -16,6 +16,7 @@ constexpr const char* footer =
     "  jostle check config/scenes/quickstart.json   what a scene means and costs\n"
     "  jostle run config/scenes/quickstart.json     writes quickstart.h5\n"
     "  jostle info quickstart.h5                    what is in it\n"
+    "  jostle fit quickstart.h5 --observable bottom_fraction\n"
     "\n"
     "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
     "failed,\n"
@@ -33,6 +34,7 @@ int parse_and_run(int argc, char** argv) {
   add_schema(app, code);
   add_info(app, code);
   add_merge(app, code);
+  add_fit(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

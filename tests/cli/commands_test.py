@@ -8,7 +8,7 @@ from support import BAD_INPUT, BROKEN, SOURCE, TINY, Case, changed
 
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
-        for command in ("run", "check", "schema", "info", "merge"):
+        for command in ("run", "check", "schema", "info", "merge", "fit"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
                 self.assertIn("Example", text)

@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "cli/available_cpus.hpp"
+#include "cli/commands.hpp"
+#include "cli/curve_file.hpp"
+#include "cli/fit_output.hpp"
+#include "cli/fit_source.hpp"
+#include "cli/provenance.hpp"
+#include "cli/scene_file.hpp"
+#include "fitting/models.hpp"
+#include "fitting/report.hpp"
+#include "results/error.hpp"
+
+namespace jostle {
+
+namespace {
+
+struct FitArguments {
+  std::string input, observable, point, model = "all", range, csv;
+  std::vector<std::string> fixed;
+  std::string resample = "jackknife";
+  std::uint32_t count = 1000;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool json = false;
+};
+
+// Laws of an approach to a final value, that compete for one curve.
+constexpr const char* relaxation_laws[] = {"inverse_log", "inverse_log_height", "two_exponentials",
+                                           "kww"};
+
+std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
+  std::vector<std::unique_ptr<Model>> models;
+  if (name == "all") {
+    for (const char* law : relaxation_laws) models.push_back(make_model(law));
+    return models;
+  }
+  models.push_back(make_model(name));
+  if (models.back()) return models;
+  std::string names;
+  for (const auto& model : all_models()) names += ", " + model->name();
+  throw BadInput(fmt::format("--model {}: there is none; there are all{}", name, names));
+}
+
+std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {
+  std::map<std::string, double> fixed;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    char* end = nullptr;
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    fixed[text.substr(0, equals)] = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0') {
+      throw BadInput(fmt::format("--fix {}: not NAME=NUMBER", text));
+    }
+  }
+  return fixed;
+}
+
+std::vector<FitSource> read_sources(const FitArguments& arguments) {
+  if (is_results_file(arguments.input)) {
+    if (arguments.observable.empty()) {
+      throw BadInput("a results file needs --observable NAME; jostle info lists them");
+    }
+    // Tap 0 is the start: a law of taps begins with the first.
+    const FitRange range = read_range(arguments.range.empty() ? "1:" : arguments.range);
+    return results_curves(arguments.input, arguments.observable, arguments.point, range);
+  }
+  if (!arguments.observable.empty() || !arguments.point.empty()) {
+    throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
+                               arguments.input));
+  }
+  const FitRange range = read_range(arguments.range.empty() ? ":" : arguments.range);
+  FitSource source;
+  source.title = arguments.input;
+  source.curve = within(read_curve(arguments.input), range.first, range.last);
+  return {source};
+}
+
+FitOutcome fit_model(const Model& model, const FitSource& source, const FitArguments& arguments) {
+  FitOptions options;
+  options.fixed = fixed_parameters(arguments.fixed);
+  FitOutcome outcome{model.name(), fit(model, source.curve, options), {}};
+  const auto* found = std::get_if<Fit>(&outcome.result);
+  if (!found || !source.realizations || arguments.resample == "none") return outcome;
+  const bool bootstrap = arguments.resample == "bootstrap";
+  outcome.resampled =
+      resample(model, *source.realizations, *found,
+               {.kind = bootstrap ? Resampling::bootstrap : Resampling::jackknife,
+                .count = arguments.count,
+                .seed = arguments.seed,
+                .threads = arguments.threads > 0 ? arguments.threads : available_cpus()});
+  return outcome;
+}
+
+nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+  nlohmann::json object = {{"title", source.title}, {"fits", nlohmann::json::array()}};
+  if (source.point) {
+    object["observable"] = source.observable;
+    object["sweep_point"] = *source.point;
+    object["label"] = source.label;
+    object["realizations"] = source.realizations ? source.realizations->realizations : 1;
+  }
+  if (!source.curve.t.empty()) object["range"] = {source.curve.t.front(), source.curve.t.back()};
+  if (!source.remark.empty()) object["remark"] = source.remark;
+  for (const FitOutcome& outcome : outcomes) object["fits"].push_back(fit_json(outcome));
+  return object;
+}
+
+void print_for_people(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+  fmt::print("{}\n", source.title);
+  if (!source.remark.empty()) fmt::print("  ! {}\n", source.remark);
+  std::vector<Fit> fits;
+  for (const FitOutcome& outcome : outcomes) {
+    fmt::print("\n{}", fit_text(outcome));
+    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+  }
+  if (fits.size() > 1) fmt::print("\n{}", compare(fits));
+  fmt::print("\n");
+}
+
+void write_csv(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw ResultsError(path, "cannot be written");
+}
+
+int run_fits(const FitArguments& arguments) {
+  const auto models = chosen_models(arguments.model);
+  const std::vector<FitSource> sources = read_sources(arguments);
+  if (!arguments.csv.empty() && sources.size() > 1) {
+    throw BadInput("--csv holds one curve: choose it with --sweep-point");
+  }
+  bool any = false;
+  nlohmann::json curves = nlohmann::json::array();
+  for (const FitSource& source : sources) {
+    std::vector<FitOutcome> outcomes;
+    for (const auto& model : models) outcomes.push_back(fit_model(*model, source, arguments));
+    for (const FitOutcome& outcome : outcomes) {
+      any = any || std::holds_alternative<Fit>(outcome.result);
+    }
+    if (arguments.json) {
+      curves.push_back(source_json(source, outcomes));
+    } else {
+      print_for_people(source, outcomes);
+    }
+    if (!arguments.csv.empty()) write_csv(arguments.csv, fit_csv(source.curve, outcomes));
+  }
+  if (arguments.json) {
+    const Provenance by = provenance_of_this_run("");
+    const nlohmann::json object = {{"input", arguments.input},
+                                   {"curves", curves},
+                                   {"provenance",
+                                    {{"version", by.version},
+                                     {"git_revision", by.git_revision},
+                                     {"command_line", by.command_line},
+                                     {"started", by.started}}}};
+    std::fputs((object.dump(2) + "\n").c_str(), stdout);
+  }
+  return any ? exit_ok : exit_bad_input;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("fit", "Fit the papers' laws to results or a measured curve");
+  auto arguments = std::make_shared<FitArguments>();
+  FitArguments& a = *arguments;
+  command->add_option("input", a.input, "Results, or a text file with columns t, X and maybe sigma")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--observable", a.observable, "Which column of the results");
+  command->add_option("--sweep-point", a.point,
+                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
+  command->add_option("--model", a.model,
+                      "A law of docs/fitting.md, or all: every law of relaxation (default)");
+  command->add_option("--range", a.range,
+                      "FIRST:LAST of t, either may be left out (default: results from tap 1)");
+  command->add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
+  command
+      ->add_option("--resample", a.resample,
+                   "Errors from resampled realizations: jackknife (default), bootstrap, none")
+      ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
+  command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
+      ->check(CLI::Range(2, 1000000));
+  command->add_option("--seed", a.seed, "Of the bootstrap (default 1)");
+  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
+  command->add_flag("--json", a.json, "Print JSON, for programs");
+  command->add_option("--csv", a.csv, "Also write the curve with its fits to this file");
+  command->footer(
+      "Examples:\n"
+      "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
+      "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
+      "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
+      "\n"
+      "What a report means: docs/fitting.md. Exit code 2 where no law could be fitted.");
+  command->callback([arguments, &code] { code = run_fits(*arguments); });
+}
+
+}  // namespace jostle

@@ -1,0 +1,160 @@
+#include "cli/fit_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "cli/scene_file.hpp"
+#include "ensemble/moments.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+namespace {
+
+double read_end(const std::string& text, double otherwise, const std::string& range) {
+  if (text.empty()) return otherwise;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw BadInput(
+        fmt::format("--range {}: not FIRST:LAST, two numbers of which one may be left "
+                    "out",
+                    range));
+  }
+  return value;
+}
+
+bool has_value(const StudyPoint& point, const std::string& wanted) {
+  return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
+                     [&](const auto& value) { return value.first + "=" + value.second == wanted; });
+}
+
+std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
+  std::vector<std::uint32_t> chosen;
+  std::string known;
+  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
+    const StudyPoint& point = study.points[i];
+    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
+      chosen.push_back(i);
+    }
+    known += fmt::format("\n  {}", i);
+    for (const auto& [pointer, value] : point.sweep_values) {
+      known += fmt::format("  {}={}", pointer, value);
+    }
+  }
+  if (chosen.empty()) {
+    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
+  }
+  return chosen;
+}
+
+// The number of rows that every realization with any value has.
+std::uint64_t common_rows(const Series& series, const std::vector<std::uint32_t>& used) {
+  for (std::uint64_t tap = 0; tap < series.n_taps; ++tap) {
+    for (const std::uint32_t r : used) {
+      if (!std::isfinite(series.at(tap, r))) return tap;
+    }
+  }
+  return series.n_taps;
+}
+
+RealizationCurves collect(const ResultsFile& file, std::uint32_t point, const Series& series,
+                          const FitRange& range) {
+  std::vector<std::uint32_t> used;
+  for (const RealizationSummary& summary : file.realizations()) {
+    const bool usable =
+        summary.status == RealizationStatus::done || summary.status == RealizationStatus::running;
+    if (summary.id.point == point && usable && summary.rows > 0) {
+      used.push_back(summary.id.realization);
+    }
+  }
+  RealizationCurves curves;
+  curves.realizations = static_cast<std::uint32_t>(used.size());
+  const std::uint64_t rows = used.empty() ? 0 : common_rows(series, used);
+  for (std::uint64_t tap = 0; tap < rows; ++tap) {
+    const auto t = static_cast<double>(tap);
+    if (t < range.first || t > range.last) continue;
+    curves.t.push_back(t);
+    for (const std::uint32_t r : used) curves.values.push_back(series.at(tap, r));
+  }
+  return curves;
+}
+
+// Standard errors of the mean, or nothing where one of them is zero or unknown.
+std::vector<double> standard_errors(const RealizationCurves& curves) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < curves.t.size(); ++i) {
+    Moments moments;
+    for (std::uint32_t r = 0; r < curves.realizations; ++r) {
+      moments.add(curves.values[i * curves.realizations + r]);
+    }
+    errors.push_back(moments.standard_error());
+    if (!(errors.back() > 0)) return {};
+  }
+  return errors;
+}
+
+FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::string& observable,
+                      const FitRange& range) {
+  const std::vector<Series> all = file.series(point);
+  const auto series = std::find_if(all.begin(), all.end(), [&](const Series& column) {
+    return column.label.name == observable;
+  });
+  if (series == all.end()) {
+    std::string names;
+    for (const Series& column : all) names += (names.empty() ? "" : ", ") + column.label.name;
+    throw BadInput(
+        fmt::format("--observable {}: there is none; {} has {}", observable, file.path(), names));
+  }
+  FitSource source;
+  source.point = point;
+  source.observable = observable;
+  source.label = file.study().points[point].label;
+  source.title = fmt::format("{} {}sweep point {}", observable,
+                             source.label.empty() ? "" : source.label + ", ", point);
+  RealizationCurves curves = collect(file, point, *series, range);
+  if (curves.realizations == 0 || curves.t.empty()) return source;
+  curves.sigma = standard_errors(curves);
+  source.title += fmt::format(", {} realizations", curves.realizations);
+  if (curves.sigma.empty()) {
+    source.remark = "not weighted: the mean has no error at some tap of the range";
+  }
+  source.curve = mean_curve(curves);
+  if (curves.realizations > 1) source.realizations = std::move(curves);
+  return source;
+}
+
+}  // namespace
+
+FitRange read_range(const std::string& text) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto colon = text.find(':');
+  const std::string first = text.substr(0, colon);
+  const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
+  return {read_end(first, -infinite, text), read_end(last, infinite, text)};
+}
+
+bool is_results_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char signature[8] = {};
+  file.read(signature, sizeof signature);
+  return file && std::memcmp(signature, "\x89HDF\r\n\x1a\n", sizeof signature) == 0;
+}
+
+std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
+                                      const std::string& point, const FitRange& range) {
+  const ResultsFile file(path);
+  std::vector<FitSource> sources;
+  for (const std::uint32_t chosen : chosen_points(file.study(), point)) {
+    sources.push_back(point_curve(file, chosen, observable, range));
+  }
+  return sources;
+}
+
+}  // namespace jostle

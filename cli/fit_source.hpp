@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ensemble/resampled_fit.hpp"
+
+namespace jostle {
+
+/// A curve to fit, and where it comes from.
+struct FitSource {
+  std::string title;              // for people
+  std::string observable, label;  // of a results file
+  std::optional<std::uint32_t> point;
+  Curve curve;
+  std::optional<RealizationCurves> realizations;  // behind the curve, where there are two or more
+  std::string remark;                             // what a reader must know of it; may be empty
+};
+
+/// A range of t, both ends included.
+struct FitRange {
+  double first, last;
+};
+
+/// "1:4000", ":4000", "1:". Throws BadInput.
+FitRange read_range(const std::string& text);
+
+bool is_results_file(const std::string& path);
+
+/// The mean of an observable over realizations against taps, weighted by its standard errors, for
+/// one sweep point (its number, or "pointer=value" as in the scene's sweep) or, where `point` is
+/// empty, for all. Realizations that failed are left out; taps that not all others have reached
+/// too. Throws BadInput naming what there is, ResultsError for the file.
+std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
+                                      const std::string& point, const FitRange& range);
+
+}  // namespace jostle

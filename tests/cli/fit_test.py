@@ -1,0 +1,159 @@
+"""jostle fit: results and measured curves, for people and for programs."""
+
+import json
+import math
+import unittest
+
+from support import BAD_INPUT, OK, TINY, Case, changed
+
+TRUTH = {"X_inf": 0.64, "dX": 0.056, "B": 0.3, "tau": 10.0}
+
+
+def inverse_log(t):
+    p = TRUTH
+    return p["X_inf"] - p["dX"] / (1 + p["B"] * math.log1p(t / p["tau"]))
+
+
+def rough(t):
+    """A few 1e-5 of scatter, without a random number."""
+    return 3e-5 * math.sin(1.0 + 17.0 * t * t)
+
+
+class Measured(Case):
+    def setUp(self):
+        super().setUp()
+        taps = sorted({round(1.2 ** k) for k in range(50)})
+        self.rows = [(t, inverse_log(t) + rough(t)) for t in taps]
+
+    def table(self, separator=",", header="t,X\n", sigma=None):
+        lines = []
+        for t, x in self.rows:
+            cells = [repr(t), repr(x)] + ([repr(sigma)] if sigma else [])
+            lines.append(separator.join(cells))
+        return "# measured by nobody\n" + header + "\n".join(lines) + "\n"
+
+    def fit_json(self, *arguments, expect=OK):
+        return json.loads(self.jostle("fit", *arguments, "--json", expect=expect).stdout)
+
+    def test_a_table_of_two_columns_gives_its_law_back(self):
+        self.write(self.table(), "data.csv")
+        fit = self.fit_json("data.csv", "--model", "inverse_log")["curves"][0]["fits"][0]
+        self.assertEqual(fit["points"], len(self.rows))
+        self.assertFalse(fit["sigma_given"])
+        for name, value in TRUTH.items():
+            found = fit["parameters"][name]
+            self.assertLess(abs(found["value"] - value), 4 * found["standard_error"])
+            low, high = found["interval_95"]
+            self.assertTrue(low < found["value"] < high)
+
+    def test_separators_and_errors_make_no_difference_to_the_law(self):
+        self.write(self.table(), "a.csv")
+        self.write(self.table("\t", "", sigma=3e-5), "b.txt")
+        a = self.fit_json("a.csv", "--model", "kww")["curves"][0]["fits"][0]
+        b = self.fit_json("b.txt", "--model", "kww")["curves"][0]["fits"][0]
+        self.assertTrue(b["sigma_given"])
+        for name in a["parameters"]:
+            self.assertAlmostEqual(a["parameters"][name]["value"] / b["parameters"][name]["value"],
+                                   1, places=6)
+        self.assertAlmostEqual(a["residual_sum"] / (b["residual_sum"] * 9e-10), 1, places=6)
+
+    def test_all_laws_are_compared_and_the_true_one_is_best(self):
+        self.write(self.table(), "data.csv")
+        fits = self.fit_json("data.csv")["curves"][0]["fits"]
+        self.assertEqual([fit["model"] for fit in fits],
+                         ["inverse_log", "inverse_log_height", "two_exponentials", "kww"])
+        aic = {fit["model"]: fit["aic"] for fit in fits}
+        self.assertLess(aic["inverse_log"], aic["kww"])
+        self.assertLess(aic["inverse_log"], aic["two_exponentials"])
+        text = self.jostle("fit", "data.csv").stdout
+        self.assertIn("above best", text)
+        self.assertIn("X_inf - dX / (1 + B ln(1 + t/tau))", text)
+
+    def test_a_range_and_a_fixed_parameter_are_kept(self):
+        self.write(self.table(), "data.csv")
+        curve = self.fit_json("data.csv", "--model", "inverse_log", "--range", "5:900", "--fix",
+                              "tau=10")["curves"][0]
+        self.assertTrue(5 <= curve["range"][0] and curve["range"][1] <= 900)
+        tau = curve["fits"][0]["parameters"]["tau"]
+        self.assertEqual((tau["value"], tau["identifiability"]), (10.0, "fixed"))
+        self.assertEqual(curve["fits"][0]["free_parameters"], 3)
+
+    def test_the_curve_is_written_beside_its_fits(self):
+        self.write(self.table(), "data.csv")
+        self.jostle("fit", "data.csv", "--csv", "out.csv")
+        lines = (self.folder / "out.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "t,X,inverse_log,inverse_log_height,two_exponentials,kww")
+        self.assertEqual(len(lines), len(self.rows) + 1)
+        t, x, law = map(float, lines[5].split(",")[:3])
+        self.assertEqual((t, x), self.rows[4])
+        self.assertLess(abs(law - x), 2e-4)
+
+    def test_bad_input_is_named(self):
+        self.write(self.table(), "data.csv")
+        self.write("t,X\n1,2\n2,three\n", "words.csv")
+        self.write("1,2\n2,3,4\n", "ragged.csv")
+        self.write("1,2\n2,nan\n3,3\n4,5\n5,6\n", "nan.csv")
+        self.write("1,2\n2,3\n", "short.csv")
+        for arguments, message in (
+                (["nowhere.csv"], "nowhere.csv"),
+                (["words.csv"], "line 3"),
+                (["ragged.csv"], "line 2"),
+                (["nan.csv", "--model", "kww"], "X is not finite at 1 of 5 points"),
+                (["short.csv", "--model", "kww"], "cannot determine 4 parameters"),
+                (["data.csv", "--model", "inverse"], "inverse_log"),
+                (["data.csv", "--range", "5"], "FIRST:LAST"),
+                (["data.csv", "--range", "a:b"], "FIRST:LAST"),
+                (["data.csv", "--fix", "tau"], "NAME=NUMBER"),
+                (["data.csv", "--model", "kww", "--fix", "B=1"], "no parameter B"),
+                (["data.csv", "--observable", "mean_height"], "not a results file")):
+            with self.subTest(arguments=arguments):
+                result = self.jostle("fit", *arguments, expect=BAD_INPUT)
+                self.assertIn(message, result.stderr + result.stdout)
+
+
+class Results(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
+        self.run_scene("-o", "tiny.h5")
+
+    def test_every_sweep_point_is_fitted_with_errors_from_its_realizations(self):
+        result = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--json")
+        curves = json.loads(result.stdout)["curves"]
+        self.assertEqual([curve["sweep_point"] for curve in curves], [0, 1])
+        for curve in curves:
+            self.assertEqual(curve["realizations"], 3)
+            self.assertEqual(curve["range"], [1, 40])
+            for fit in curve["fits"]:
+                self.assertEqual(fit["points"], 40)
+                self.assertEqual(fit["resamples"], 3)
+                self.assertTrue(fit["sigma_given"])
+
+    def test_a_point_is_chosen_by_number_or_by_value(self):
+        texts = []
+        for point in ("1", "/protocol/0/tap/dilate=0.1"):
+            texts.append(self.jostle("fit", "tiny.h5", "--observable", "bottom_fraction", "--model",
+                                     "kww", "--sweep-point", point, "--range", "2:30").stdout)
+            self.assertIn("sweep point 1, 3 realizations", texts[-1])
+        self.assertEqual(*texts)
+
+    def test_threads_and_repeats_change_nothing(self):
+        texts = {self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--resample",
+                             "bootstrap", "--resamples", "40", "--threads", threads).stdout
+                 for threads in (1, 2, 3, 1)}
+        self.assertEqual(len(texts), 1)
+
+    def test_what_is_not_there_is_refused_with_what_is(self):
+        for arguments, message in (
+                ([], "--observable"),
+                (["--observable", "height"], "mean_height, bottom_fraction"),
+                (["--observable", "mean_height", "--sweep-point", "7"],
+                 "/protocol/0/tap/dilate=0.02"),
+                (["--observable", "mean_height", "--csv", "x.csv"], "--sweep-point")):
+            with self.subTest(arguments=arguments):
+                self.assertIn(message,
+                              self.jostle("fit", "tiny.h5", *arguments, expect=BAD_INPUT).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
