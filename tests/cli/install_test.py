@@ -31,11 +31,13 @@ class Install(Case):
         self.command(program, "check", prefix / "share/jostle/scenes/quickstart.json", "--no-pilot")
 
         self.command("cmake", "-G", "Ninja", "-S", SOURCE / "tests/cli/consumer", "-B", "consumer",
-                     f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release")
+                     f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
+                     f"-DEXAMPLES={SOURCE / 'docs/examples'}")
         self.command("cmake", "--build", "consumer")
         height = float(self.command("consumer/pour"))
         # 300 spheres on 36 d^2 at solids fraction 0.5 to 0.65 make a bed 6.7 to 8.7 d deep.
         self.assertTrue(3.2 < height < 4.5, height)
+        self.assertIn("power_approach: X = X_inf", self.command("consumer/own_model"))
 
 
 if __name__ == "__main__":
