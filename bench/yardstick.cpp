@@ -42,11 +42,20 @@ inline double cosine(double x) {
 }  // namespace
 
 Yardstick::Yardstick(const std::vector<std::array<double, 3>>& centres, double width_x,
-                     double width_y, double height, YardstickMove move, double max_step)
-    : width_{width_x, width_y, height}, move_(move), max_step_(max_step), theta_(theta_inverse()) {
+                     double width_y, double height, YardstickMove move, double max_step,
+                     YardstickLists lists)
+    : width_{width_x, width_y, height},
+      move_(move),
+      lists_(lists),
+      max_step_(max_step),
+      theta_(theta_inverse()) {
   for (const auto& c : centres) at_.push_back({c[0], c[1], c[2], 0});
-  skin_ = move == YardstickMove::polar ? std::max(0.3, 2 * max_step)
-                                       : 0.3 + 2 * std::sqrt(3.0) * max_step;
+  if (height > 0) {
+    skin_ = 1.0;
+  } else {
+    skin_ = move == YardstickMove::polar ? std::max(0.3, 2 * max_step)
+                                         : 0.3 + 2 * std::sqrt(3.0) * max_step;
+  }
   std::uint64_t seed = 12345;
   for (auto& word : state_) {
     for (auto& lane : word) {
@@ -125,63 +134,94 @@ void Yardstick::propose() {
   }
 }
 
-void Yardstick::rebuild() {
-  const auto n = static_cast<std::uint32_t>(at_.size());
-  const double reach = 1 + skin_;
+void Yardstick::sort_into_cells(double reach) {
   double top = 1;
   for (const Point& p : at_) top = std::max(top, p.z);
-  int cells[3];
-  double per[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = width_[axis] > 0 ? width_[axis] : top + 1e-9;
-    cells[axis] = std::max(1, static_cast<int>(extent / reach));
-    per[axis] = cells[axis] / extent;
+    cells_[axis] = std::max(1, static_cast<int>(extent / reach));
+    per_length_[axis] = cells_[axis] / extent;
   }
-  const auto cell_of = [&](const Point& p, int axis) {
-    const double x = axis == 0 ? p.x : (axis == 1 ? p.y : p.z);
-    return std::min(cells[axis] - 1, static_cast<int>(x * per[axis]));
-  };
-  std::vector<std::vector<std::uint32_t>> grid(cells[0] * cells[1] * cells[2]);
+  const auto n = static_cast<std::uint32_t>(at_.size());
+  cell_first_.assign(cells_[0] * cells_[1] * cells_[2] + 1, 0);
+  cell_of_.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    grid[(cell_of(at_[i], 2) * cells[1] + cell_of(at_[i], 1)) * cells[0] + cell_of(at_[i], 0)]
-        .push_back(i);
+    const int x = std::min(cells_[0] - 1, static_cast<int>(at_[i].x * per_length_[0]));
+    const int y = std::min(cells_[1] - 1, static_cast<int>(at_[i].y * per_length_[1]));
+    const int z = std::min(cells_[2] - 1, static_cast<int>(at_[i].z * per_length_[2]));
+    cell_of_[i] = {x, y, z};
+    ++cell_first_[(z * cells_[1] + y) * cells_[0] + x + 1];
   }
-  first_.assign(1, 0);
-  neighbours_.clear();
+  for (std::size_t c = 1; c < cell_first_.size(); ++c) cell_first_[c] += cell_first_[c - 1];
+  in_cells_.resize(n);
+  std::vector<std::uint32_t> next(cell_first_.begin(), cell_first_.end() - 1);
   for (std::uint32_t i = 0; i < n; ++i) {
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          int c[3] = {cell_of(at_[i], 0) + dx, cell_of(at_[i], 1) + dy, cell_of(at_[i], 2) + dz};
-          bool outside = false;
-          for (int axis = 0; axis < 3; ++axis) {
-            if (width_[axis] > 0) {
-              c[axis] = (c[axis] + cells[axis]) % cells[axis];
-            } else {
-              outside = outside || c[axis] < 0 || c[axis] >= cells[axis];
-            }
-          }
-          if (outside) continue;
-          for (const std::uint32_t j : grid[(c[2] * cells[1] + c[1]) * cells[0] + c[0]]) {
-            const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
-            const double z = image(at_[i].z - at_[j].z, 2);
-            if (j != i && x * x + y * y + z * z < reach * reach) neighbours_.push_back(j);
-          }
+    const auto& c = cell_of_[i];
+    in_cells_[next[(c[2] * cells_[1] + c[1]) * cells_[0] + c[0]]++] = i;
+  }
+}
+
+// The spheres within `reach` of sphere i, in the order of their cells.
+void Yardstick::append_neighbours(std::uint32_t i, double reach) {
+  const Point p = at_[i];
+  for (int dz = -1; dz <= 1; ++dz) {
+    int z = cell_of_[i][2] + dz;
+    if (z < 0 || z >= cells_[2]) {
+      if (width_[2] == 0) continue;
+      z += z < 0 ? cells_[2] : -cells_[2];
+    }
+    for (int dy = -1; dy <= 1; ++dy) {
+      int y = cell_of_[i][1] + dy;
+      y += y < 0 ? cells_[1] : (y >= cells_[1] ? -cells_[1] : 0);
+      for (int dx = -1; dx <= 1; ++dx) {
+        int x = cell_of_[i][0] + dx;
+        x += x < 0 ? cells_[0] : (x >= cells_[0] ? -cells_[0] : 0);
+        const int cell = (z * cells_[1] + y) * cells_[0] + x;
+        for (std::uint32_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
+          const std::uint32_t j = in_cells_[k];
+          const double ax = image(p.x - at_[j].x, 0), ay = image(p.y - at_[j].y, 1);
+          const double az = image(p.z - at_[j].z, 2);
+          if (j != i && ax * ax + ay * ay + az * az < reach * reach) neighbours_.push_back(j);
         }
       }
     }
-    // The nearest first; under gravity those below before those above.
-    const auto distance = [&](std::uint32_t j) {
-      const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
-      const double z = image(at_[i].z - at_[j].z, 2);
-      return x * x + y * y + z * z + (width_[2] == 0 && z < 0 ? 10 : 0);
-    };
-    std::sort(neighbours_.begin() + first_.back(), neighbours_.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  }
+}
+
+void Yardstick::rebuild() {
+  const auto n = static_cast<std::uint32_t>(at_.size());
+  const double reach = 1 + skin_;
+  sort_into_cells(reach);
+  first_.assign(1, 0);
+  neighbours_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    append_neighbours(i, reach);
+    lists_ == YardstickLists::sorted ? sort_neighbours(i) : put_near_first(i);
     first_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
   }
   origin_ = at_;
   ++list_rebuilds;
+}
+
+// Those that a step is likely to meet before the rest.
+void Yardstick::put_near_first(std::uint32_t i) {
+  constexpr double near = 1.1;
+  std::partition(neighbours_.begin() + first_.back(), neighbours_.end(), [&](std::uint32_t j) {
+    const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
+    const double z = image(at_[i].z - at_[j].z, 2);
+    return x * x + y * y + z * z < near * near;
+  });
+}
+
+// The nearest first, under gravity those below before those above.
+void Yardstick::sort_neighbours(std::uint32_t i) {
+  const auto distance = [&](std::uint32_t j) {
+    const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
+    const double z = image(at_[i].z - at_[j].z, 2);
+    return x * x + y * y + z * z + (width_[2] == 0 && z < 0 ? 10 : 0);
+  };
+  std::sort(neighbours_.begin() + first_.back(), neighbours_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
 }
 
 bool Yardstick::blocked(std::uint32_t i, const Point& q) {
