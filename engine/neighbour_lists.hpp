@@ -39,7 +39,7 @@ class NeighbourLists {
   /// Gives sphere i a new origin and list and enters it in the lists of its neighbours. False if a
   /// list is full: then all must be built anew.
   template <class Box>
-  bool renew(const Box& box, Index i, const PackedCentre& centre) {
+  [[gnu::noinline]] bool renew(const Box& box, Index i, const PackedCentre& centre) {
     origins_[i] = centre;
     grid_.relocate(i, unpacked(centre));
     if (!make_row(box, i)) return false;

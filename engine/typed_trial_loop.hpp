@@ -137,7 +137,9 @@ class TypedTrialLoop final : public TrialLoop {
             lists_.stride(),      lists_.origins(), lists_.half_skin_squared()};
   }
 
-  BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
+  // Never inlined, as are the rare paths out of it: the code of the loop then does not depend on
+  // what else a program holds (bench/instruction_costs.py).
+  [[gnu::noinline]] BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
     BatchCounts counts;
     std::uint32_t first = begin, last = end;
     if constexpr (rise == Rise::refused) {
@@ -178,7 +180,7 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   // Whether a neighbour overlaps a sphere i placed at `target`.
-  static bool blocked(const View& here, std::uint32_t i, const PackedCentre& target,
+  [[gnu::always_inline]] static bool blocked(const View& here, std::uint32_t i, const PackedCentre& target,
                       std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
     const auto* const last = row + 1 + *row;
@@ -189,7 +191,7 @@ class TypedTrialLoop final : public TrialLoop {
     return false;
   }
 
-  bool rise_passes(std::uint64_t trial, double dz) const {
+  [[gnu::noinline]] bool rise_passes(std::uint64_t trial, double dz) const {
     const double u = (philox_block(key_, trial, 1)[0] + 0.5) * 0x1p-32;
     return u < exponential(-(metropolis_.beta * dz));
   }
@@ -246,7 +248,7 @@ class TypedTrialLoop final : public TrialLoop {
     return (rise == Rise::impossible ? 1.0 : 1.7320508075688773) * state_.step * 1.000001;
   }
 
-  void build_lists() {
+  [[gnu::noinline]] void build_lists() {
     Vec3 drift;
     if constexpr (rise == Rise::impossible) drift.z = -0.43 * state_.step;
     if constexpr (rise == Rise::refused) drift.z = -0.5 * state_.step;
