@@ -37,8 +37,15 @@ double sphere_volume_in_slab(double z, double low, double high) {
 double solids_fraction(const Packing& packing, HeightWindow window) {
   assert(window.low < window.high);
   double volume = 0;
-  for (const Vec3& centre : packing.centres) {
-    volume += sphere_volume_in_slab(centre.z, window.low, window.high);
+  const auto add = [&](double shift) {
+    for (const Vec3& centre : packing.centres) {
+      volume += sphere_volume_in_slab(centre.z + shift, window.low, window.high);
+    }
+  };
+  add(0);
+  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
+    add(bulk->height);
+    add(-bulk->height);
   }
   return volume / (footprint_area(packing.container) * (window.high - window.low));
 }

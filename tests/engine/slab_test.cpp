@@ -52,6 +52,11 @@ TEST_CASE("one hexagonal layer fills 0.6046 of its height") {
   CHECK(solids_fraction(layer, {0, 1}) == Approx(0.6045997880780726).epsilon(1e-12));
 }
 
+TEST_CASE("a fully periodic box holds all of every sphere, those on its ends too") {
+  const Packing packing{FullyPeriodicBox{3, 3, 4}, {{1, 1, 0.1}, {2, 2, 3.8}, {1, 2.5, 2}}};
+  CHECK(solids_fraction(packing, {0, 4}) == Approx(3 * sphere_volume / 36).epsilon(1e-14));
+}
+
 TEST_CASE("a cylinder's fraction is of its round footprint") {
   const Packing packing{Cylinder{3}, {{1.5, 1.5, 0.5}}};
   CHECK(solids_fraction(packing, {0, 1}) ==
