@@ -11,7 +11,13 @@
 namespace jostle {
 
 /// What a stream of a realization is for. The numbers are part of the results' identity.
-enum class Purpose : std::uint32_t { start = 1, tap = 2, trials = 3, resampling = 4 };
+enum class Purpose : std::uint32_t {
+  start = 1,
+  tap = 2,
+  trials = 3,
+  resampling = 4,
+  start_trials = 5
+};
 
 enum class StreamKey : std::uint64_t {};
 

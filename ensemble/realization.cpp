@@ -15,8 +15,8 @@ namespace jostle {
 
 namespace {
 
-// Matched streams: start and taps draw at every sweep point what they draw at the point without
-// one.
+// Matched streams: the start, its relaxation and the taps draw at every sweep point what they draw
+// at the point without one.
 StreamKey key_of(const Plan& plan, std::uint32_t index, Purpose purpose) {
   const bool shared = plan.streams == Streams::matched && purpose != Purpose::trials;
   return stream_key(plan.seed, shared ? 0 : plan.point_id, index, purpose);
@@ -105,6 +105,10 @@ void Realization::record(Slice& slice) {
     slice.snapshot = snapshot_of_row();
   }
   ++state_.rows;
+  if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
+    state_.move = loop_->state();
+    loop_.reset();
+  }
 }
 
 // Windows by quantiles are those of the bed at tap 0, for the whole realization.
@@ -147,7 +151,8 @@ RealizationState Realization::state() const {
 // A new loop is a resumed one: it takes over the centres and where the trials stand.
 TrialLoop& Realization::loop() {
   if (loop_) return *loop_;
-  loop_ = make_trial_loop(plan_.container, plan_.move, key_of(plan_, index_, Purpose::trials));
+  const Purpose purpose = state_.rows == 0 ? Purpose::start_trials : Purpose::trials;
+  loop_ = make_trial_loop(plan_.container, plan_.move, key_of(plan_, index_, purpose));
   loop_->load(packing_);
   if (state_.move.next_trial > 0) loop_->restore(state_.move);
   return *loop_;

@@ -173,6 +173,19 @@ TEST_CASE(
   CHECK(straight(plan).snapshots[1].centres != straight(other_point).snapshots[1].centres);
 }
 
+TEST_CASE("Matched points begin from the same bed also where the start is relaxed") {
+  Plan plan = small_plan();
+  plan.start = RandomSettle{};
+  plan.snapshots.taps = {0, 1};
+  plan.streams = Streams::matched;
+  Plan other_point = plan;
+  other_point.point_id = 77;
+  const RecordedRealization one = straight(plan), other = straight(other_point);
+  CHECK(one.rows[0].relaxation.sweeps > 0);
+  CHECK(one.snapshots[0].centres == other.snapshots[0].centres);
+  CHECK(one.snapshots[1].centres != other.snapshots[1].centres);
+}
+
 TEST_CASE("A start that cannot be made says why") {
   Plan plan = small_plan();
   plan.container = PeriodicBox{4.1, 4.3};
