@@ -124,8 +124,14 @@ double Side::crossing(Point low, Point high, double threshold) {
 // Outwards until z has passed both thresholds, or as far as it is of interest.
 std::vector<Side::Point> Side::march(double step) {
   const bool logarithmic = !transform_.is_identity();
-  const double reach =
-      logarithmic ? reach_of_logarithm : reach_of_errors * std::max(step, std::abs(centre_));
+  double reach = reach_of_logarithm;
+  if (!logarithmic) reach = reach_of_errors * std::max(step, std::abs(centre_));
+  if (!logarithmic && problem_.model.parameters()[index_].unit == ParameterUnit::value) {
+    // A standard error can be anything where the problem is degenerate; the curve's range cannot.
+    const auto [low, high] = std::minmax_element(problem_.curve.x.begin(), problem_.curve.x.end());
+    reach = reach_of_errors * std::max(*high - *low, std::abs(centre_));
+    step = std::min(step, *high - *low);
+  }
   if (logarithmic) step = std::min(step, 1.0);
   std::vector<Point> points = {{0, 0, problem_.minimum}};
   int retries = 0;
