@@ -12,10 +12,11 @@ namespace {
 // A clearance this small leaves a centre no room to roll: it is held in the middle.
 constexpr double least_room = 1e-6;
 
-// Walls that keep a centre in [1/2, width - 1/2] along one direction.
-void add_walls(std::vector<Obstacle>& walls, Vec3 along, double width) {
+// Walls that keep a centre in [1/2, width - 1/2] along one direction, or, in a tube too narrow to
+// roll in, on its axis.
+void add_walls(std::vector<Obstacle>& walls, Vec3 along, double width, bool on_axis) {
   double low = sphere_radius, high = width - sphere_radius;
-  if (high - low < least_room) low = high = 0.5 * width;
+  if (on_axis || high - low < least_room) low = high = 0.5 * width;
   walls.push_back({Obstacle::Kind::wall, along, low});
   walls.push_back({Obstacle::Kind::wall, -1.0 * along, -high});
 }
@@ -51,8 +52,8 @@ PourBed::PourBed(const Container& container, std::uint32_t n_spheres)
     const double axis = 0.5 * cylinder->diameter;
     tube_ = Obstacle{Obstacle::Kind::tube, {axis, axis, 0}, reach};
   } else if (!std::holds_alternative<PeriodicBox>(container)) {
-    add_walls(walls_, {1, 0, 0}, width_x(container));
-    add_walls(walls_, {0, 1, 0}, width_y(container));
+    add_walls(walls_, {1, 0, 0}, width_x(container), cylinder != nullptr);
+    add_walls(walls_, {0, 1, 0}, width_y(container), cylinder != nullptr);
   }
 }
 

@@ -132,6 +132,11 @@ TEST_CASE("Pours work in every legal width, however narrow") {
     const Packing tube = poured(Cylinder{width}, 300, 2);
     CHECK(deepest_overlap_brute_force(tube).depth <= 1e-12);
   }
+  for (const double room : {1e-9, 0.9e-6, 1.1e-6, 1.9e-6, 2.1e-6, 1e-5}) {
+    CAPTURE(room);
+    const Packing tube = poured(Cylinder{1 + room}, 50, 2);
+    CHECK(deepest_overlap_brute_force(tube).depth <= 1e-12);
+  }
   for (const double width : {2 + 1e-9, 2.01, 2.3, 2.9, 3.0, 3.7, 4.0}) {
     CAPTURE(width);
     const Packing packing = poured(PeriodicBox{width, width + 0.5}, 300, 3);
