@@ -17,7 +17,7 @@ struct MoveState {
   double step = 0;                  // Metropolis: the current largest displacement, diameters
   std::uint64_t window_trials = 0;  // trials counted since the last adaptation of the step
   std::uint64_t window_base = 0;    // of them, those the share is taken of
-  std::uint64_t window_accepted = 0;
+  std::uint64_t window_accepted = 0;  // of these, the accepted ones
   bool operator==(const MoveState&) const = default;
 };
 

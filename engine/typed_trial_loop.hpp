@@ -108,7 +108,7 @@ class TypedTrialLoop final : public TrialLoop {
   static constexpr double spare_skin = 0.2;
 
   struct BatchCounts {
-    std::uint64_t accepted = 0, rising = 0, distance_tests = 0;
+    std::uint64_t accepted = 0, rising = 0, accepted_rising = 0, distance_tests = 0;
   };
 
   void propose(std::uint64_t first) {
@@ -175,6 +175,7 @@ class TypedTrialLoop final : public TrialLoop {
       }
       here.centres[i] = target;
       ++counts.accepted;
+      if constexpr (rise == Rise::thermal) counts.accepted_rising += batch_.dz[t] > 0;
     }
     return counts;
   }
@@ -234,7 +235,7 @@ class TypedTrialLoop final : public TrialLoop {
     const bool all = rule.base == AcceptanceBase::all_trials;
     state_.window_trials += trials;
     state_.window_base += all ? trials : trials - counts.rising;
-    state_.window_accepted += counts.accepted;
+    state_.window_accepted += all ? counts.accepted : counts.accepted - counts.accepted_rising;
     if (state_.window_trials < rule.every_trials) return;
     if (static_cast<double>(state_.window_accepted) <
         rule.threshold * static_cast<double>(state_.window_base)) {

@@ -181,6 +181,17 @@ TEST_CASE("counted over trials that do not rise, a dilute gas keeps its step") {
   CHECK(loop->state().step == 0.1);
 }
 
+TEST_CASE("counted over trials that do not rise, accepted rises do not count") {
+  // In equilibrium as many rises as falls are accepted: both together outnumber the falling trials,
+  // of which the floor refuses some.
+  MetropolisMove move{1.0, 1.0};
+  move.adaptation = StepAdaptation{0.9, 1000, 1, AcceptanceBase::not_upward, false};
+  const auto loop = make_trial_loop(PeriodicBox{5, 5}, move, key);
+  loop->load({PeriodicBox{5, 5}, {{1, 1, 0.5}}});
+  loop->run(5'000);
+  CHECK(loop->state().step == Approx(std::pow(0.9, 5)).epsilon(1e-12));
+}
+
 TEST_CASE("steps of any size leave no overlap") {
   const Packing start = random_packing(WalledBox{5, 5}, 50, 10, 21);
   for (const double step : {1e-9, 1e-3, 0.9, 2.0}) {
