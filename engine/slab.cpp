@@ -27,6 +27,13 @@ double quantile(std::vector<double>& heights, double q) {
   return low + (position - static_cast<double>(below)) * (high - low);
 }
 
+// Area of the cut through a sphere centred at height z.
+double cut_area(double z, double height) {
+  constexpr double pi = 6 * sphere_volume;
+  const double squared = 0.25 - (height - z) * (height - z);
+  return squared > 0 ? pi * squared : 0;
+}
+
 }  // namespace
 
 double sphere_volume_in_slab(double z, double low, double high) {
@@ -35,11 +42,15 @@ double sphere_volume_in_slab(double z, double low, double high) {
 }
 
 double solids_fraction(const Packing& packing, HeightWindow window) {
-  assert(window.low < window.high);
-  double volume = 0;
+  assert(window.low <= window.high);
+  constexpr double thin = 1e-5;  // the mean over so thin a slab is that of its middle to 1e-10
+  const bool is_cut = window.high - window.low < thin;
+  const double middle = 0.5 * (window.low + window.high);
+  double solid = 0;
   const auto add = [&](double shift) {
     for (const Vec3& centre : packing.centres) {
-      volume += sphere_volume_in_slab(centre.z + shift, window.low, window.high);
+      const double z = centre.z + shift;
+      solid += is_cut ? cut_area(z, middle) : sphere_volume_in_slab(z, window.low, window.high);
     }
   };
   add(0);
@@ -47,7 +58,8 @@ double solids_fraction(const Packing& packing, HeightWindow window) {
     add(bulk->height);
     add(-bulk->height);
   }
-  return volume / (footprint_area(packing.container) * (window.high - window.low));
+  const double depth = is_cut ? 1 : window.high - window.low;
+  return solid / (footprint_area(packing.container) * depth);
 }
 
 HeightWindow resolve(const Window& window, const Packing& packing) {

@@ -63,6 +63,20 @@ TEST_CASE("a cylinder's fraction is of its round footprint") {
         Approx(sphere_volume / (std::numbers::pi * 2.25)).epsilon(1e-14));
 }
 
+TEST_CASE("a window without depth gives the area fraction of its plane cut") {
+  const Packing layer{PeriodicBox{4, 4}, {{1, 1, 0.5}, {3, 3, 0.5}, {1, 3, 0.7}}};
+  const double cut = std::numbers::pi * (0.25 + 0.25 + 0.25 - 0.04) / 16;
+  const HeightWindow window = resolve(QuantileWindow{0, 0.5}, layer);
+  CHECK(window == HeightWindow{0.5, 0.5});
+  CHECK(solids_fraction(layer, window) == Approx(cut).epsilon(1e-14));
+  // To either side of the depth below which the middle stands for the slab.
+  for (const double depth : {1e-16, 1e-9, 0.99e-5, 1.01e-5}) {
+    CAPTURE(depth);
+    const HeightWindow thin{0.5 - depth / 2, 0.5 + depth / 2};
+    CHECK(solids_fraction(layer, thin) == Approx(cut).margin(2e-10).epsilon(0));
+  }
+}
+
 TEST_CASE("quantile windows interpolate order statistics") {
   Packing packing{PeriodicBox{4, 4}, {}};
   for (const double z : {5.0, 1.0, 3.0, 2.0, 4.0}) packing.centres.push_back({0, 0, z});
