@@ -1,5 +1,7 @@
 #include "engine/random.hpp"
 
+#include <algorithm>
+
 namespace jostle {
 
 namespace {
@@ -32,7 +34,9 @@ std::uint64_t RandomStream::next64() {
 }
 
 double RandomStream::uniform() {
-  return (static_cast<double>(next64() >> 11) + 0.5) * 0x1p-53;
+  // The sum has 53 bits, too: its last value would round up to 1.
+  constexpr double largest = 1 - 0x1p-53;
+  return std::min((static_cast<double>(next64() >> 11) + 0.5) * 0x1p-53, largest);
 }
 
 std::uint64_t RandomStream::below(std::uint64_t n) {
