@@ -11,12 +11,14 @@ namespace {
 
 constexpr std::uint64_t most_sweeps = 1'000'000'000;
 constexpr std::uint64_t most_trials = 1'000'000'000'000;
+// A longer step could go round the narrowest periodic box.
+constexpr Range steps = between(1e-9, least_periodic_width);
 
 Move read_polar(const Reader& in) {
   PolarMove move;
   if (!in.is_object_of({"max_step", "theta0", "law"})) return move;
-  in.read("max_step", move.max_step, between(1e-6, 1));
-  in.read("theta0", move.theta0, between(1e-6, 100));
+  in.read("max_step", move.max_step, steps);
+  in.read("theta0", move.theta0, between(1e-6, 1000));
   in.read_name("law", move.law, theta_laws);
   return move;
 }
@@ -42,12 +44,12 @@ std::optional<StepAdaptation> read_adaptation(const Reader& in) {
 Move read_metropolis(const Reader& in) {
   MetropolisMove move;
   if (!in.is_object_of({"max_step", "beta", "adapt"})) return move;
-  in.read("max_step", move.max_step, between(1e-6, 1));
+  in.read("max_step", move.max_step, steps);
   if (const auto beta = in.find("beta"); beta && beta->value() != "infinity") {
     if (beta->value().is_number()) {
-      move.beta = beta->number(above(0, 1e9)).value_or(move.beta);
+      move.beta = beta->number(above(0, 1e300)).value_or(move.beta);
     } else {
-      beta->fault("expected a number above 0 and at most 1000000000, or \"infinity\", found " +
+      beta->fault("expected a number above 0 and at most 1e+300, or \"infinity\", found " +
                   described(beta->value()));
     }
   }
