@@ -31,7 +31,7 @@ struct MeanHeightStop {
 
 /// Stop when the solids fraction in `window` changes by at most `change` between two measurements
 /// `every_trials` apart, `times` times in a row. Rosato et al. 2010, sec. II: change = 0.001,
-/// 1e6 trials, twice. It can stop a bed in mid-air (docs/accuracy of the rule: see the scenes).
+/// 1e6 trials, twice. It can stop a bed in mid-air.
 struct BulkFractionStop {
   double change = 1e-3;
   std::uint64_t every_trials = 1'000'000;
