@@ -23,9 +23,9 @@ TEST_CASE("Philippe & Bideau: Phi_b rises with taps between periodic sides", "[s
                                {{"container", {{"width", 8}}},
                                 {"spheres", 1024},
                                 {"observe", {"bottom_fraction"}},
-                                {"protocol", {{{"tap", {{"dilate", 0.05}}}, {"count", 12}}}},
+                                {"protocol", {{{"tap", {{"dilate", 0.05}}}, {"count", 25}}}},
                                 {"snapshots", nullptr}});
-  const Moments rise = change(run_series(plan, 6, "bottom_fraction"), 0, 12);
+  const Moments rise = change(run_series(plan, 8, "bottom_fraction"), 0, 25);
   CAPTURE(rise.mean(), rise.standard_error());
   CHECK(rise.mean() > 3 * rise.standard_error());
 }
