@@ -74,9 +74,11 @@ class Check {
   }
 
   void observables_have_names() {
-    // Columns that every series has beside the observables.
+    // What every sweep point has beside the observables.
     std::map<std::string, std::string> taken;
     for (const std::string column : relaxation_columns) taken[column] = "a column of every series";
+    for (const std::string beside : names_beside_series)
+      taken[beside] = "what is stored beside the observables";
     for (std::size_t i = 0; i < scene_.observables.size(); ++i) {
       const std::string name = name_of(scene_.observables[i]);
       const std::string here = fmt::format("/observe/{}", i);

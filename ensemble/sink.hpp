@@ -27,6 +27,9 @@ struct RelaxationRecord {
 };
 /// The names under which the fields above are stored beside the observables, in order.
 inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "capped"};
+/// What else is stored beside the observables of a sweep point: none of them may be called so.
+inline constexpr const char* names_beside_series[] = {"tap",    "realization", "status",
+                                                      "reason", "rows",        "trial_key"};
 
 /// One row of the series: tap 0 is the start.
 struct TapRow {
