@@ -2,10 +2,12 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
 #include <exception>
 
 #include "cli/commands.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_error.hpp"
 #include "cli/version.hpp"
 
 namespace jostle {
@@ -46,12 +48,15 @@ int parse_and_run(int argc, char** argv) {
 /// Every error ends here, and says on stderr what is wrong.
 int run_program(int argc, char** argv) {
   try {
-    return parse_and_run(argc, argv);
+    const int code = parse_and_run(argc, argv);
+    if (std::fflush(stdout) == 0 || code != exit_ok) return code;
+    print_to_standard_error("jostle: cannot write to standard output\n");
+    return exit_broken_surroundings;
   } catch (const BadInput& error) {
-    fmt::print(stderr, "jostle: {}\n", error.what());
+    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
     return exit_bad_input;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "jostle: {}\n", error.what());
+    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
     return exit_broken_surroundings;
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/durations.hpp"
+#include "cli/standard_error.hpp"
 #include "cli/text_table.hpp"
 
 namespace jostle {
@@ -40,7 +41,7 @@ ProgressDisplay::~ProgressDisplay() {
   if (!clock_.joinable()) return;
   clock_.request_stop();
   clock_.join();
-  if (style_ == ProgressStyle::live) fmt::print(stderr, "{}", clear_line);
+  if (style_ == ProgressStyle::live) print_to_standard_error(clear_line);
 }
 
 void ProgressDisplay::show_until(std::stop_token token) {
@@ -56,12 +57,7 @@ void ProgressDisplay::show_until(std::stop_token token) {
     const std::chrono::duration<double> since = now - last_time;
     const double rate = static_cast<double>(trials - last_trials) / since.count();
     const std::string line = progress_line(progress_, ahead_, rate, now - began);
-    if (live) {
-      fmt::print(stderr, "{}{}", clear_line, line);
-    } else {
-      fmt::print(stderr, "jostle: {}\n", line);
-    }
-    std::fflush(stderr);
+    print_to_standard_error(live ? clear_line + line : "jostle: " + line + "\n");
     last_time = now;
     last_trials = trials;
   }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "cli/provenance.hpp"
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_error.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/text_table.hpp"
 #include "results/error.hpp"
@@ -176,13 +178,15 @@ bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun
   }
   run.store->finish();
   if (!arguments.quiet) {
-    fmt::print("{}{}", report(ResultsFile(run.output)),
-               process_line(progress, std::chrono::steady_clock::now() - began, threads));
+    const std::string text =
+        report(ResultsFile(run.output)) +
+        process_line(progress, std::chrono::steady_clock::now() - began, threads);
+    std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
   }
   const bool stopped = summary.done + summary.failed < pending.size();
   if (stopped) {
-    fmt::print(stderr, "jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
-               resume_command(arguments));
+    print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
+                                        resume_command(arguments)));
   }
   return stopped;
 }
@@ -198,10 +202,10 @@ int run(const RunArguments& arguments) {
   try {
     if (compute(arguments, loaded, run, threads)) return exit_stopped;
   } catch (const ResultsError& error) {
-    fmt::print(stderr,
-               "jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "
-               "with\n  {}\n",
-               error.what(), resume_command(arguments));
+    print_to_standard_error(
+        fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "
+                    "with\n  {}\n",
+                    error.what(), resume_command(arguments)));
     return exit_broken_surroundings;
   }
   return exit_code_of(ResultsFile(run.output));
