@@ -42,10 +42,11 @@ const char* name(RealizationStatus status) {
   return "unknown";
 }
 
-/// A file whose run was killed says "running" still: the lock tells.
+/// A file whose run was killed says "running" still, and one that a run goes on from says what it
+/// was: the lock tells.
 std::string state_of(const RunStatus& status) {
-  if (status.state != RunState::running) return name(status.state);
   if (status.owner && status.owner->alive) return "running";
+  if (status.state != RunState::running) return name(status.state);
   return "killed; --resume goes on";
 }
 

@@ -14,9 +14,8 @@ namespace {
 /// Replaces what a part knows better; a part may vanish while a live run folds.
 void take_parts(const ResultsFile& file, std::vector<RealizationSummary>& realizations) {
   for (const RealizationId id : realizations_with_parts(file.path())) {
-    const auto place = std::find_if(realizations.begin(), realizations.end(),
-                                    [&](const RealizationSummary& one) { return one.id == id; });
-    if (place == realizations.end()) continue;
+    const auto place = std::ranges::lower_bound(realizations, id, {}, &RealizationSummary::id);
+    if (place == realizations.end() || place->id != id) continue;
     const std::string path = state_path(file.path(), id);
     try {
       *place = summary_of(id, read_state(path, {file.run_id(), id}));

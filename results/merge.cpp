@@ -11,6 +11,7 @@
 #include "results/lock.hpp"
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
+#include "results/run_parts.hpp"
 
 namespace jostle {
 namespace {
@@ -27,10 +28,15 @@ void check_same_study(const ResultsFile& first, const ResultsFile& other) {
       first.study().points.size() != other.study().points.size())
     throw ResultsError(other.path(), "holds another scene than " + first.path() +
                                          "; compare /scene/resolved of both");
+  if (const auto point = other_start(first.study(), other.study()))
+    throw ResultsError(other.path(),
+                       fmt::format("starts sweep point {} from another packing than {}: "
+                                   "the file it was read from had changed",
+                                   *point, first.path()));
 }
 
 void claim(Owners& owners, const ResultsFile& file) {
-  if (file.state() != RunState::complete)
+  if (file.state() != RunState::complete || parts_exist(file.path()))
     throw ResultsError(file.path(), "is not finished; finish it by jostle run --resume");
   for (const RealizationSummary& summary : file.realizations()) {
     if (summary.status == RealizationStatus::missing) continue;
@@ -66,6 +72,11 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
   struct stat status;
   if (!force && ::stat(output.c_str(), &status) == 0)
     throw ResultsError(output, "exists already; overwrite it by --force, or choose another name");
+  if (!force && parts_exist(output))
+    throw ResultsError(
+        parts_folder(output),
+        "holds parts of another run, which the merged file would cut off from theirs; "
+        "choose another name, or discard them by --force");
   if (inputs.empty()) throw ResultsError(output, "nothing to merge");
   std::vector<ResultsFile> files;
   for (const std::string& input : inputs) files.emplace_back(input);
@@ -76,6 +87,7 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
   }
   const Study& study = files.front().study();
   check_gaps(owners, study, output);
+  remove_parts(output);
   write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
                          [&](RealizationId id) { return owners.at(id)->record(id); }});
 }

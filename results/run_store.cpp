@@ -23,6 +23,11 @@ bool file_exists(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0;
 }
 
+std::uint64_t file_bytes(const std::string& path) {
+  struct stat status;
+  return ::stat(path.c_str(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+}
+
 /// A study with another scene or other sizes: the file must say so before parts follow it.
 bool differs(const Study& stored, const Study& study) {
   return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
@@ -78,7 +83,10 @@ void RunStore::Impl::go_on(const Provenance& provenance) {
   processes.push_back(provenance);
   in_parts = verify_parts(path, run_id, study);
   remove_file(temporary_name(path));
-  const std::uint64_t needed = disk_estimate(study, shard), have = parts_bytes(path);
+  // What lies there already is a part of the estimate: a chain of runs that fits at first fits to
+  // its end.
+  const std::uint64_t needed = disk_estimate(study, shard),
+                      have = parts_bytes(path) + file_bytes(path);
   if (needed > have) require_free_space(path, needed - have);
   if (differs(file->study(), study))
     fold();
@@ -96,6 +104,11 @@ void RunStore::Impl::check_shard_and_points() const {
   if (file->study().points.size() != study.points.size())
     throw ResultsError(path, fmt::format("has {} sweep points, but the scene has {}",
                                          file->study().points.size(), study.points.size()));
+  if (const auto point = other_start(file->study(), study))
+    throw ResultsError(path,
+                       fmt::format("was begun from another packing: the file that sweep point "
+                                   "{} starts from has changed since; restore it",
+                                   *point));
 }
 
 void RunStore::Impl::open_file() {

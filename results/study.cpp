@@ -5,15 +5,23 @@
 #include <openssl/crypto.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <ctime>
 #include <fstream>
 
+#include "results/checksum.hpp"
 #include "results/record.hpp"
 
 namespace jostle {
 namespace {
+
+/// The scene names a file only by its path: what it held when the run began is known by this.
+std::string sum_of_given(const Start& start) {
+  const auto* given = std::get_if<GivenPacking>(&start);
+  return given ? hex(sha256(std::as_bytes(std::span(*given->centres)))) : "";
+}
 
 StudyPoint make_point(const Plan& plan) {
   StudyPoint point{.label = plan.label,
@@ -24,7 +32,8 @@ StudyPoint make_point(const Plan& plan) {
                    .n_spheres = plan.n_spheres,
                    .taps = total_taps(plan),
                    .observables = {},
-                   .snapshots = plan.snapshots};
+                   .snapshots = plan.snapshots,
+                   .start_sum = sum_of_given(plan.start)};
   for (const Observable& observable : plan.observables)
     point.observables.push_back(label(observable));
   return point;
@@ -77,6 +86,14 @@ Study make_study(std::span<const Plan> plans, std::string scene, std::string res
   Study study{std::move(scene), std::move(resolved_scene), realizations, {}};
   for (const Plan& plan : plans) study.points.push_back(make_point(plan));
   return study;
+}
+
+std::optional<std::uint32_t> other_start(const Study& a, const Study& b) {
+  for (std::uint32_t p = 0; p < std::min(a.points.size(), b.points.size()); ++p) {
+    const std::string &one = a.points[p].start_sum, &other = b.points[p].start_sum;
+    if (!one.empty() && !other.empty() && one != other) return p;
+  }
+  return std::nullopt;
 }
 
 bool in_share(const Shard& shard, const Study& study, RealizationId id) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ struct StudyPoint {
   std::uint64_t taps = 0;                    // the series have taps + 1 rows: tap 0 is the start
   std::vector<ObservableLabel> observables;  // as the scene lists them
   Snapshots snapshots;
+  std::string start_sum{};  // SHA-256 of the centres of a start from a file; else empty
 };
 
 /// A whole study: every sweep point times `realizations`.
@@ -37,6 +39,9 @@ struct Study {
 /// The study of the given plans, one point a plan.
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations);
+
+/// The first sweep point that starts in both studies from files, but from different packings.
+std::optional<std::uint32_t> other_start(const Study& a, const Study& b);
 
 /// The share number `index` of `count`, index in 1 .. count. A realization belongs to share
 /// (realization * n_points + point) % count + 1: more realizations leave the old ones where they

@@ -60,6 +60,8 @@ StudyPoint read_point(hid_t sweep, std::uint32_t number) {
     point.sweep_values.emplace_back(pointers[i], values.at(i));
   point.observables = read_observables(group);
   point.snapshots = read_snapshot_settings(group);
+  if (checked(H5Aexists(group, "start_sha256")) > 0)
+    point.start_sum = read_text_attribute(group, "start_sha256");
   return point;
 }
 

@@ -63,6 +63,7 @@ void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
   write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
   write_attribute(group, "contact_cut", point.snapshots.contact_cut);
   write_attribute(group, "bin_width", point.snapshots.bin_width);
+  if (!point.start_sum.empty()) write_attribute(group, "start_sha256", point.start_sum);
 }
 
 /// The sweep as a table for people and programs: label, id and values of every point.

@@ -1,9 +1,11 @@
 """Exit codes, messages, and what each command prints."""
 
 import json
+import subprocess
 import unittest
 
-from support import BAD_INPUT, BROKEN, SOURCE, TINY, Case, changed
+from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY, Case,
+                     changed)
 
 
 class Help(Case):
@@ -106,7 +108,8 @@ class Runs(Case):
         self.write(TINY)
         result = self.jostle("run", "scene.json", "--quiet")
         self.assertEqual((result.stdout, result.stderr), ("", ""))
-        self.jostle("run", "scene.json", "--force", environment={"JOSTLE_QUIET": "1"})
+        result = self.jostle("run", "scene.json", "--force", environment={"JOSTLE_QUIET": "1"})
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
 
     def test_an_existing_file_is_kept_unless_forced(self):
         self.write(TINY)
@@ -126,6 +129,31 @@ class Runs(Case):
         self.write(scene)
         self.assertEqual(
             self.run_scene().stdout.count("12 of 12 relaxations ended at the cap"), 2)
+
+    def test_a_resume_from_a_changed_packing_file_is_refused(self):
+        self.write(TINY)
+        self.run_scene("-o", "first.h5")
+        later = changed(TINY, start={"file": "first.h5"})
+        self.write(later, "later.json")
+        self.run_scene("--time-limit", "0s", scene="later.json", expect=STOPPED)
+        self.write(changed(TINY, seed=5))
+        self.run_scene("-o", "first.h5", "--force")
+        result = self.run_scene("--resume", scene="later.json", expect=BROKEN)
+        self.assertIn("starts from has changed", result.stderr)
+
+    def exit_code_writing_to_a_full_disk(self, stream, *arguments):
+        streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with open("/dev/full", "w") as full:
+            return subprocess.run([JOSTLE, *arguments], cwd=self.folder, env=PLAIN, timeout=600,
+                                  **{**streams, stream: full}).returncode
+
+    def test_a_log_that_cannot_be_written_ends_no_run(self):
+        self.write(TINY)
+        run = ("run", "scene.json", "--force")
+        self.assertEqual(self.exit_code_writing_to_a_full_disk("stderr", *run), OK)
+        self.assertEqual(
+            self.exit_code_writing_to_a_full_disk("stderr", *run, "--time-limit", "0s"), STOPPED)
+        self.assertEqual(self.exit_code_writing_to_a_full_disk("stdout", "schema"), BROKEN)
 
     def test_output_in_a_missing_folder_is_a_broken_surrounding(self):
         self.write(TINY)

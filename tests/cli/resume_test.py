@@ -40,7 +40,7 @@ class Stops(Case):
                 self.assertEqual(process.returncode, STOPPED, err)
                 self.assertIn(f"stopped by {number.name}", err)
                 self.assertEqual(self.info("tiny.h5")["state"], "interrupted")
-                self.assertNotIn("tiny.parts", self.files())
+                self.assertNotIn("tiny.h5.parts", self.files())
                 self.resume_by_the_printed_command(err)
                 self.assertEqual(self.digest("tiny.h5"), straight)
                 (self.folder / "tiny.h5").unlink()

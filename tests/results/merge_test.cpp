@@ -4,8 +4,10 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 
 #include "results/error.hpp"
+#include "results/part.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 
@@ -103,6 +105,28 @@ TEST_CASE("what cannot be merged is refused by name, and nothing is written") {
     store->finish();
     CHECK_THROWS_WITH(merging({shards[0], folder / "half.h5", shards[2]}),
                       Contains("half.h5: is not finished"));
+  }
+  SECTION("an input with parts that are not folded") {
+    std::filesystem::create_directory(shards[1] + ".parts");
+    std::ofstream(state_path(shards[1], {0, 1})) << "of a realization run again";
+    CHECK_THROWS_WITH(merging(shards), Contains("shard2.h5: is not finished"));
+  }
+  SECTION("parts of another run beside the output") {
+    std::filesystem::create_directory(output + ".parts");
+    std::ofstream(state_path(output, {0, 1})) << "of a run whose file is gone";
+    CHECK_THROWS_WITH(merging(shards), Contains("all.h5.parts: holds parts of another run"));
+  }
+  SECTION("a start from another packing") {
+    Study study = synthetic::study();
+    std::vector<std::string> paths;
+    for (std::uint32_t i = 1; i <= 2; ++i) {
+      study.points[1].start_sum = i == 1 ? "one" : "another";
+      paths.push_back(folder / fmt::format("from{}.h5", i));
+      const auto store = RunStore::create(paths.back(), study, {i, 2}, provenance());
+      synthetic::run_pending(*store, study);
+      store->finish();
+    }
+    CHECK_THROWS_WITH(merging(paths), Contains("from2.h5: starts sweep point 1 from another"));
   }
   SECTION("a damaged input") {
     std::filesystem::resize_file(shards[1], std::filesystem::file_size(shards[1]) - 1);

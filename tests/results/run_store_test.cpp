@@ -231,3 +231,22 @@ TEST_CASE("series longer than a segment are published piece by piece") {
   store->finish();
   CHECK(digest_of(path) == straight_digest(folder, sizes));
 }
+
+TEST_CASE("a run whose start file has changed since is refused") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  Study study = synthetic::study();
+  study.points[1].start_sum = "as it was";
+  {
+    const auto store = RunStore::create(path, study, {}, provenance());
+    run_pending(*store, study, {.steps = 4});
+    store->finish();
+  }
+  CHECK(ResultsFile(path).study().points[0].start_sum.empty());
+  CHECK(ResultsFile(path).study().points[1].start_sum == "as it was");
+  Study changed = study;
+  changed.points[1].start_sum = "as it is";
+  CHECK_THROWS_WITH(RunStore::resume(path, changed, {}, provenance()),
+                    Catch::Matchers::Contains("sweep point 1 starts from has changed"));
+  CHECK_NOTHROW(RunStore::resume(path, study, {}, provenance()));
+}
