@@ -85,8 +85,10 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
     check_same_study(files.front(), file);
     claim(owners, file);
   }
-  const Study& study = files.front().study();
-  check_gaps(owners, study, output);
+  check_gaps(owners, files.front().study(), output);
+  // Scenes that mean the same may be written differently: whatever the order of the inputs, one is
+  // kept.
+  const Study& study = owners.begin()->second->study();
   remove_parts(output);
   write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
                          [&](RealizationId id) { return owners.at(id)->record(id); }});
