@@ -181,8 +181,8 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   // Whether a neighbour overlaps a sphere i placed at `target`.
-  [[gnu::always_inline]] static bool blocked(const View& here, std::uint32_t i, const PackedCentre& target,
-                      std::uint64_t& tests) {
+  [[gnu::always_inline]] static bool blocked(const View& here, std::uint32_t i,
+                                             const PackedCentre& target, std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
     const auto* const last = row + 1 + *row;
     for (const auto* j = row + 1; j != last; ++j) {
