@@ -1,5 +1,5 @@
 """The arrows between folders: engine <- structure <- ensemble; fitting stands alone; config and
-results stand on those; cli joins. Read off the include lines, whatever CMake links."""
+results stand on those; cli joins; bench measures. Read off the include lines, whatever CMake links."""
 
 import os
 import pathlib
@@ -15,7 +15,8 @@ MAY_INCLUDE = {
     "ensemble": {"engine", "structure", "fitting", "ensemble"},
     "config": {"engine", "structure", "ensemble", "config"},
     "results": {"engine", "structure", "ensemble", "results"},
-    "cli": {"engine", "structure", "fitting", "ensemble", "config", "results", "cli"},
+    "bench": {"engine", "structure", "ensemble", "config", "bench"},
+    "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "cli"},
 }
 
 # What else only some may see.
@@ -28,7 +29,7 @@ RESERVED = {
     r"Eigen/": {"fitting"},
     r"spdlog/": {"cli"},
     r"Random123/": {"engine"},
-    r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "results", "cli"},
+    r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "cli"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -87,21 +87,27 @@ std::vector<Move> moves() {
 
 }  // namespace
 
-TEST_CASE("the trial loop makes the trajectory of a plain loop over all spheres, bit for bit") {
+namespace {
+
+// Every container x move, the trials cut into pieces; returns how many trials were compared.
+std::uint64_t compare_with_plain_loop(std::uint32_t n_spheres,
+                                      const std::vector<std::uint64_t>& pieces) {
   const std::vector<Container> containers = {
       PeriodicBox{2.2, 2.05}, PeriodicBox{4.3, 5}, WalledBox{1.2, 6},          WalledBox{4, 4},
       Cylinder{1.4},          Cylinder{4.5},       FullyPeriodicBox{4, 4.5, 5}};
+  std::uint64_t compared = 0;
   for (const Container& container : containers) {
     for (const Move& move : moves()) {
       if (!has_gravity(container) && std::holds_alternative<PolarMove>(move)) continue;
       CAPTURE(container.index(), width_x(container), move.index());
-      const Packing start = random_packing(container, 40, 1 + 160 / footprint_area(container), 8);
+      const double depth = 1 + 4 * n_spheres / footprint_area(container);
+      const Packing start = random_packing(container, n_spheres, depth, 8);
       PlainLoop plain(start, move);
       const auto loop = make_trial_loop(container, move, key);
       loop->load(start);
       Packing fast = start;
       std::uint64_t done = 0;
-      for (const std::uint64_t piece : {1, 255, 256, 257, 1000, 7, 30'000}) {
+      for (const std::uint64_t piece : pieces) {
         loop->run(piece);
         for (std::uint64_t k = 0; k < piece; ++k) plain.trial(done++);
         loop->store(fast);
@@ -112,8 +118,20 @@ TEST_CASE("the trial loop makes the trajectory of a plain loop over all spheres,
       CHECK(loop->tally().trials == done);
       CHECK(loop->state().next_trial == done);
       CHECK(deepest_overlap_brute_force(fast).depth == 0);
+      compared += done;
     }
   }
+  return compared;
+}
+
+}  // namespace
+
+TEST_CASE("the trial loop makes the trajectory of a plain loop over all spheres, bit for bit") {
+  compare_with_plain_loop(40, {1, 255, 256, 257, 1000, 7, 30'000});
+}
+
+TEST_CASE("the trial loop keeps to the plain loop over ten million trials", "[statistics]") {
+  CHECK(compare_with_plain_loop(40, {100'000, 165'001}) >= 10'000'000);
 }
 
 TEST_CASE("every instruction set makes the same trajectory") {
