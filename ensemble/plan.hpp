@@ -33,8 +33,8 @@ struct Snapshots {
 };
 
 /// Whether every sweep point draws its own random numbers, or start and tap streams are the same at
-/// all points (those of point id 0), so that points are compared on paired packings. The trials after
-/// taps always draw the point's own.
+/// all points (those of point id 0), so that points are compared on paired packings. The trials
+/// after taps always draw the point's own.
 enum class Streams { independent, matched };
 
 /// All that one sweep point of a study needs: what is simulated, what is measured, which numbers

@@ -75,7 +75,8 @@ void Realization::start() {
 }
 
 void Realization::tap() {
-  excite(packing_, tap_number(plan_, state_.rows), tap_random_);
+  const TapReport report = excite(packing_, tap_number(plan_, state_.rows), tap_random_);
+  state_.dropped_offsets = report.lateral_offsets_dropped;
   begin_relaxation();
 }
 
@@ -105,6 +106,7 @@ void Realization::record(Slice& slice) {
     slice.snapshot = snapshot_of_row();
   }
   ++state_.rows;
+  state_.dropped_offsets = 0;
   if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
     state_.move = loop_->state();
     loop_.reset();
@@ -124,7 +126,9 @@ RelaxationRecord Realization::relaxation_record() const {
   return {.sweeps = trials / static_cast<double>(packing_.centres.size()),
           .acceptance = relaxation.trials > 0 ? static_cast<double>(relaxation.accepted) / trials
                                               : std::numeric_limits<double>::quiet_NaN(),
-          .capped = relaxation.status == RelaxationStatus::capped ? 1.0 : 0.0};
+          .capped = relaxation.status == RelaxationStatus::capped ? 1.0 : 0.0,
+          .dropped_offsets = static_cast<double>(state_.dropped_offsets) /
+                             static_cast<double>(packing_.centres.size())};
 }
 
 SnapshotRecord Realization::snapshot_of_row() const {

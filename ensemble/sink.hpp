@@ -21,12 +21,14 @@ struct RealizationId {
 
 /// What is recorded after every tap besides the observables.
 struct RelaxationRecord {
-  double sweeps = 0;      // of the relaxation; a multiple of 1 / n_spheres
-  double acceptance = 0;  // accepted trials / trials; NaN without trials
-  double capped = 0;      // 1 where the cap ended the relaxation
+  double sweeps = 0;           // of the relaxation; a multiple of 1 / n_spheres
+  double acceptance = 0;       // accepted trials / trials; NaN without trials
+  double capped = 0;           // 1 where the cap ended the relaxation
+  double dropped_offsets = 0;  // of a shake: lateral offsets that found no room / n_spheres
 };
 /// The names under which the fields above are stored beside the observables, in order.
-inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "capped"};
+inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "capped",
+                                                     "dropped_offsets"};
 /// What else is stored beside the observables of a sweep point: none of them may be called so.
 inline constexpr const char* names_beside_series[] = {"tap",    "realization", "status",
                                                       "reason", "rows",        "trial_key"};
@@ -52,6 +54,7 @@ struct RealizationState {
   RelaxationProgress relaxation;
   MoveState move;
   std::uint64_t tap_stream_position = 0;  // of Purpose::tap
+  std::uint64_t dropped_offsets = 0;      // of the tap that is being relaxed
   HeightWindow stop_window{0, 0};
   std::vector<HeightWindow> observable_windows;
   std::vector<Vec3> centres;

@@ -25,6 +25,7 @@ void put(ByteWriter& writer, const RealizationState& state) {
   writer.put(state.move.window_base);
   writer.put(state.move.window_accepted);
   writer.put(state.tap_stream_position);
+  writer.put(state.dropped_offsets);
   writer.put(state.stop_window.low);
   writer.put(state.stop_window.high);
   writer.put(state.observable_windows);
@@ -47,6 +48,7 @@ RealizationState get_realization_state(ByteReader& reader) {
   state.move.window_base = reader.get<std::uint64_t>();
   state.move.window_accepted = reader.get<std::uint64_t>();
   state.tap_stream_position = reader.get<std::uint64_t>();
+  state.dropped_offsets = reader.get<std::uint64_t>();
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
   state.observable_windows = reader.get_vector<HeightWindow>();

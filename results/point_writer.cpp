@@ -41,7 +41,9 @@ std::vector<ObservableLabel> column_labels(const StudyPoint& point) {
   labels.push_back(
       {relaxation_columns[1], "1", "accepted trials / trials of the relaxation", "jostle"});
   labels.push_back({relaxation_columns[2], "1", "1 where the cap ended the relaxation", "jostle"});
-  static_assert(n_relaxation_columns == 3);
+  labels.push_back({relaxation_columns[3], "1",
+                    "lateral offsets of the tap that found no room / number of spheres", "jostle"});
+  static_assert(n_relaxation_columns == 4);
   return labels;
 }
 

@@ -30,8 +30,8 @@ void Recorder::append(const TapRow& row) {
   assert(row.observables.size() + n_relaxation_columns == n_columns_);
   auto& rows = part_.tail.rows;
   rows.insert(rows.end(), row.observables.begin(), row.observables.end());
-  rows.insert(rows.end(),
-              {row.relaxation.sweeps, row.relaxation.acceptance, row.relaxation.capped});
+  rows.insert(rows.end(), {row.relaxation.sweeps, row.relaxation.acceptance, row.relaxation.capped,
+                           row.relaxation.dropped_offsets});
   publish_tail_if_large();
 }
 

@@ -70,7 +70,10 @@ class Kill(Case):
         process = self.popen(
             "run", "scene.json", "--quiet", "--threads", "1", "--checkpoint-every", "0",
             folder=folder, environment={"LD_PRELOAD": FAULT_SHIM,
-                                        "JOSTLE_FAULT_PATH": str(folder), **environment})
+                                        "JOSTLE_FAULT_PATH": str(folder),
+                                        # An instrumented program wants its runtime loaded first.
+                                        "ASAN_OPTIONS": "verify_asan_link_order=0",
+                                        **environment})
         _, err = process.communicate(timeout=120)
         return process.returncode, err
 

@@ -28,8 +28,8 @@ class Bits {
   void add(const TapRow& row) {
     add(row.tap);
     add(row.observables);
-    add(std::vector<double>{row.relaxation.sweeps, row.relaxation.acceptance,
-                            row.relaxation.capped});
+    add(std::vector<double>{row.relaxation.sweeps, row.relaxation.acceptance, row.relaxation.capped,
+                            row.relaxation.dropped_offsets});
   }
   void add(const SnapshotRecord& snapshot) {
     add(snapshot.tap);
@@ -50,6 +50,7 @@ class Bits {
     add(state.relaxation.last_value);
     add(std::uint64_t{state.relaxation.passes});
     add(state.tap_stream_position);
+    add(state.dropped_offsets);
     add(state.stop_window.low);
     add(state.stop_window.high);
     for (const HeightWindow& window : state.observable_windows) {

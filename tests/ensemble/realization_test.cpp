@@ -186,6 +186,19 @@ TEST_CASE("Matched points begin from the same bed also where the start is relaxe
   CHECK(one.snapshots[1].centres != other.snapshots[1].centres);
 }
 
+TEST_CASE("A shake records the share of lateral offsets that found no room") {
+  Plan plan = small_plan();
+  plan.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.3, .retries = 0}, 2}, {Lift{}, 1}};
+  const RecordedRealization record = straight(plan);
+  CHECK(record.rows[0].relaxation.dropped_offsets == 0);
+  for (const std::size_t tap : {1, 2}) {
+    // In a bed dilated by 5 % some of these offsets end in another sphere, others do not.
+    CHECK(record.rows[tap].relaxation.dropped_offsets > 0);
+    CHECK(record.rows[tap].relaxation.dropped_offsets < 1);
+  }
+  CHECK(record.rows[3].relaxation.dropped_offsets == 0);
+}
+
 TEST_CASE("A start that cannot be made says why") {
   Plan plan = small_plan();
   plan.container = PeriodicBox{4.1, 4.3};

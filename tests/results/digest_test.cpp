@@ -47,7 +47,7 @@ std::string digest_with(const std::function<void(Study&)>& change_study,
   const auto record = [&](RealizationId id) {
     RealizationRecord one;
     one.status = RealizationStatus::done;
-    one.rows = {1, 2, 3, 4, 0, 6, 7, 8, 9, 0};
+    one.rows = {1, 2, 3, 4, 0, 0, 7, 8, 9, 10, 0, 0};  // two taps
     one.snapshots = {{1, std::vector<Vec3>(5, {1, 2, 3}), 0.5, {0.25, 0.75}}};
     one.state.emplace();
     one.state->rows = 2;
@@ -96,7 +96,7 @@ TEST_CASE("a study's digest ignores who computed it and how long it took") {
 TEST_CASE("a study's digest notices any change of what was measured or asked") {
   const std::string expected = digest_with(nothing, nothing);
   using Record = RealizationRecord;
-  CHECK(digest_with(nothing, [](Record& r) { r.rows[7] = 7.5; }) != expected);
+  CHECK(digest_with(nothing, [](Record& r) { r.rows[7] += 1; }) != expected);
   CHECK(digest_with(nothing, [](Record& r) { r.snapshots[0].centres[3].y = 2.5; }) != expected);
   CHECK(digest_with(nothing, [](Record& r) { r.snapshots[0].coordination = 0.6; }) != expected);
   CHECK(digest_with(nothing, [](Record& r) { r.snapshots[0].height_histogram[0] = 0; }) !=

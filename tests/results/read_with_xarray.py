@@ -31,7 +31,7 @@ def check_observables(path):
     assert table["mean_height"].attrs["units"] == "diameter"
     assert table["mean_height"].attrs["long_name"] == "mean height"
     assert table["mean_height"].attrs["source"] == "a paper"
-    for column in ("bulk_fraction", "sweeps", "acceptance", "capped"):
+    for column in ("bulk_fraction", "sweeps", "acceptance", "capped", "dropped_offsets"):
         assert table[column].dims == ("tap", "realization"), column
     assert table["status"].dims == ("realization",)
     assert table["status"].values.tolist() == [2, 2, 3]

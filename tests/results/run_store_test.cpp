@@ -51,7 +51,7 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   CHECK(file.provenance().at(0).host == provenance().host);
   for (std::uint32_t p = 0; p < 2; ++p) {
     const auto series = file.series(p);
-    REQUIRE(series.size() == 5);
+    REQUIRE(series.size() == 6);
     CHECK(series[0].label.name == "mean_height");
     CHECK(series[0].label.source == "a paper");
     CHECK(series[3].label.name == "acceptance");
@@ -62,6 +62,7 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
         CHECK(series[1].at(tap, r) == row.observables[1]);
         CHECK(series[2].at(tap, r) == row.relaxation.sweeps);
         CHECK(same(series[3].at(tap, r), row.relaxation.acceptance));
+        CHECK(series[5].at(tap, r) == row.relaxation.dropped_offsets);
       }
   }
   const RealizationRecord record = file.record({1, 2});

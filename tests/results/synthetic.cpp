@@ -45,6 +45,7 @@ TapRow row_of(const RealizationState& state) {
   }
   row.relaxation.sweeps = static_cast<double>(state.relaxation.trials);
   row.relaxation.acceptance = state.rows == 0 ? -std::nan("") : state.move.step;
+  row.relaxation.dropped_offsets = 0.125 * static_cast<double>(state.rows);
   return row;
 }
 
