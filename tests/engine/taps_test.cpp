@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/starts.hpp"
 #include "sample_packings.hpp"
 
 using namespace jostle;
@@ -41,6 +42,20 @@ TEST_CASE("no tap creates an overlap beyond rounding") {
     const Packing packing = random_packing(container, 60, 8, 4);
     for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
                            Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{0}}, Tap{Dilate{1e-16}}}) {
+      const Packing after = excited(packing, tap);
+      CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
+    }
+  }
+}
+
+TEST_CASE("taps of a touching bed leave overlaps of rounding only") {
+  RandomStream random(stream_key(12, 0, 0, Purpose::start));
+  const PeriodicBox box{6, 6.928203230275509};
+  for (const Packing& packing : {make_start(Crystal{}, box, 480, random),
+                                 make_start(SteepestDescentPour{}, box, 300, random)}) {
+    for (const Tap& tap : {Tap{Dilate{0}}, Tap{Dilate{1e-16}}, Tap{Dilate{1e-8}}, Tap{Dilate{10}},
+                           Tap{DilateFloorHeld{0.025}}, Tap{Lift{1e-12}}, Tap{Lift{0.3}},
+                           Tap{Lift{100}}, Tap{Shake{0.02, 0.1, 3}}}) {
       const Packing after = excited(packing, tap);
       CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
     }

@@ -82,7 +82,7 @@ std::vector<Move> moves() {
           PolarMove{2.0, 1.0, ThetaLaw::linear},
           MetropolisMove{0.1},
           MetropolisMove{0.4, 1.0},
-          MetropolisMove{1.3, 0.0}};
+          MetropolisMove{2.0, 0.0}};
 }
 
 }  // namespace
