@@ -16,7 +16,7 @@ namespace {
 /// The observables of a point, and the relaxation columns that follow them.
 struct PointSeries {
   std::vector<EnsembleSeries> observables;
-  EnsembleSeries sweeps, acceptance, capped;
+  EnsembleSeries sweeps, acceptance, capped, dropped_offsets;
 };
 
 PointSeries point_series(const ResultsFile& file, std::uint32_t point) {
@@ -29,6 +29,8 @@ PointSeries point_series(const ResultsFile& file, std::uint32_t point) {
       series.acceptance = std::move(column);
     } else if (name == "capped") {
       series.capped = std::move(column);
+    } else if (name == "dropped_offsets") {
+      series.dropped_offsets = std::move(column);
     } else {
       series.observables.push_back(std::move(column));
     }
@@ -96,6 +98,19 @@ std::string capped_line(const EnsembleSeries& capped, const EnsembleSeries& swee
                      at_cap, relaxations);
 }
 
+/// Of the taps that dropped any; nothing where none did, as without a shake.
+std::string dropped_offsets_line(const EnsembleSeries& dropped) {
+  double taps = 0, share = 0;
+  for (std::size_t tap = 0; tap < dropped.count.size(); ++tap) {
+    if (!(dropped.mean[tap] > 0)) continue;
+    ++taps;
+    share += dropped.mean[tap];
+  }
+  if (taps == 0) return "";
+  return fmt::format("shakes dropped {:.1f} % of their lateral offsets for want of room\n",
+                     100 * share / taps);
+}
+
 /// Realizations of one point by how they ended, and what they cost.
 struct PointCost {
   std::uint64_t done = 0, unfinished = 0, failed = 0, trials = 0;
@@ -137,7 +152,8 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
   std::string text = study.label.empty() ? "" : study.label + "\n";
   const PointSeries series = point_series(file, point);
   if (const auto last = last_tap(series.sweeps)) {
-    text += tap_table(series, *last) + capped_line(series.capped, series.sweeps);
+    text += tap_table(series, *last) + capped_line(series.capped, series.sweeps) +
+            dropped_offsets_line(series.dropped_offsets);
   }
   return text + cost_line(cost) + failures;
 }
