@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "engine/proposals.hpp"
+#include "engine/skipping_kernels.hpp"
+#include "engine/skipping_trial_loop.hpp"
 #include "engine/typed_trial_loop.hpp"
 
 namespace jostle {
@@ -33,6 +35,59 @@ bool machine_has(InstructionSet set) {
       break;
   }
   return true;
+}
+
+SkippingKernels skipping_kernels_for(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return avx512::skipping_kernels();
+    case InstructionSet::avx2:
+      return avx2::skipping_kernels();
+    case InstructionSet::baseline:
+      break;
+  }
+  return baseline::skipping_kernels();
+}
+
+void refuse_skipping_rises(const Container& container, const Move& move) {
+  if (!has_gravity(container)) {
+    throw std::invalid_argument(
+        "the skipping sampler needs gravity, which a fully periodic box has not: use the "
+        "exhaustive sampler");
+  }
+  const auto* metropolis = std::get_if<MetropolisMove>(&move);
+  if (metropolis == nullptr) return;
+  if (metropolis->beta != std::numeric_limits<double>::infinity()) {
+    throw std::invalid_argument(
+        "the skipping sampler is for trials that never rise, and a finite beta lets them: use the "
+        "exhaustive sampler");
+  }
+  if (metropolis->adaptation && metropolis->adaptation->base != AcceptanceBase::all_trials) {
+    throw std::invalid_argument(
+        "the skipping sampler does not count rising trials, of which the adaptation of the step "
+        "asks: count all trials or use the exhaustive sampler");
+  }
+}
+
+std::unique_ptr<TrialLoop> make_skipping_loop(const Container& container, const Move& move,
+                                              StreamKey key, InstructionSet set) {
+  refuse_skipping_rises(container, move);
+  const ProposalKernels proposals = kernels_for(set);
+  const SkippingKernels kernels = skipping_kernels_for(set);
+  return std::visit(
+      [&](const auto& box) -> std::unique_ptr<TrialLoop> {
+        using Box = std::decay_t<decltype(box)>;
+        if constexpr (std::is_same_v<Box, FullyPeriodicBox>) {
+          return nullptr;  // refused above
+        } else if (std::holds_alternative<PolarMove>(move)) {
+          return std::make_unique<SkippingTrialLoop<Box, Rise::impossible>>(box, move, key,
+                                                                            proposals, kernels);
+        } else {
+          return std::make_unique<SkippingTrialLoop<Box, Rise::refused>>(box, move, key, proposals,
+                                                                         kernels);
+        }
+      },
+      container);
 }
 
 template <class Box>
@@ -82,7 +137,8 @@ InstructionSet best_instruction_set() {
 }
 
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
-                                           StreamKey key, InstructionSet set) {
+                                           StreamKey key, InstructionSet set, Sampler sampler) {
+  if (sampler == Sampler::skipping) return make_skipping_loop(container, move, key, set);
   const ProposalKernels kernels = kernels_for(set);
   return std::visit([&](const auto& box) { return loop_for(box, move, key, kernels); }, container);
 }

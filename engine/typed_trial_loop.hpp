@@ -10,6 +10,7 @@
 #include "engine/packed_geometry.hpp"
 #include "engine/proposals.hpp"
 #include "engine/slab.hpp"
+#include "engine/step_adaptation.hpp"
 #include "engine/theta_table.hpp"
 #include "engine/trial_loop.hpp"
 
@@ -73,7 +74,12 @@ class TypedTrialLoop final : public TrialLoop {
       tally_.trials += piece;
       tally_.accepted += counts.accepted;
       tally_.distance_tests += counts.distance_tests;
-      if constexpr (rise != Rise::impossible) adapt_step(piece, counts);
+      if constexpr (rise != Rise::impossible) {
+        if (metropolis_.adaptation) {
+          adapt_step(*metropolis_.adaptation, state_,
+                     {piece, counts.rising, counts.accepted, counts.accepted_rising});
+        }
+      }
       n_trials -= piece;
     }
   }
@@ -92,7 +98,7 @@ class TypedTrialLoop final : public TrialLoop {
 
   std::uint32_t n_spheres() const override { return static_cast<std::uint32_t>(centres_.size()); }
   const MoveState& state() const override { return state_; }
-  void restore(const MoveState& state) override {
+  void restore(const MoveState& state, const SamplerState&) override {
     state_ = state;
     batch_valid_ = false;
     lists_valid_ = false;  // a longer step wants a wider skin
@@ -227,21 +233,6 @@ class TypedTrialLoop final : public TrialLoop {
   std::uint64_t until_adaptation() const {
     if (!metropolis_.adaptation) return ProposalBatch::size;
     return metropolis_.adaptation->every_trials - state_.window_trials;
-  }
-
-  void adapt_step(std::uint64_t trials, const BatchCounts& counts) {
-    if (!metropolis_.adaptation) return;
-    const StepAdaptation& rule = *metropolis_.adaptation;
-    const bool all = rule.base == AcceptanceBase::all_trials;
-    state_.window_trials += trials;
-    state_.window_base += all ? trials : trials - counts.rising;
-    state_.window_accepted += all ? counts.accepted : counts.accepted - counts.accepted_rising;
-    if (state_.window_trials < rule.every_trials) return;
-    if (static_cast<double>(state_.window_accepted) <
-        rule.threshold * static_cast<double>(state_.window_base)) {
-      state_.step *= rule.factor;
-    }
-    state_.window_trials = state_.window_base = state_.window_accepted = 0;
   }
 
   // The longest displacement of a trial, diameters, with room for rounding.

@@ -57,3 +57,25 @@ TEST_CASE("the exponential of a negative number is good to 2 ulp") {
   CHECK(exponential(-std::numeric_limits<double>::infinity()) == 0);
   CHECK(exponential(-1e-300) == 1);
 }
+
+TEST_CASE("the natural logarithm is good to 2 ulp") {
+  double worst = 0;
+  for (double x = 0x1p-60; x < 1e6; x *= 1.0000737) {
+    worst = std::max(worst, ulps(natural_log(x), std::log(static_cast<long double>(x))));
+  }
+  for (double below = 1e-16; below < 0.5; below *= 1.0031) {
+    const double x = 1 - below;
+    if (x < 1) worst = std::max(worst, ulps(natural_log(x), std::log(static_cast<long double>(x))));
+  }
+  CHECK(worst <= 2);
+  CHECK(natural_log(1) == 0);
+}
+
+TEST_CASE("the cube root is good to 2 ulp") {
+  double worst = 0;
+  for (double x = 0x1p-60; x < 1; x *= 1.0000737) {
+    worst = std::max(worst, ulps(cube_root(x), std::cbrt(static_cast<long double>(x))));
+  }
+  CHECK(worst <= 2);
+  CHECK(cube_root(1) == 1);
+}

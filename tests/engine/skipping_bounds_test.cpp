@@ -1,0 +1,179 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "engine/bound_tables.hpp"
+#include "engine/theta_table.hpp"
+#include "engine/trial_loop.hpp"
+#include "sample_packings.hpp"
+
+using namespace jostle;
+
+namespace {
+
+const StreamKey key = stream_key(47, 0, 0, Purpose::trials);
+
+// A bed let down from random places, and still creeping.
+template <class Box>
+std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
+  Packing packing = random_packing(box, n, 20, 9);
+  const auto loop = make_trial_loop(packing.container, PolarMove{}, key);
+  loop->load(packing);
+  loop->run(std::uint64_t{3000} * n);
+  loop->store(packing);
+  std::vector<PackedCentre> centres(n);
+  std::ranges::transform(packing.centres, centres.begin(), packed);
+  return centres;
+}
+
+DirectionBins bins_of(const Move& move) {
+  if (const auto* polar = std::get_if<PolarMove>(&move)) {
+    return polar_bins(make_theta_table(*polar), polar->max_step);
+  }
+  return cubic_bins(std::get<MetropolisMove>(move).max_step);
+}
+
+template <class Box>
+BoundTables<Box> tables_for(const Box& box, const Move& move) {
+  const SkippingKernels kernels = baseline::skipping_kernels();
+  const bool polar = std::holds_alternative<PolarMove>(move);
+  return {box, polar ? kernels.linear_bounds : kernels.cubic_bounds};
+}
+
+// Whether a step is possible, against all spheres.
+template <class Box>
+bool possible(const Box& box, const std::vector<PackedCentre>& centres, std::uint32_t i,
+              Vec3 step) {
+  const Vec3 target = wrapped(box, unpacked(centres[i]) + step);
+  if (!clear_of_boundaries(box, target)) return false;
+  for (std::uint32_t j = 0; j < centres.size(); ++j) {
+    if (j != i && overlaps(box, target, unpacked(centres[j]))) return false;
+  }
+  return true;
+}
+
+struct Tried {
+  int beyond = 0, wrong = 0, possible_within = 0, within = 0;
+};
+
+// Random steps of every bin, to either side of its bound.
+template <class Box>
+Tried try_steps(const Box& box, const Move& move, const BoundTables<Box>& tables) {
+  const bool polar = std::holds_alternative<PolarMove>(move);
+  const auto theta_table = make_theta_table(polar ? std::get<PolarMove>(move) : PolarMove{});
+  RandomStream random(stream_key(48, 0, 0, Purpose::start));
+  const double longest = tables.bins().longest;
+  Tried tried;
+  for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
+    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
+      const int ring = bin / n_sectors, sector = bin % n_sectors;
+      const double weight = tables.row(i).weight[ring][sector] / double{whole_weight};
+      const double bound = longest * (polar ? weight : std::cbrt(weight));
+      const SineCosine theta = polar ? polar_angle(theta_table, ring, random.uniform())
+                                     : cubic_angle(ring, random.uniform());
+      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / n_sectors;
+      const bool beyond = random.uniform() < 0.5;
+      double length =
+          beyond ? bound + (longest - bound) * random.uniform() : bound * random.uniform();
+      if (beyond && random.uniform() < 0.3) length = bound * (1 + 1e-9);
+      if (length > longest || (beyond && !(length > bound))) continue;
+      // Azimuths of sectors begin at -pi.
+      const Vec3 step{-length * theta.sine * std::cos(azimuth),
+                      -length * theta.sine * std::sin(azimuth), -length * theta.cosine};
+      const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
+      if (!polar && side > std::get<MetropolisMove>(move).max_step) continue;
+      const bool free = possible(box, tables.centres(), i, step);
+      (beyond ? tried.beyond : tried.within) += 1;
+      (beyond ? tried.wrong : tried.possible_within) += free;
+    }
+  }
+  return tried;
+}
+
+template <class Box>
+void check_bounds(const Box& box, std::uint32_t n) {
+  const auto centres = bed(box, n);
+  for (const Move& move :
+       {Move{PolarMove{}}, Move{PolarMove{0.4, 1.5, ThetaLaw::linear}},
+        Move{PolarMove{0.1, 0.2, ThetaLaw::exponential}}, Move{MetropolisMove{0.1}},
+        Move{MetropolisMove{0.02}}, Move{MetropolisMove{0.7}}, Move{PolarMove{2.5}}}) {
+    BoundTables<Box> tables = tables_for(box, move);
+    tables.build(bins_of(move), centres);
+    const Tried tried = try_steps(box, move, tables);
+    CHECK(tried.wrong == 0);
+    // A step longer than a sphere is wide may pass it by, and nothing bounds it.
+    if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * n));
+    // The bounds are of use: some of what they leave is free.
+    CHECK(tried.possible_within > 0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every step beyond its bound overlaps, periodic") {
+  check_bounds(PeriodicBox{4, 5}, 100);
+  check_bounds(PeriodicBox{2.1, 2.3}, 30);
+}
+
+TEST_CASE("every step beyond its bound overlaps, between walls") {
+  check_bounds(WalledBox{4, 3}, 70);
+  check_bounds(WalledBox{1.1, 1.5}, 12);
+}
+
+TEST_CASE("every step beyond its bound overlaps, in a tube") {
+  check_bounds(Cylinder{5}, 90);
+  check_bounds(Cylinder{1.2}, 12);
+}
+
+TEST_CASE("bounds are a function of the centres, whatever moves led there") {
+  const PeriodicBox box{4, 5};
+  const Move move = PolarMove{};
+  BoundTables<PeriodicBox> moved = tables_for(box, move), fresh = tables_for(box, move);
+  moved.build(bins_of(move), bed(box, 100));
+  RandomStream random(stream_key(49, 0, 0, Purpose::start));
+  int moves = 0;
+  for (int trial = 0; trial < 200'000; ++trial) {
+    const auto i = static_cast<std::uint32_t>(random.below(100));
+    const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
+                    0.2 * random.uniform() - 0.1};
+    const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
+    if (norm_squared(step) > 0.01 || !possible(box, moved.centres(), i, step)) continue;
+    moved.move(i, packed(target));
+    ++moves;
+  }
+  CHECK(moves > 1000);
+  fresh.build(bins_of(move), moved.centres());
+  CHECK(fresh.weights().total() == moved.weights().total());
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
+    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
+      const int ring = bin / n_sectors, sector = bin % n_sectors;
+      REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
+    }
+  }
+}
+
+TEST_CASE("a weight tree finds what adding up the weights finds") {
+  RandomStream random(stream_key(50, 0, 0, Purpose::start));
+  for (const std::size_t n : {1, 15, 16, 17, 256, 257, 5000}) {
+    std::vector<std::uint32_t> weights(n);
+    WeightTree tree;
+    tree.assign(weights);
+    CHECK(tree.total() == 0);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      weights[i] = static_cast<std::uint32_t>(random.below(4) == 0 ? 0 : random.below(1u << 25));
+      tree.set(i, weights[i]);
+    }
+    const std::uint64_t total = std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
+    REQUIRE(tree.total() == total);
+    for (int draw = 0; draw < 1000 && total > 0; ++draw) {
+      const std::uint64_t target = draw == 0 ? 0 : draw == 1 ? total - 1 : random.below(total);
+      std::uint32_t i = 0;
+      std::uint64_t rest = target;
+      while (rest >= weights[i]) rest -= weights[i++];
+      const WeightTree::Hit hit = tree.find(target);
+      REQUIRE(hit.index == i);
+      REQUIRE(hit.rest == rest);
+    }
+  }
+}
