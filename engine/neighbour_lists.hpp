@@ -6,6 +6,7 @@
 
 #include "engine/cell_grid.hpp"
 #include "engine/geometry.hpp"
+#include "engine/large_pages.hpp"
 #include "engine/packed_geometry.hpp"
 
 namespace jostle {
@@ -22,7 +23,7 @@ class NeighbourLists {
   /// Makes all lists. `drift` is the mean displacement of a trial that geometry decides: the
   /// neighbours nearest to a sphere so displaced block it most often and come first.
   template <class Box>
-  void build(const Box& box, const std::vector<PackedCentre>& centres, double skin, Vec3 drift) {
+  void build(const Box& box, const PackedCentres& centres, double skin, Vec3 drift) {
     const auto n = static_cast<Index>(centres.size());
     skin_ = skin;
     drift_ = drift;
@@ -103,9 +104,9 @@ class NeighbourLists {
   CellGrid grid_;
   double skin_ = 0;
   Vec3 drift_;
-  std::vector<PackedCentre> origins_;
+  PackedCentres origins_;
   std::size_t stride_ = 16;  // of the rows: a cache line
-  std::vector<Index> rows_;
+  std::vector<Index, LargePageAllocator<Index>> rows_;
   std::vector<Candidate> candidates_;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "engine/container.hpp"
+#include "engine/large_pages.hpp"
 #include "engine/vec3.hpp"
 
 // The arithmetic of engine/geometry.hpp for the trial loop: x and y side by side in one register
@@ -18,6 +20,8 @@ struct alignas(32) PackedCentre {
   Pair xy;
   double z, unused;
 };
+
+using PackedCentres = std::vector<PackedCentre, LargePageAllocator<PackedCentre>>;
 
 inline PackedCentre packed(Vec3 r) {
   return {Pair{r.x, r.y}, r.z, 0};

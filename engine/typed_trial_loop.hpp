@@ -113,6 +113,10 @@ class TypedTrialLoop final : public TrialLoop {
   // Room in the skin beyond the longest step, diameters (bench/: little changes from 0.1 to 0.3).
   static constexpr double spare_skin = 0.2;
 
+  // Likely blockers a trial is tested against before any branch, trials so tested together, and the
+  // acceptance, one in so many, above which it does not pay.
+  static constexpr std::uint32_t ahead = 2, group = 16, one_in = 40;
+
   struct BatchCounts {
     std::uint64_t accepted = 0, rising = 0, accepted_rising = 0, distance_tests = 0;
   };
@@ -137,15 +141,21 @@ class TypedTrialLoop final : public TrialLoop {
     std::size_t stride;
     const PackedCentre* origins;
     double half_skin_squared;
+    double step;
+    bool beyond_cache;
   };
   View view() {
-    return {PackedBox<Box>(box_), centres_.data(),  lists_.rows(),
-            lists_.stride(),      lists_.origins(), lists_.half_skin_squared()};
+    return {PackedBox<Box>(box_),
+            centres_.data(),
+            lists_.rows(),
+            lists_.stride(),
+            lists_.origins(),
+            lists_.half_skin_squared(),
+            rise == Rise::impossible ? 1.0 : state_.step,
+            centres_.size() > 10'000};
   }
 
-  // Never inlined, as are the rare paths out of it: the code of the loop then does not depend on
-  // what else a program holds (bench/instruction_costs.py).
-  [[gnu::noinline]] BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
+  BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
     BatchCounts counts;
     std::uint32_t first = begin, last = end;
     if constexpr (rise == Rise::refused) {
@@ -153,45 +163,116 @@ class TypedTrialLoop final : public TrialLoop {
       last = falling_before(end);
       counts.rising = (end - begin) - (last - first);
     }
+    // Rises at finite beta draw a number of their own: they are counted one by one.
+    if (rise == Rise::thermal || busy_) {
+      run_one_by_one(begin, first, last, counts);
+    } else {
+      run_ahead(first, last, counts);
+    }
+    busy_ = counts.accepted * one_in > end - begin;
+    return counts;
+  }
+
+  // The loops are never inlined, nor are the rare paths out of them: their code then does not
+  // depend on what else a program holds (bench/instruction_costs.py).
+
+  // Trials first .. last - 1 of those looked at, one after another.
+  [[gnu::noinline]] void run_one_by_one(std::uint32_t begin, std::uint32_t first,
+                                        std::uint32_t last, BatchCounts& counts) {
     View here = view();
-    const double step = rise == Rise::impossible ? 1.0 : state_.step;
     for (std::uint32_t k = first; k < last; ++k) {
       prefetch(here, k);
       const std::uint32_t t = looked_at(k);
       const std::uint32_t i = batch_.sphere[t];
-      const PackedCentre target =
-          here.box.wrapped({here.centres[i].xy + step * Pair{batch_.dx[t], batch_.dy[t]},
-                            here.centres[i].z + step * batch_.dz[t], 0});
+      const PackedCentre target = target_of(here, t);
       if constexpr (rise == Rise::thermal) counts.rising += batch_.dz[t] > 0;
       if (!here.box.clear_of_boundaries(target)) continue;
-      if (blocked(here, i, target, counts.distance_tests)) continue;
+      if (blocked(here, i, target, 0, counts.distance_tests)) continue;
       if constexpr (rise == Rise::thermal) {
         const std::uint64_t trial = state_.next_trial + (t - begin);
-        if (batch_.dz[t] > 0 && !rise_passes(trial, step * batch_.dz[t])) continue;
+        if (batch_.dz[t] > 0 && !rise_passes(trial, here.step * batch_.dz[t])) continue;
       }
-      if (distance_squared(here.box, target, here.origins[i]) > here.half_skin_squared) {
-        // The list may lack what lies there: one made where the sphere stands has it.
-        if (lists_.renew(box_, i, here.centres[i])) {
-          ++tally_.list_renewals;
-        } else {
-          build_lists();
-          here = view();
-        }
-        if (blocked(here, i, target, counts.distance_tests)) continue;
-      }
-      here.centres[i] = target;
-      ++counts.accepted;
-      if constexpr (rise == Rise::thermal) counts.accepted_rising += batch_.dz[t] > 0;
+      const bool moved = accept(here, i, target, counts);
+      if constexpr (rise == Rise::thermal) counts.accepted_rising += moved && batch_.dz[t] > 0;
     }
-    return counts;
   }
 
-  // Whether a neighbour overlaps a sphere i placed at `target`.
+  // The same where few trials are accepted: a group of trials is first tested without branches
+  // against `ahead` likely blockers each, and only the open ones are looked at closely. One that
+  // nothing blocks ends its group: it moves a sphere or renews a list that the rest were tested
+  // against.
+  [[gnu::noinline]] void run_ahead(std::uint32_t first, std::uint32_t last, BatchCounts& counts) {
+    std::array<std::uint32_t, group> open;
+    View here = view();
+    for (std::uint32_t k = first; k < last;) {
+      const std::uint32_t end = std::min(k + group, last);
+      std::uint32_t n_open = 0;
+      for (std::uint32_t g = k; g < end; ++g) {
+        prefetch(here, g);
+        open[n_open] = g;
+        n_open += seems_open(here, looked_at(g));
+      }
+      counts.distance_tests += ahead * (end - k);
+      k = end;
+      for (std::uint32_t s = 0; s < n_open; ++s) {
+        const std::uint32_t t = looked_at(open[s]);
+        const std::uint32_t i = batch_.sphere[t];
+        const PackedCentre target = target_of(here, t);
+        if (blocked(here, i, target, ahead, counts.distance_tests)) continue;
+        accept(here, i, target, counts);
+        k = open[s] + 1;
+        break;
+      }
+    }
+  }
+
+  [[gnu::always_inline]] bool seems_open(const View& here, std::uint32_t t) const {
+    const std::uint32_t i = batch_.sphere[t];
+    const PackedCentre target = target_of(here, t);
+    const auto* const row = here.rows + i * here.stride;
+    unsigned shut = !here.box.clear_of_boundaries(target);
+#pragma GCC unroll 8
+    for (std::uint32_t m = 1; m <= ahead; ++m) {
+      // Beyond its length a row holds anything, also i itself.
+      shut |= unsigned{m <= *row} &
+              unsigned{distance_squared(here.box, target, here.centres[row[m]]) < 1.0};
+    }
+    return shut == 0;
+  }
+
+  [[gnu::always_inline]] PackedCentre target_of(const View& here, std::uint32_t t) const {
+    const PackedCentre& from = here.centres[batch_.sphere[t]];
+    return here.box.wrapped({from.xy + here.step * Pair{batch_.dx[t], batch_.dy[t]},
+                             from.z + here.step * batch_.dz[t], 0});
+  }
+
+  // Moves sphere i, which nothing in its list blocks; false if a new list shows that something
+  // does.
+  [[gnu::always_inline]] bool accept(View& here, std::uint32_t i, const PackedCentre& target,
+                                     BatchCounts& counts) {
+    if (distance_squared(here.box, target, here.origins[i]) > here.half_skin_squared) {
+      // The list may lack what lies there: one made where the sphere stands has it.
+      if (lists_.renew(box_, i, here.centres[i])) {
+        ++tally_.list_renewals;
+      } else {
+        build_lists();
+        here = view();
+      }
+      if (blocked(here, i, target, 0, counts.distance_tests)) return false;
+    }
+    here.centres[i] = target;
+    ++counts.accepted;
+    return true;
+  }
+
+  // Whether a neighbour, of those after the first `skipped`, overlaps a sphere i placed at
+  // `target`.
   [[gnu::always_inline]] static bool blocked(const View& here, std::uint32_t i,
-                                             const PackedCentre& target, std::uint64_t& tests) {
+                                             const PackedCentre& target, std::uint32_t skipped,
+                                             std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
     const auto* const last = row + 1 + *row;
-    for (const auto* j = row + 1; j != last; ++j) {
+    for (const auto* j = row + 1 + skipped; j < last; ++j) {
       ++tests;
       if (distance_squared(here.box, target, here.centres[*j]) < 1.0) return true;
     }
@@ -203,10 +284,17 @@ class TypedTrialLoop final : public TrialLoop {
     return u < exponential(-(metropolis_.beta * dz));
   }
 
-  void prefetch(const View& here, std::uint32_t k) const {
+  // Where memory is far: a trial's sphere early, then what will be tested first.
+  [[gnu::always_inline]] void prefetch(const View& here, std::uint32_t k) const {
     const std::uint32_t soon = batch_.sphere[looked_at(k + ProposalBatch::margin)];
     __builtin_prefetch(&here.centres[soon]);
     __builtin_prefetch(here.rows + soon * here.stride);
+    if (here.beyond_cache) {
+      const std::uint32_t next = batch_.sphere[looked_at(k + ProposalBatch::margin / 2)];
+      const auto* const row = here.rows + next * here.stride;
+      __builtin_prefetch(&here.centres[row[1]]);
+      __builtin_prefetch(&here.centres[row[2]]);
+    }
   }
 
   // Trials that rise in the cold are refused unseen: the others of a batch, in order.
@@ -257,10 +345,11 @@ class TypedTrialLoop final : public TrialLoop {
   MoveState state_;
   TrialTally tally_;
   std::vector<double> theta_table_;
-  std::vector<PackedCentre> centres_;
+  PackedCentres centres_;
   NeighbourLists lists_;
   bool lists_valid_ = false;
   bool batch_valid_ = false;
+  bool busy_ = true;  // many trials were accepted of late
   ProposalBatch batch_;
   std::array<std::uint32_t, ProposalBatch::size + ProposalBatch::margin> falling_;
   std::uint32_t n_falling_ = 0;

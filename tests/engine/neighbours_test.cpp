@@ -33,8 +33,8 @@ Packing points(const Container& container, int n, double height, std::uint64_t s
   return packing;
 }
 
-std::vector<PackedCentre> packed_centres(const Packing& packing) {
-  std::vector<PackedCentre> centres;
+PackedCentres packed_centres(const Packing& packing) {
+  PackedCentres centres;
   for (const Vec3& r : packing.centres) centres.push_back(packed(r));
   return centres;
 }

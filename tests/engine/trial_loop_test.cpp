@@ -89,7 +89,29 @@ std::vector<Move> moves() {
 
 namespace {
 
-// Every container x move, the trials cut into pieces; returns how many trials were compared.
+// The trials cut into pieces; returns how many were compared.
+std::uint64_t compare_with_plain_loop(const Packing& start, const Move& move,
+                                      const std::vector<std::uint64_t>& pieces) {
+  PlainLoop plain(start, move);
+  const auto loop = make_trial_loop(start.container, move, key);
+  loop->load(start);
+  Packing fast = start;
+  std::uint64_t done = 0;
+  for (const std::uint64_t piece : pieces) {
+    loop->run(piece);
+    for (std::uint64_t k = 0; k < piece; ++k) plain.trial(done++);
+    loop->store(fast);
+    REQUIRE(fast.centres == plain.packing().centres);
+  }
+  CHECK(plain.accepted > 100);
+  CHECK(loop->tally().accepted == plain.accepted);
+  CHECK(loop->tally().trials == done);
+  CHECK(loop->state().next_trial == done);
+  CHECK(deepest_overlap_brute_force(fast).depth == 0);
+  return done;
+}
+
+// Every container x move.
 std::uint64_t compare_with_plain_loop(std::uint32_t n_spheres,
                                       const std::vector<std::uint64_t>& pieces) {
   const std::vector<Container> containers = {
@@ -102,23 +124,7 @@ std::uint64_t compare_with_plain_loop(std::uint32_t n_spheres,
       CAPTURE(container.index(), width_x(container), move.index());
       const double depth = 1 + 4 * n_spheres / footprint_area(container);
       const Packing start = random_packing(container, n_spheres, depth, 8);
-      PlainLoop plain(start, move);
-      const auto loop = make_trial_loop(container, move, key);
-      loop->load(start);
-      Packing fast = start;
-      std::uint64_t done = 0;
-      for (const std::uint64_t piece : pieces) {
-        loop->run(piece);
-        for (std::uint64_t k = 0; k < piece; ++k) plain.trial(done++);
-        loop->store(fast);
-        REQUIRE(fast.centres == plain.packing().centres);
-      }
-      CHECK(plain.accepted > 100);
-      CHECK(loop->tally().accepted == plain.accepted);
-      CHECK(loop->tally().trials == done);
-      CHECK(loop->state().next_trial == done);
-      CHECK(deepest_overlap_brute_force(fast).depth == 0);
-      compared += done;
+      compared += compare_with_plain_loop(start, move, pieces);
     }
   }
   return compared;
@@ -128,6 +134,12 @@ std::uint64_t compare_with_plain_loop(std::uint32_t n_spheres,
 
 TEST_CASE("the trial loop makes the trajectory of a plain loop over all spheres, bit for bit") {
   compare_with_plain_loop(40, {1, 255, 256, 257, 1000, 7, 30'000});
+}
+
+TEST_CASE("the trial loop keeps to the plain loop where hardly any trial is accepted") {
+  const Container container = FullyPeriodicBox{3.9, 3.9, 3.9};
+  const Packing start = random_packing(container, 38, 0, 8);
+  compare_with_plain_loop(start, MetropolisMove{1.9}, {1000, 255, 200'000});
 }
 
 TEST_CASE("the trial loop keeps to the plain loop over ten million trials", "[statistics]") {
