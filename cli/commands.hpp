@@ -13,6 +13,7 @@ void add_check(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
 void add_merge(CLI::App& app, int& code);
+void add_bench(CLI::App& app, int& code);
 void add_fit(CLI::App& app, int& code);
 
 }  // namespace jostle

@@ -36,6 +36,7 @@ int parse_and_run(int argc, char** argv) {
   add_schema(app, code);
   add_info(app, code);
   add_merge(app, code);
+  add_bench(app, code);
   add_fit(app, code);
   try {
     app.parse(argc, argv);

@@ -10,7 +10,7 @@ from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY
 
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
-        for command in ("run", "check", "schema", "info", "merge", "fit"):
+        for command in ("run", "check", "schema", "info", "merge", "fit", "bench"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
                 self.assertIn("Example", text)
@@ -28,11 +28,23 @@ class Help(Case):
                           ["run", "scene.json", "--shard", "3/2"],
                           ["run", "scene.json", "--shard", "1"],
                           ["run", "scene.json", "--time-limit", "soon"],
-                          ["merge", "a.h5"], ["info", "a.h5", "--json", "--digest"]):
+                          ["bench", "gravel"], ["merge", "a.h5"], ["info", "a.h5", "--json", "--digest"]):
             with self.subTest(arguments=arguments):
                 result = self.jostle(*arguments, expect=BAD_INPUT)
                 self.assertNotEqual(result.stderr, "")
                 self.assertEqual(self.files(), ["scene.json"])
+
+
+class Bench(Case):
+    def test_rates_are_printed_a_line_a_state_or_as_json(self):
+        rates = json.loads(self.jostle("bench", "fluid_0.45", "--json").stdout)
+        self.assertIn(rates["instruction_set"], ("baseline", "avx2", "avx512"))
+        (case,) = rates["cases"]
+        self.assertEqual((case["state"], case["spheres"]), ("fluid_0.45", 4096))
+        self.assertGreater(case["trials_per_second"], 0)
+        self.assertTrue(0.25 < case["acceptance"] < 0.4)
+        lines = self.jostle("bench", "fluid_0.45").stdout.splitlines()
+        self.assertRegex(lines[-1], r"^fluid_0\.45 +4096 spheres .* million trials/s")
 
 
 class Scenes(Case):
