@@ -20,14 +20,15 @@ class NeighbourLists {
  public:
   using Index = std::uint32_t;
 
-  /// Makes all lists. `drift` is the mean displacement of a trial that geometry decides: the
-  /// neighbours nearest to a sphere so displaced block it most often and come first.
-  template <class Box>
-  void build(const Box& box, const PackedCentres& centres, double skin, Vec3 drift) {
+  /// Makes all lists of the centres, [n] PackedCentre. `drift` is the mean displacement of a trial
+  /// that geometry decides: the neighbours nearest to a sphere so displaced block it most often and
+  /// come first.
+  template <class Box, class Centres>
+  void build(const Box& box, const Centres& centres, double skin, Vec3 drift) {
     const auto n = static_cast<Index>(centres.size());
     skin_ = skin;
     drift_ = drift;
-    origins_ = centres;
+    origins_.assign(centres.begin(), centres.end());
     grid_.build(Container{box}, 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
     for (bool all_fit = false; !all_fit; stride_ *= 2) {
       rows_.assign(static_cast<std::size_t>(n) * stride_, 0);
