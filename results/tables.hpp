@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/table.hpp"
+
+// What is derived from a run's data and kept in its file: the groups /fits, /analysis and
+// /structure. They can be made again from the data at any time, and are not part of the digest.
+namespace jostle {
+
+/// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
+/// axes as dimension scales, notes as attributes of the table. A table of the same name is
+/// replaced, others stay. Every table tells who made it: attributes version, git_revision,
+/// command_line, made (UTC). The file is never written in place: a changed copy is published over
+/// it. Throws ResultsError, also where another process holds the file's lock.
+void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables);
+
+/// The tables of a group, in the order of their names; none where there is no such group.
+std::vector<Table> read_tables(const std::string& path, const std::string& group);
+
+}  // namespace jostle
