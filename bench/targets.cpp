@@ -160,5 +160,5 @@ int main(int argc, char** argv) {
   fmt::print("instruction set {}, medians of {} interleaved repetitions, processor time\n",
              name(best_instruction_set()), repetitions);
   for (const Target& target : targets) report(target, repetitions);
-  if (!std::getenv("NOGROW"))   report_growth(repetitions);
+  report_growth(repetitions);
 }

@@ -14,8 +14,9 @@ namespace jostle {
 /// Verlet lists: for every sphere the others whose origins lie within 1 + skin of its own, the
 /// likeliest blockers first. An origin is where a sphere stood when its list was last made; a list
 /// holds every sphere that can be touched as long as no sphere is farther than skin / 2 from its
-/// origin. A sphere that goes farther gets a new origin and a new list, alone. What a list holds
-/// beyond that, and its order, decides no trial: only how fast it is made.
+/// origin. A sphere that goes farther gets a new origin and a new list, alone. Sphere i stands in
+/// list j if and only if j stands in list i. What a list holds beyond what can be touched, and its
+/// order, decides no trial: only how fast it is made.
 class NeighbourLists {
  public:
   using Index = std::uint32_t;
@@ -38,10 +39,12 @@ class NeighbourLists {
     }
   }
 
-  /// Gives sphere i a new origin and list and enters it in the lists of its neighbours. False if a
-  /// list is full: then all must be built anew.
+  /// Gives sphere i a new origin and list, takes it out of the lists of its former neighbours and
+  /// enters it in those of the new ones. False if a list is full: then all must be built anew.
   template <class Box>
   [[gnu::noinline]] bool renew(const Box& box, Index i, const PackedCentre& centre) {
+    const Index* const former = row(i);
+    for (Index m = 1; m <= former[0]; ++m) leave(former[m], i);
     origins_[i] = centre;
     grid_.relocate(i, unpacked(centre));
     if (!make_row(box, i)) return false;
@@ -54,6 +57,11 @@ class NeighbourLists {
   /// Row i is rows() + i * stride(): its length, then the spheres.
   const Index* rows() const { return rows_.data(); }
   std::size_t stride() const { return stride_; }
+  const Index* row(Index i) const { return &rows_[i * stride_]; }
+  /// Exchanges the spheres at two places of list i, counted from 0.
+  void swap(Index i, Index a, Index b) {
+    std::swap(rows_[i * stride_ + 1 + a], rows_[i * stride_ + 1 + b]);
+  }
   /// [n] origins; lists are good while no sphere is farther than sqrt(half_skin_squared()) from
   /// its.
   const PackedCentre* origins() const { return origins_.data(); }
@@ -95,11 +103,16 @@ class NeighbourLists {
   bool enter(Index i, Index newcomer) {
     Index* const row = &rows_[i * stride_];
     const Index length = *row;
-    if (std::find(row + 1, row + 1 + length, newcomer) != row + 1 + length) return true;
     if (length + 1 >= stride_) return false;
     row[1 + length] = newcomer;
     *row = length + 1;
     return true;
+  }
+
+  void leave(Index i, Index leaver) {
+    Index* const row = &rows_[i * stride_];
+    Index* const last = row + (*row)--;
+    *std::find(row + 1, last, leaver) = *last;
   }
 
   CellGrid grid_;

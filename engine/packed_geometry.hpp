@@ -1,5 +1,9 @@
 #pragma once
 
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +18,9 @@ namespace jostle {
 
 /// Two lateral coordinates, in one SSE2 register.
 using Pair = double __attribute__((vector_size(16), may_alias));
+
+/// Four numbers in single precision, in one SSE register.
+using Lanes = float __attribute__((vector_size(16), may_alias));
 
 /// A centre ready for the loop: aligned, half a cache line.
 struct alignas(32) PackedCentre {
@@ -54,11 +61,36 @@ inline bool both(Pair low, Pair high) {
   return (inside[0] & inside[1]) != 0;
 }
 
+// Added to every room to floor and sides in single precision, so that it is never too small for
+// steps below 10 diameters.
+inline constexpr float room_margin = 2e-6f;
+
+inline float room(double exact) {
+  return static_cast<float>(std::max(exact, 0.0)) + room_margin;
+}
+inline float room_below(const PackedCentre& r) {
+  return room(r.z - sphere_radius);
+}
+
+/// Room to the nearer of two walls, negative if that is the lower one.
+inline float room_between(double low, double at, double high) {
+  return at - low < high - at ? -room(at - low) : room(high - at);
+}
+
 }  // namespace packed_geometry
 
-/// A container with its constants laid out for the loop.
+/// A container with its constants laid out for the loop. `room` is what a step of the sphere has to
+/// floor and sides, in a form that `leaves` understands: true if a step certainly ends outside.
 template <class Box>
 struct PackedBox;
+
+/// Sides that are no obstacle, over a floor.
+struct PackedFloor {
+  static Lanes room(const PackedCentre& r) {
+    return Lanes{0, 0, packed_geometry::room_below(r), 0};
+  }
+  static bool leaves(const Lanes& room, float, float, float dz) { return dz < -room[2]; }
+};
 
 /// Free lateral space: what walled boxes and cylinders share.
 struct PackedOpenBox {
@@ -68,7 +100,7 @@ struct PackedOpenBox {
 };
 
 template <>
-struct PackedBox<PeriodicBox> {
+struct PackedBox<PeriodicBox> : PackedFloor {
   Pair width;
   explicit PackedBox(const PeriodicBox& box) : width{box.width_x, box.width_y} {}
   PackedCentre wrapped(PackedCentre r) const {
@@ -88,6 +120,17 @@ struct PackedBox<WalledBox> : PackedOpenBox {
     return r.z >= sphere_radius && packed_geometry::both(low, r.xy) &&
            packed_geometry::both(r.xy, high);
   }
+  Lanes room(const PackedCentre& r) const {
+    return Lanes{packed_geometry::room_between(low[0], r.xy[0], high[0]),
+                 packed_geometry::room_between(low[1], r.xy[1], high[1]),
+                 -packed_geometry::room_below(r), 1};
+  }
+  static bool leaves(const Lanes& room, float dx, float dy, float dz) {
+    using Bits = std::int32_t __attribute__((vector_size(16)));
+    const Bits side = (Bits)room & std::int32_t(0x80000000);
+    const Lanes towards = (Lanes)((Bits)Lanes{dx, dy, dz, 0} ^ side);
+    return _mm_movemask_ps((__m128)(towards > (Lanes)((Bits)room ^ side))) != 0;
+  }
 };
 
 template <>
@@ -100,6 +143,17 @@ struct PackedBox<Cylinder> : PackedOpenBox {
   bool clear_of_boundaries(const PackedCentre& r) const {
     const Pair d = r.xy - axis;
     return r.z >= sphere_radius && d[0] * d[0] + d[1] * d[1] <= reach * reach;
+  }
+  // The outward normal, the room below and the room along the normal.
+  Lanes room(const PackedCentre& r) const {
+    const Pair d = r.xy - axis;
+    const double radius = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+    const Pair normal = radius > 0 ? d / radius : Pair{0, 0};
+    return Lanes{static_cast<float>(normal[0]), static_cast<float>(normal[1]),
+                 packed_geometry::room_below(r), packed_geometry::room(reach - radius)};
+  }
+  static bool leaves(const Lanes& room, float dx, float dy, float dz) {
+    return (room[0] * dx + room[1] * dy > room[3]) | (dz < -room[2]);
   }
 };
 
@@ -118,6 +172,8 @@ struct PackedBox<FullyPeriodicBox> {
     return packed_geometry::nearest_image(Pair{d, 0}, Pair{height, 1})[0];
   }
   static bool clear_of_boundaries(const PackedCentre&) { return true; }
+  static Lanes room(const PackedCentre&) { return Lanes{}; }
+  static bool leaves(const Lanes&, float, float, float) { return false; }
 };
 
 /// Squared distance of two centres, to the nearest image.

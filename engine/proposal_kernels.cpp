@@ -32,10 +32,18 @@ inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
 constexpr std::uint32_t n = ProposalBatch::size;
 constexpr std::uint32_t n_lanes = sizeof(Lanes) / sizeof(std::uint64_t);
 
-// The words of n consecutive Philox blocks, word by word; word 0 already turned into a sphere.
+constexpr std::uint32_t n_made = n + ProposalBatch::margin;
+
+// The words of consecutive Philox blocks, word by word; word 0 already turned into a sphere.
 struct Words {
-  alignas(64) std::uint64_t sphere[n], w1[n], w2[n], w3[n];
+  alignas(64) std::uint64_t sphere[n_made], w1[n_made], w2[n_made], w3[n_made];
 };
+
+void name_next_spheres(const Words& words, ProposalBatch& batch) {
+  for (std::uint32_t t = n; t < n_made; ++t) {
+    batch.sphere[t] = static_cast<std::uint32_t>(words.sphere[t]);
+  }
+}
 
 // Philox4x32-10 (Salmon et al. 2011, doi:10.1145/2063384.2063405); constants as in Random123,
 // against which it is tested.
@@ -45,8 +53,8 @@ void make_words(const BatchOrigin& origin, Words& words) {
   const Lanes n_spheres = zero + origin.n_spheres;
   Lanes first = zero;
   for (std::uint32_t lane = 0; lane < n_lanes; ++lane) first[lane] = lane;
-  for (std::uint32_t t = 0; t < n; t += n_lanes) {
-    // origin.first is a multiple of n, so the sum never carries into the high word.
+  for (std::uint32_t t = 0; t < n_made; t += n_lanes) {
+    // origin.first is a multiple of n, so the sum never carries into the high word within a batch.
     Lanes c0 = first + ((origin.first & 0xffffffffu) + t);
     Lanes c1 = zero + (origin.first >> 32), c2 = zero, c3 = zero;
     auto k0 = static_cast<std::uint32_t>(origin.key);
@@ -90,6 +98,7 @@ void polar(const BatchOrigin& origin, const double* __restrict theta_table, doub
            ProposalBatch& __restrict batch) {
   Words words;
   make_words(origin, words);
+  name_next_spheres(words, batch);
   for (std::uint32_t t = 0; t < n; ++t) {
     constexpr int shift = theta_table::shift;
     constexpr std::uint64_t rest = (std::uint64_t{1} << shift) - 1;
@@ -117,6 +126,7 @@ void polar(const BatchOrigin& origin, const double* __restrict theta_table, doub
 void metropolis(const BatchOrigin& origin, ProposalBatch& __restrict batch) {
   Words words;
   make_words(origin, words);
+  name_next_spheres(words, batch);
   for (std::uint32_t t = 0; t < n; ++t) {
     batch.sphere[t] = static_cast<std::uint32_t>(words.sphere[t]);
     batch.dx[t] = -centred(words.w1[t]);

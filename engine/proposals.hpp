@@ -10,7 +10,7 @@ namespace jostle {
 /// step for the Metropolis move.
 struct ProposalBatch {
   static constexpr std::uint32_t size = 256;
-  static constexpr std::uint32_t margin = 16;  // spheres that may be looked at beyond the end
+  static constexpr std::uint32_t margin = 16;  // spheres of the next batch: to be fetched early
   alignas(64) std::uint32_t sphere[size + margin] = {};
   alignas(64) double dx[size];
   alignas(64) double dy[size];

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 #include <vector>
 
 #include "engine/elementary.hpp"
 #include "engine/neighbour_lists.hpp"
 #include "engine/packed_geometry.hpp"
 #include "engine/proposals.hpp"
+#include "engine/shields.hpp"
 #include "engine/slab.hpp"
 #include "engine/step_adaptation.hpp"
 #include "engine/theta_table.hpp"
@@ -105,17 +107,17 @@ class TypedTrialLoop final : public TrialLoop {
   }
   const TrialTally& tally() const override { return tally_; }
   std::size_t bytes() const override {
-    return sizeof(*this) + lists_.bytes() + sizeof(PackedCentre) * centres_.capacity() +
-           sizeof(double) * theta_table_.capacity();
+    return sizeof(*this) + lists_.bytes() + shields_.bytes() +
+           sizeof(PackedCentre) * centres_.capacity() + sizeof(double) * theta_table_.capacity();
   }
 
  private:
   // Room in the skin beyond the longest step, diameters (bench/: little changes from 0.1 to 0.3).
   static constexpr double spare_skin = 0.2;
 
-  // Likely blockers a trial is tested against before any branch, trials so tested together, and the
-  // acceptance, one in so many, above which it does not pay.
-  static constexpr std::uint32_t ahead = 2, group = 16, one_in = 40;
+  // Trials held against shields together, and the acceptances, one in so many, below which that is
+  // begun and above which it is ended.
+  static constexpr std::uint32_t group = 16, quiet_one_in = 6, busy_one_in = 4;
 
   struct BatchCounts {
     std::uint64_t accepted = 0, rising = 0, accepted_rising = 0, distance_tests = 0;
@@ -139,16 +141,18 @@ class TypedTrialLoop final : public TrialLoop {
     PackedCentre* centres;
     const NeighbourLists::Index* rows;
     std::size_t stride;
+    const Shield* shields;
     const PackedCentre* origins;
     double half_skin_squared;
     double step;
-    bool beyond_cache;
+    bool far;  // in memory
   };
   View view() {
     return {PackedBox<Box>(box_),
             centres_.data(),
             lists_.rows(),
             lists_.stride(),
+            shields_.data(),
             lists_.origins(),
             lists_.half_skin_squared(),
             rise == Rise::impossible ? 1.0 : state_.step,
@@ -167,11 +171,23 @@ class TypedTrialLoop final : public TrialLoop {
     if (rise == Rise::thermal || busy_) {
       run_one_by_one(begin, first, last, counts);
     } else {
-      run_ahead(first, last, counts);
+      run_shielded(first, last, counts);
     }
-    busy_ = counts.accepted * one_in > end - begin;
+    if constexpr (rise != Rise::thermal) watch_acceptance(end - begin, counts.accepted);
     return counts;
   }
+
+  // Decides, once a sweep or more rarely, whether shields pay.
+  void watch_acceptance(std::uint64_t trials, std::uint64_t accepted) {
+    watched_trials_ += trials;
+    watched_accepted_ += accepted;
+    if (watched_trials_ < std::max<std::uint64_t>(n_spheres(), 4 * ProposalBatch::size)) return;
+    const bool was_busy = busy_;
+    busy_ = watched_accepted_ * (busy_ ? quiet_one_in : busy_one_in) > watched_trials_;
+    watched_trials_ = watched_accepted_ = 0;
+    if (was_busy && !busy_) raise_shields();
+  }
+  [[gnu::noinline]] void raise_shields() { shields_.build(PackedBox<Box>(box_), centres_, lists_); }
 
   // The loops are never inlined, nor are the rare paths out of them: their code then does not
   // depend on what else a program holds (bench/instruction_costs.py).
@@ -181,13 +197,13 @@ class TypedTrialLoop final : public TrialLoop {
                                         std::uint32_t last, BatchCounts& counts) {
     View here = view();
     for (std::uint32_t k = first; k < last; ++k) {
-      prefetch(here, k);
+      fetch_list(here, k + ProposalBatch::margin);
       const std::uint32_t t = looked_at(k);
       const std::uint32_t i = batch_.sphere[t];
       const PackedCentre target = target_of(here, t);
       if constexpr (rise == Rise::thermal) counts.rising += batch_.dz[t] > 0;
       if (!here.box.clear_of_boundaries(target)) continue;
-      if (blocked(here, i, target, 0, counts.distance_tests)) continue;
+      if (blocked(here, i, target, here.rows[i * here.stride], counts.distance_tests)) continue;
       if constexpr (rise == Rise::thermal) {
         const std::uint64_t trial = state_.next_trial + (t - begin);
         if (batch_.dz[t] > 0 && !rise_passes(trial, here.step * batch_.dz[t])) continue;
@@ -197,47 +213,73 @@ class TypedTrialLoop final : public TrialLoop {
     }
   }
 
-  // The same where few trials are accepted: a group of trials is first tested without branches
-  // against `ahead` likely blockers each, and only the open ones are looked at closely. One that
-  // nothing blocks ends its group: it moves a sphere or renews a list that the rest were tested
-  // against.
-  [[gnu::noinline]] void run_ahead(std::uint32_t first, std::uint32_t last, BatchCounts& counts) {
-    std::array<std::uint32_t, group> open;
+  // The same where fewer trials are accepted: a group of trials is first held against the shields,
+  // without branches, and only those that pass are looked at closely; where memory is far, two
+  // groups later, when what that takes has been fetched. One that nothing blocks forgets what was
+  // found after it: it moves a sphere or renews a list.
+  [[gnu::noinline]] void run_shielded(std::uint32_t first, std::uint32_t last,
+                                      BatchCounts& counts) {
+    std::array<std::uint32_t, 4 * group> open;
+    std::uint32_t n_open = 0, n_fetched = 0;
     View here = view();
-    for (std::uint32_t k = first; k < last;) {
-      const std::uint32_t end = std::min(k + group, last);
-      std::uint32_t n_open = 0;
-      for (std::uint32_t g = k; g < end; ++g) {
-        prefetch(here, g);
-        open[n_open] = g;
-        n_open += seems_open(here, looked_at(g));
+    for (std::uint32_t k = first; k < last || n_open > 0;) {
+      const std::uint32_t known = n_open, end = std::min(k + group, last);
+      counts.distance_tests += Shield::size * (end - k);
+      for (; k < end; ++k) {
+        __builtin_prefetch(&here.shields[batch_.sphere[looked_at(k + ProposalBatch::margin)]]);
+        open[n_open] = k;
+        n_open += !shut_out(here, looked_at(k));
       }
-      counts.distance_tests += ahead * (end - k);
-      k = end;
-      for (std::uint32_t s = 0; s < n_open; ++s) {
-        const std::uint32_t t = looked_at(open[s]);
-        const std::uint32_t i = batch_.sphere[t];
-        const PackedCentre target = target_of(here, t);
-        if (blocked(here, i, target, ahead, counts.distance_tests)) continue;
-        accept(here, i, target, counts);
+      std::uint32_t due = n_open;
+      if (here.far) {
+        if (k < last) due = n_fetched;
+        for (std::uint32_t s = n_fetched; s < known; ++s) fetch_neighbours(here, open[s]);
+        for (std::uint32_t s = known; s < n_open; ++s) fetch_list(here, open[s]);
+        n_fetched = known;
+      }
+      std::uint32_t s = 0;
+      while (s < due && !passes(here, looked_at(open[s]), counts)) ++s;
+      if (s < due) {
         k = open[s] + 1;
-        break;
+        n_open = n_fetched = 0;
+      } else {
+        std::copy(open.begin() + due, open.begin() + n_open, open.begin());
+        n_open -= due;
+        n_fetched -= std::min(n_fetched, due);
       }
     }
   }
 
-  [[gnu::always_inline]] bool seems_open(const View& here, std::uint32_t t) const {
+  // A trial that its shield lets pass. True if no neighbour blocks it: it is then accepted, or a
+  // new list shows what blocks it.
+  [[gnu::always_inline]] bool passes(View& here, std::uint32_t t, BatchCounts& counts) {
     const std::uint32_t i = batch_.sphere[t];
     const PackedCentre target = target_of(here, t);
+    if (!here.box.clear_of_boundaries(target)) return false;
+    if (blocked_beyond_shield(here, i, target, counts.distance_tests)) return false;
+    accept(here, i, target, counts);
+    return true;
+  }
+
+  [[gnu::always_inline]] bool shut_out(const View& here, std::uint32_t t) const {
+    return shuts<Box>(here.shields[batch_.sphere[t]], static_cast<float>(here.step * batch_.dx[t]),
+                      static_cast<float>(here.step * batch_.dy[t]),
+                      static_cast<float>(here.step * batch_.dz[t]));
+  }
+
+  // Whether a neighbour blocks what the shield let pass. One that does moves up in the list:
+  // shields come to hold those that block most often.
+  bool blocked_beyond_shield(const View& here, std::uint32_t i, const PackedCentre& target,
+                             std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
-    unsigned shut = !here.box.clear_of_boundaries(target);
-#pragma GCC unroll 8
-    for (std::uint32_t m = 1; m <= ahead; ++m) {
-      // Beyond its length a row holds anything, also i itself.
-      shut |= unsigned{m <= *row} &
-              unsigned{distance_squared(here.box, target, here.centres[row[m]]) < 1.0};
+    for (std::uint32_t place = Shield::size; place < row[0]; ++place) {
+      ++tests;
+      if (distance_squared(here.box, target, here.centres[row[1 + place]]) < 1.0) {
+        shields_.promote(here.box, centres_, lists_, i, place);
+        return true;
+      }
     }
-    return shut == 0;
+    return blocked(here, i, target, std::min(*row, Shield::size), tests);
   }
 
   [[gnu::always_inline]] PackedCentre target_of(const View& here, std::uint32_t t) const {
@@ -250,29 +292,35 @@ class TypedTrialLoop final : public TrialLoop {
   // does.
   [[gnu::always_inline]] bool accept(View& here, std::uint32_t i, const PackedCentre& target,
                                      BatchCounts& counts) {
+    const bool shielded = rise != Rise::thermal && !busy_;
     if (distance_squared(here.box, target, here.origins[i]) > here.half_skin_squared) {
+      if (shielded) shields_.before_renewal(lists_, i);
       // The list may lack what lies there: one made where the sphere stands has it.
       if (lists_.renew(box_, i, here.centres[i])) {
         ++tally_.list_renewals;
+        if (shielded) shields_.after_renewal(here.box, centres_, lists_);
       } else {
         build_lists();
         here = view();
       }
-      if (blocked(here, i, target, 0, counts.distance_tests)) return false;
+      if (blocked(here, i, target, *lists_.row(i), counts.distance_tests)) {
+        if (shielded) shields_.follow(here.box, centres_, lists_, i);
+        return false;
+      }
     }
     here.centres[i] = target;
+    if (shielded) shields_.follow(here.box, centres_, lists_, i);
     ++counts.accepted;
     return true;
   }
 
-  // Whether a neighbour, of those after the first `skipped`, overlaps a sphere i placed at
-  // `target`.
+  // Whether one of the first n neighbours overlaps a sphere i placed at `target`.
   [[gnu::always_inline]] static bool blocked(const View& here, std::uint32_t i,
-                                             const PackedCentre& target, std::uint32_t skipped,
+                                             const PackedCentre& target, std::uint32_t n,
                                              std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
-    const auto* const last = row + 1 + *row;
-    for (const auto* j = row + 1 + skipped; j < last; ++j) {
+    const auto* const last = row + 1 + n;
+    for (const auto* j = row + 1; j < last; ++j) {
       ++tests;
       if (distance_squared(here.box, target, here.centres[*j]) < 1.0) return true;
     }
@@ -284,17 +332,14 @@ class TypedTrialLoop final : public TrialLoop {
     return u < exponential(-(metropolis_.beta * dz));
   }
 
-  // Where memory is far: a trial's sphere early, then what will be tested first.
-  [[gnu::always_inline]] void prefetch(const View& here, std::uint32_t k) const {
-    const std::uint32_t soon = batch_.sphere[looked_at(k + ProposalBatch::margin)];
-    __builtin_prefetch(&here.centres[soon]);
-    __builtin_prefetch(here.rows + soon * here.stride);
-    if (here.beyond_cache) {
-      const std::uint32_t next = batch_.sphere[looked_at(k + ProposalBatch::margin / 2)];
-      const auto* const row = here.rows + next * here.stride;
-      __builtin_prefetch(&here.centres[row[1]]);
-      __builtin_prefetch(&here.centres[row[2]]);
-    }
+  [[gnu::always_inline]] void fetch_list(const View& here, std::uint32_t k) const {
+    const std::uint32_t i = batch_.sphere[looked_at(k)];
+    __builtin_prefetch(&here.centres[i]);
+    __builtin_prefetch(here.rows + i * here.stride);
+  }
+  void fetch_neighbours(const View& here, std::uint32_t k) const {
+    const auto* const row = here.rows + batch_.sphere[looked_at(k)] * here.stride;
+    for (std::uint32_t m = 1; m <= row[0]; ++m) __builtin_prefetch(&here.centres[row[m]]);
   }
 
   // Trials that rise in the cold are refused unseen: the others of a batch, in order.
@@ -305,7 +350,8 @@ class TypedTrialLoop final : public TrialLoop {
       count += !(batch_.dz[t] > 0);
     }
     n_falling_ = count;
-    std::fill_n(falling_.begin() + count, ProposalBatch::margin, 0u);
+    std::iota(falling_.begin() + count, falling_.begin() + count + ProposalBatch::margin,
+              ProposalBatch::size);
   }
   std::uint32_t falling_before(std::uint32_t t) const {
     const auto end = falling_.begin() + n_falling_;
@@ -334,6 +380,7 @@ class TypedTrialLoop final : public TrialLoop {
     if constexpr (rise == Rise::refused) drift.z = -0.5 * state_.step;
     lists_.build(box_, centres_, 2 * longest_step() + spare_skin, drift);
     lists_valid_ = true;
+    if (!busy_) raise_shields();
     ++tally_.list_builds;
   }
 
@@ -349,7 +396,9 @@ class TypedTrialLoop final : public TrialLoop {
   NeighbourLists lists_;
   bool lists_valid_ = false;
   bool batch_valid_ = false;
-  bool busy_ = true;  // many trials were accepted of late
+  Shields<Box> shields_;  // up to date unless busy
+  bool busy_ = true;      // many trials were accepted of late
+  std::uint64_t watched_trials_ = 0, watched_accepted_ = 0;
   ProposalBatch batch_;
   std::array<std::uint32_t, ProposalBatch::size + ProposalBatch::margin> falling_;
   std::uint32_t n_falling_ = 0;

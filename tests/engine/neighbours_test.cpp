@@ -124,9 +124,10 @@ TEST_CASE("lists renewed one by one still hold all that can be touched") {
                 const Vec3 away =
                     separation(box, unpacked(lists.origins()[a]), unpacked(centres[b]));
                 const double reach = 1 + 0.5 * skin;
-                if (b != a && norm_squared(away) < reach * reach) {
-                  REQUIRE(std::ranges::find(list, b) != list.end());
-                }
+                const bool listed = std::ranges::find(list, b) != list.end();
+                if (b != a && norm_squared(away) < reach * reach) REQUIRE(listed);
+                const auto other = list_of(lists, b);
+                REQUIRE(listed == (std::ranges::find(other, a) != other.end()));
               }
             }
           }

@@ -142,6 +142,23 @@ TEST_CASE("the trial loop keeps to the plain loop where hardly any trial is acce
   compare_with_plain_loop(start, MetropolisMove{1.9}, {1000, 255, 200'000});
 }
 
+TEST_CASE("the trial loop keeps to the plain loop where spheres wander behind their shields") {
+  // Accepted often enough that lists are renewed, rarely enough that trials are held against
+  // shields first.
+  for (const Container& container : std::vector<Container>{FullyPeriodicBox{4.1, 4.1, 4.1},
+                                                           WalledBox{4.2, 4.3}, Cylinder{4.6}}) {
+    CAPTURE(container.index());
+    const Packing start = random_packing(container, 45, 6, 14);
+    const MetropolisMove move{0.5, has_gravity(container) ? infinity : 0.0};
+    const auto loop = make_trial_loop(container, move, key);
+    loop->load(start);
+    loop->run(200'000);
+    if (!has_gravity(container)) CHECK(loop->tally().list_renewals > 100);
+    CHECK(loop->tally().accepted * 6 < 200'000);
+    compare_with_plain_loop(start, move, {200'000});
+  }
+}
+
 TEST_CASE("the trial loop keeps to the plain loop over ten million trials", "[statistics]") {
   CHECK(compare_with_plain_loop(40, {100'000, 165'001}) >= 10'000'000);
 }
