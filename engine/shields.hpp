@@ -38,8 +38,8 @@ class Shields {
   }
 
   /// Sphere i has moved.
-  void follow(const PackedBox<Box>& box, const PackedCentres& centres, const NeighbourLists& lists,
-              Index i) {
+  [[gnu::noinline]] void follow(const PackedBox<Box>& box, const PackedCentres& centres,
+                                const NeighbourLists& lists, Index i) {
     refresh(box, centres, lists, i);
     const Index* const row = lists.row(i);
     for (Index m = 1; m <= row[0]; ++m) {
@@ -58,14 +58,14 @@ class Shields {
     former_.assign(row + 1, row + 1 + row[0]);
   }
   /// It has got it; follow() is still to be called.
-  void after_renewal(const PackedBox<Box>& box, const PackedCentres& centres,
-                     const NeighbourLists& lists) {
+  [[gnu::noinline]] void after_renewal(const PackedBox<Box>& box, const PackedCentres& centres,
+                                       const NeighbourLists& lists) {
     for (const Index j : former_) refresh(box, centres, lists, j);
   }
 
   /// The neighbour at place `place` of row i, counted from 0, blocks more often than was thought.
-  void promote(const PackedBox<Box>& box, const PackedCentres& centres, NeighbourLists& lists,
-               Index i, Index place) {
+  [[gnu::noinline]] void promote(const PackedBox<Box>& box, const PackedCentres& centres,
+                                 NeighbourLists& lists, Index i, Index place) {
     lists.swap(i, place, place - 1);
     if (place == Shield::size) {
       see(box, centres[i], centres[lists.row(i)[place]], shields_[i], place - 1);
@@ -76,8 +76,8 @@ class Shields {
   std::size_t bytes() const { return sizeof(Shield) * shields_.capacity(); }
 
  private:
-  void refresh(const PackedBox<Box>& box, const PackedCentres& centres, const NeighbourLists& lists,
-               Index i) {
+  [[gnu::noinline]] void refresh(const PackedBox<Box>& box, const PackedCentres& centres,
+                                 const NeighbourLists& lists, Index i) {
     Shield shield;
     const Index* const row = lists.row(i);
     const Index n = std::min(row[0], Shield::size);
@@ -87,8 +87,8 @@ class Shields {
     shields_[i] = shield;
   }
 
-  static void see(const PackedBox<Box>& box, const PackedCentre& from, const PackedCentre& to,
-                  Shield& shield, Index lane) {
+  [[gnu::always_inline]] static void see(const PackedBox<Box>& box, const PackedCentre& from,
+                                         const PackedCentre& to, Shield& shield, Index lane) {
     const Pair lateral = box.lateral(to.xy - from.xy);
     shield.x[lane] = static_cast<float>(lateral[0]);
     shield.y[lane] = static_cast<float>(lateral[1]);

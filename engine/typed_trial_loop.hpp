@@ -269,8 +269,8 @@ class TypedTrialLoop final : public TrialLoop {
 
   // Whether a neighbour blocks what the shield let pass. One that does moves up in the list:
   // shields come to hold those that block most often.
-  bool blocked_beyond_shield(const View& here, std::uint32_t i, const PackedCentre& target,
-                             std::uint64_t& tests) {
+  [[gnu::noinline]] bool blocked_beyond_shield(const View& here, std::uint32_t i,
+                                               const PackedCentre& target, std::uint64_t& tests) {
     const auto* const row = here.rows + i * here.stride;
     for (std::uint32_t place = Shield::size; place < row[0]; ++place) {
       ++tests;
@@ -337,7 +337,7 @@ class TypedTrialLoop final : public TrialLoop {
     __builtin_prefetch(&here.centres[i]);
     __builtin_prefetch(here.rows + i * here.stride);
   }
-  void fetch_neighbours(const View& here, std::uint32_t k) const {
+  [[gnu::noinline]] void fetch_neighbours(const View& here, std::uint32_t k) const {
     const auto* const row = here.rows + batch_.sphere[looked_at(k)] * here.stride;
     for (std::uint32_t m = 1; m <= row[0]; ++m) __builtin_prefetch(&here.centres[row[m]]);
   }
