@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t pilot_budget = 60'000'000;  // trials, shared by the points tried
+constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
 constexpr double process_bytes = 40e6;              // libraries and bookkeeping
 
 struct CheckArguments {
@@ -133,7 +133,7 @@ void add_check(CLI::App& app, int& code) {
                     "Leave out the short trial that time and memory are estimated from");
   command->footer(
       "Examples:\n"
-      "  jostle check scene.json              a few seconds\n"
+      "  jostle check scene.json              up to about ten seconds\n"
       "  jostle check scene.json --no-pilot   at once, without estimates of time and memory\n"
       "\n"
       "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
