@@ -117,7 +117,7 @@ class TypedTrialLoop final : public TrialLoop {
 
   // Trials held against shields together, and the acceptances, one in so many, below which that is
   // begun and above which it is ended.
-  static constexpr std::uint32_t group = 16, quiet_one_in = 6, busy_one_in = 4;
+  static constexpr std::uint32_t group = 16, quiet_one_in = 6, busy_one_in = 4, rare_one_in = 100;
 
   struct BatchCounts {
     std::uint64_t accepted = 0, rising = 0, accepted_rising = 0, distance_tests = 0;
@@ -145,7 +145,7 @@ class TypedTrialLoop final : public TrialLoop {
     const PackedCentre* origins;
     double half_skin_squared;
     double step;
-    bool far;  // in memory
+    bool wait;  // for what trials that pass their shields take to look at closely
   };
   View view() {
     return {PackedBox<Box>(box_),
@@ -156,7 +156,7 @@ class TypedTrialLoop final : public TrialLoop {
             lists_.origins(),
             lists_.half_skin_squared(),
             rise == Rise::impossible ? 1.0 : state_.step,
-            centres_.size() > 10'000};
+            rare_ && centres_.size() > 10'000};
   }
 
   BatchCounts run_batch(std::uint32_t begin, std::uint32_t end) {
@@ -184,6 +184,7 @@ class TypedTrialLoop final : public TrialLoop {
     if (watched_trials_ < std::max<std::uint64_t>(n_spheres(), 4 * ProposalBatch::size)) return;
     const bool was_busy = busy_;
     busy_ = watched_accepted_ * (busy_ ? quiet_one_in : busy_one_in) > watched_trials_;
+    rare_ = watched_accepted_ * rare_one_in < watched_trials_;
     watched_trials_ = watched_accepted_ = 0;
     if (was_busy && !busy_) raise_shields();
   }
@@ -214,9 +215,9 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   // The same where fewer trials are accepted: a group of trials is first held against the shields,
-  // without branches, and only those that pass are looked at closely; where memory is far, two
-  // groups later, when what that takes has been fetched. One that nothing blocks forgets what was
-  // found after it: it moves a sphere or renews a list.
+  // without branches, and only those that pass are looked at closely; where memory is far and
+  // hardly any is accepted, two groups later, when what that takes has been fetched. One that
+  // nothing blocks forgets what was found after it: it moves a sphere or renews a list.
   [[gnu::noinline]] void run_shielded(std::uint32_t first, std::uint32_t last,
                                       BatchCounts& counts) {
     std::array<std::uint32_t, 4 * group> open;
@@ -231,7 +232,7 @@ class TypedTrialLoop final : public TrialLoop {
         n_open += !shut_out(here, looked_at(k));
       }
       std::uint32_t due = n_open;
-      if (here.far) {
+      if (here.wait) {
         if (k < last) due = n_fetched;
         for (std::uint32_t s = n_fetched; s < known; ++s) fetch_neighbours(here, open[s]);
         for (std::uint32_t s = known; s < n_open; ++s) fetch_list(here, open[s]);
@@ -398,6 +399,7 @@ class TypedTrialLoop final : public TrialLoop {
   bool batch_valid_ = false;
   Shields<Box> shields_;  // up to date unless busy
   bool busy_ = true;      // many trials were accepted of late
+  bool rare_ = false;     // hardly any
   std::uint64_t watched_trials_ = 0, watched_accepted_ = 0;
   ProposalBatch batch_;
   std::array<std::uint32_t, ProposalBatch::size + ProposalBatch::margin> falling_;
