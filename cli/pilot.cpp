@@ -39,7 +39,8 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   Packing packing = make_start(plan.start, plan.container, estimate.n_spheres, start_stream);
   const Seconds start_time = Clock::now() - began;
 
-  const auto loop = make_trial_loop(plan.container, plan.move, key(Purpose::trials));
+  const auto loop = make_trial_loop(plan.container, plan.move, key(Purpose::trials),
+                                    best_instruction_set(), plan.sampler);
   const auto relax_began = Clock::now();
   RelaxationProgress before;
   if (relaxes_before_recording(plan.start)) {

@@ -63,6 +63,31 @@ class Check {
     if (all_sound({"/protocol"})) taps_are_idle();
   }
 
+  void sampler_suits_the_move() {
+    if (scene_.sampler == Sampler::exhaustive || !all_sound({"/relax", "/container"})) return;
+    const std::string instead = ": use \"exhaustive\"";
+    if (is<FullyPeriodicBox>(scene_.container)) {
+      note("/relax/sampler",
+           "skipping needs trials that only fall, and without gravity "
+           "(fully_periodic) none does" +
+               instead);
+    }
+    const auto* move = std::get_if<MetropolisMove>(&scene_.move);
+    if (!move) return;
+    if (!std::isinf(move->beta)) {
+      note("/relax/sampler",
+           "skipping needs trials that only fall, and a finite beta lets "
+           "some rise" +
+               instead);
+    }
+    if (move->adaptation && move->adaptation->base == AcceptanceBase::not_upward) {
+      note("/relax/sampler",
+           "skipping does not see the upward trials that the adaptation of the "
+           "step leaves out (\"of\": \"not_upward\")" +
+               instead);
+    }
+  }
+
   void relaxation_can_end() {
     if (!all_sound({"/relax"})) return;
     const auto* fixed = std::get_if<SweepsStop>(&scene_.stop.rule);
@@ -144,6 +169,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   Check check(scene, faults);
   check.start_suits_container();
   check.fluid_has_no_gravity();
+  check.sampler_suits_the_move();
   check.relaxation_can_end();
   check.observables_have_names();
   check.snapshots_are_reached();

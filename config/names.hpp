@@ -19,6 +19,8 @@ inline constexpr NameTable<ThetaLaw, 3> theta_laws{{{"gaussian", ThetaLaw::gauss
 inline constexpr NameTable<AcceptanceBase, 2> acceptance_bases{
     {{"all_trials", AcceptanceBase::all_trials}, {"not_upward", AcceptanceBase::not_upward}}};
 inline constexpr NameTable<Lattice, 2> lattices{{{"hcp", Lattice::hcp}, {"fcc", Lattice::fcc}}};
+inline constexpr NameTable<Sampler, 2> samplers{
+    {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::skipping}}};
 inline constexpr NameTable<Streams, 2> stream_kinds{
     {{"independent", Streams::independent}, {"matched", Streams::matched}}};
 

@@ -9,10 +9,11 @@
 // it noted a fault, the part is a default that stands in for it.
 namespace jostle {
 
-/// "relax": the moves and when they end.
+/// "relax": the moves, how they are found and when they end.
 struct Relaxation {
   Move move;
   Stop stop;
+  Sampler sampler = Sampler::exhaustive;
 };
 
 Container read_container(const Reader& in);

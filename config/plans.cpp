@@ -77,6 +77,7 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
     plan.protocol = stages(here.protocol);
     plan.move = here.move;
     plan.stop = here.stop;
+    plan.sampler = here.sampler;
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots);
     plans.push_back(std::move(plan));

@@ -80,6 +80,7 @@ void read_simulation(const Reader& in, Scene& scene) {
     const Relaxation relaxation = read_relaxation(*relax);
     scene.move = relaxation.move;
     scene.stop = relaxation.stop;
+    scene.sampler = relaxation.sampler;
   }
 }
 

@@ -127,7 +127,7 @@ struct StopWriter {
 
 Relaxation read_relaxation(const Reader& in) {
   Relaxation relaxation;
-  if (!in.is_object_of({"polar", "metropolis", "stop", "max_sweeps"})) return relaxation;
+  if (!in.is_object_of({"polar", "metropolis", "stop", "max_sweeps", "sampler"})) return relaxation;
   const auto polar = in.find("polar");
   const auto metropolis = in.find("metropolis");
   if (polar) relaxation.move = read_polar(*polar);
@@ -135,6 +135,7 @@ Relaxation read_relaxation(const Reader& in) {
   if (polar && metropolis) in.fault("expected only one of the keys polar, metropolis");
   if (const auto stop = in.find("stop")) relaxation.stop.rule = read_stop(*stop);
   in.read_whole("max_sweeps", relaxation.stop.max_sweeps, 1, most_sweeps);
+  in.read_name("sampler", relaxation.sampler, samplers);
   return relaxation;
 }
 
@@ -143,6 +144,7 @@ Json written(const Relaxation& relaxation) {
   std::visit(MoveWriter{out}, relaxation.move);
   out["stop"] = std::visit(StopWriter{}, relaxation.stop.rule);
   out["max_sweeps"] = relaxation.stop.max_sweeps;
+  out["sampler"] = name_in(samplers, relaxation.sampler);
   return out;
 }
 

@@ -23,7 +23,7 @@ Json resolved(const Scene& scene) {
   out["spheres"] = scene.n_spheres;
   out["start"] = written(scene.start);
   out["protocol"] = written(scene.protocol);
-  out["relax"] = written(Relaxation{scene.move, scene.stop});
+  out["relax"] = written(Relaxation{scene.move, scene.stop, scene.sampler});
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);
   out["sweep"] = written(scene.sweep);

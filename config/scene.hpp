@@ -95,6 +95,7 @@ struct Scene {
   std::vector<ProtocolLine> protocol;
   Move move;
   Stop stop;
+  Sampler sampler = Sampler::exhaustive;
 
   std::vector<Observable> observables;
   SnapshotChoice snapshots;

@@ -10,6 +10,7 @@
 #include "engine/starts.hpp"
 #include "engine/stops.hpp"
 #include "engine/taps.hpp"
+#include "engine/trial_loop.hpp"
 #include "structure/observables.hpp"
 
 namespace jostle {
@@ -52,6 +53,7 @@ struct Plan {
   std::vector<Stage> protocol;
   Move move;
   Stop stop;
+  Sampler sampler = Sampler::exhaustive;
 
   std::vector<Observable> observables;
   Snapshots snapshots;

@@ -109,6 +109,7 @@ void Realization::record(Slice& slice) {
   state_.dropped_offsets = 0;
   if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
     state_.move = loop_->state();
+    state_.sampler = loop_->sampler_state();
     loop_.reset();
   }
 }
@@ -145,7 +146,10 @@ SnapshotRecord Realization::snapshot_of_row() const {
 RealizationState Realization::state() const {
   RealizationState state = state_;
   state.tap_stream_position = tap_random_.position();
-  if (loop_) state.move = loop_->state();
+  if (loop_) {
+    state.move = loop_->state();
+    state.sampler = loop_->sampler_state();
+  }
   Packing stored = packing_;
   if (state_.relaxing && loop_) loop_->store(stored);
   state.centres = std::move(stored.centres);
@@ -156,9 +160,10 @@ RealizationState Realization::state() const {
 TrialLoop& Realization::loop() {
   if (loop_) return *loop_;
   const Purpose purpose = state_.rows == 0 ? Purpose::start_trials : Purpose::trials;
-  loop_ = make_trial_loop(plan_.container, plan_.move, key_of(plan_, index_, purpose));
+  loop_ = make_trial_loop(plan_.container, plan_.move, key_of(plan_, index_, purpose),
+                          best_instruction_set(), plan_.sampler);
   loop_->load(packing_);
-  if (state_.move.next_trial > 0) loop_->restore(state_.move);
+  if (state_.move.next_trial > 0) loop_->restore(state_.move, state_.sampler);
   return *loop_;
 }
 

@@ -53,6 +53,7 @@ struct RealizationState {
   bool relaxing = false;   // tap `rows` was excited and is not yet relaxed
   RelaxationProgress relaxation;
   MoveState move;
+  SamplerState sampler;
   std::uint64_t tap_stream_position = 0;  // of Purpose::tap
   std::uint64_t dropped_offsets = 0;      // of the tap that is being relaxed
   HeightWindow stop_window{0, 0};

@@ -1,6 +1,16 @@
 #include "results/part_content.hpp"
 
+#include <stdexcept>
+
 namespace jostle {
+
+namespace {
+
+// Leads the bytes of a state; counts up when they change, from a number that no older state, which
+// began with its rows, can begin with.
+constexpr std::uint32_t state_format = 0xf0000002;
+
+}  // namespace
 
 std::size_t SeriesPiece::bytes() const {
   std::size_t n = rows.size() * sizeof(double);
@@ -11,6 +21,7 @@ std::size_t SeriesPiece::bytes() const {
 }
 
 void put(ByteWriter& writer, const RealizationState& state) {
+  writer.put(state_format);
   writer.put(state.rows);
   writer.put(state.relaxing);
   writer.put(state.relaxation.status);
@@ -24,6 +35,12 @@ void put(ByteWriter& writer, const RealizationState& state) {
   writer.put(state.move.window_trials);
   writer.put(state.move.window_base);
   writer.put(state.move.window_accepted);
+  writer.put(state.sampler.skipping);
+  writer.put(state.sampler.window_trials);
+  writer.put(state.sampler.window_accepted);
+  writer.put(state.sampler.candidate);
+  writer.put(state.sampler.pending);
+  writer.put(state.sampler.reference_step);
   writer.put(state.tap_stream_position);
   writer.put(state.dropped_offsets);
   writer.put(state.stop_window.low);
@@ -33,6 +50,8 @@ void put(ByteWriter& writer, const RealizationState& state) {
 }
 
 RealizationState get_realization_state(ByteReader& reader) {
+  if (reader.get<std::uint32_t>() != state_format)
+    throw std::out_of_range("a state of another version of the program");
   RealizationState state;
   state.rows = reader.get<std::uint64_t>();
   state.relaxing = reader.get<bool>();
@@ -47,6 +66,12 @@ RealizationState get_realization_state(ByteReader& reader) {
   state.move.window_trials = reader.get<std::uint64_t>();
   state.move.window_base = reader.get<std::uint64_t>();
   state.move.window_accepted = reader.get<std::uint64_t>();
+  state.sampler.skipping = reader.get<bool>();
+  state.sampler.window_trials = reader.get<std::uint64_t>();
+  state.sampler.window_accepted = reader.get<std::uint64_t>();
+  state.sampler.candidate = reader.get<std::uint64_t>();
+  state.sampler.pending = reader.get<std::uint64_t>();
+  state.sampler.reference_step = reader.get<double>();
   state.tap_stream_position = reader.get<std::uint64_t>();
   state.dropped_offsets = reader.get<std::uint64_t>();
   state.stop_window.low = reader.get<double>();

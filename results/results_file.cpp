@@ -215,7 +215,12 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
     if (!exists(impl_->file, name)) return std::nullopt;
     const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
     ByteReader reader(std::as_bytes(std::span(bytes)));
-    return get_realization_state(reader);
+    try {
+      return get_realization_state(reader);
+    } catch (const std::out_of_range&) {
+      throw Hdf5Error("/" + name +
+                      " was written by another version of jostle: resume with that one");
+    }
   });
 }
 

@@ -7,18 +7,25 @@ from support import BAD_INPUT, BROKEN, TINY, Case, changed
 # Realizations of unequal length: the stop rule decides.
 UNEQUAL = changed(TINY, realizations=5, sweep={"/protocol/0/tap/dilate": [0.005, 0.15]},
                   relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}})
+SKIPPING = changed(UNEQUAL, relax={
+    "polar": {}, "stop": {"mean_height": {"eta": 1e-6, "every_sweeps": 100}},
+    "sampler": "skipping"})
 
 
 class Threads(Case):
-    def test_one_two_and_three_threads_give_the_same_digest(self):
-        self.write(UNEQUAL)
+    def digests_of_one_two_and_three_threads(self, scene):
+        self.write(scene)
         digests = set()
         for threads in (1, 2, 3):
-            self.run_scene("--threads", threads, "-o", f"{threads}.h5")
+            self.run_scene("--threads", threads, "-o", f"{threads}.h5", "--force")
             digests.add(self.digest(f"{threads}.h5"))
-        self.run_scene("-o", "environment.h5", environment={"JOSTLE_THREADS": "2"})
+        self.run_scene("-o", "environment.h5", "--force", environment={"JOSTLE_THREADS": "2"})
         digests.add(self.digest("environment.h5"))
-        self.assertEqual(len(digests), 1)
+        return digests
+
+    def test_one_two_and_three_threads_give_the_same_digest(self):
+        self.assertEqual(len(self.digests_of_one_two_and_three_threads(UNEQUAL)), 1)
+        self.assertEqual(len(self.digests_of_one_two_and_three_threads(SKIPPING)), 1)
 
     def test_another_seed_gives_another_digest(self):
         self.write(TINY)
@@ -75,6 +82,15 @@ class Extension(Case):
         self.run_scene("-o", "straight.h5")
         self.assertEqual(self.digest("grown.h5"), self.digest("straight.h5"))
 
+    def test_more_taps_later_equal_a_straight_run_of_the_skipping_sampler(self):
+        self.write(changed(SKIPPING, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
+                           snapshots={"taps": [0]}))
+        self.run_scene("-o", "grown.h5")
+        self.write(changed(SKIPPING, snapshots={"taps": [0, 4]}))
+        self.run_scene("-o", "grown.h5", "--resume")
+        self.run_scene("-o", "straight.h5")
+        self.assertEqual(self.digest("grown.h5"), self.digest("straight.h5"))
+
     def test_a_resume_of_a_finished_run_changes_nothing(self):
         self.write(TINY)
         self.run_scene()
@@ -88,6 +104,8 @@ class Extension(Case):
         before = (self.folder / "tiny.h5").read_bytes()
         for change, pointer in (({"seed": 5}, "/seed"), ({"spheres": 49}, "/spheres"),
                                 ({"realizations": 2}, "/realizations"),
+                                ({"relax": {**TINY["relax"], "sampler": "skipping"}},
+                                 "/relax/sampler"),
                                 ({"sweep": {"/protocol/0/tap/dilate": [0.02, 0.2]}}, "/sweep")):
             with self.subTest(change=change):
                 self.write(changed(TINY, **change))

@@ -21,6 +21,13 @@ SCENES = {
         TINY, start={"random_settle": {}},
         relax={"metropolis": {"max_step": 0.1},
                "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}}),
+    "polar, skipping": changed(
+        TINY, relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-6, "every_sweeps": 100}},
+                     "sampler": "skipping"}),
+    "cold Metropolis between walls, skipping": changed(
+        TINY, container={"sides": "walls", "width": 5},
+        relax={"metropolis": {"max_step": 0.2, "adapt": {}}, "stop": {"sweeps": 1000},
+               "sampler": "skipping"}),
     "Metropolis at finite beta": changed(
         TINY, relax={"metropolis": METROPOLIS, "stop": {"sweeps": 100}}),
 }

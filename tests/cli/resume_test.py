@@ -10,6 +10,9 @@ from support import FAILED, STOPPED, TINY, Case, changed
 SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
                relax={"polar": {}, "stop": {"sweeps": 400000}}, snapshots={"taps": [0, 2]})
 del SLOW["sweep"]
+# The same with trials that are skipped by the hundred.
+SKIPPING = changed(SLOW, relax={"polar": {}, "stop": {"sweeps": 20000000},
+                                "max_sweeps": 20000000, "sampler": "skipping"})
 
 
 class Stops(Case):
@@ -46,6 +49,13 @@ class Stops(Case):
                 (self.folder / "tiny.h5").unlink()
 
     def test_a_chain_of_time_limits_reaches_the_end_with_the_same_digest(self):
+        self.chain_of_time_limits()
+
+    def test_a_chain_of_time_limits_reaches_the_end_of_relaxations_that_skip(self):
+        self.write(SKIPPING)
+        self.chain_of_time_limits()
+
+    def chain_of_time_limits(self):
         self.run_scene("-o", "straight.h5")
         stops = 0
         while True:

@@ -27,6 +27,7 @@ TEST_CASE("The shortest scene takes its defaults from the aggregates") {
   CHECK(scene.start == StartChoice{SteepestDescentPour{}});
   CHECK(scene.move == Move{PolarMove{}});
   CHECK(scene.stop == Stop{});
+  CHECK(scene.sampler == Sampler::exhaustive);
   CHECK(scene.observables == std::vector<Observable>{MeanHeight{}, BottomFraction{},
                                                      CorrectedFraction{}, BulkFraction{}});
   CHECK(scene.snapshots == SnapshotChoice{});
@@ -52,6 +53,7 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(scene.stop.rule ==
         StopRule{BulkFractionStop{0.002, 500'000, 3, false, HeightWindow{4, 8.5}}});
   CHECK(scene.stop.max_sweeps == 20'000);
+  CHECK(scene.sampler == Sampler::skipping);
   REQUIRE(scene.observables.size() == 6);
   CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
   CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});

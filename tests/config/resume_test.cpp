@@ -74,6 +74,12 @@ TEST_CASE("A resume refuses snapshots that changed within the taps of the run") 
         "0.01)\n");
 }
 
+TEST_CASE("A resume keeps the sampler") {
+  CHECK(faults_of([](Json& scene) { scene["relax"] = {{"sampler", "exhaustive"}}; }).empty());
+  CHECK(faults_of([](Json& scene) { scene["relax"] = {{"sampler", "skipping"}}; }) ==
+        "/relax/sampler: was \"exhaustive\", is \"skipping\": a resumed run keeps it\n");
+}
+
 TEST_CASE("A resume names everything that changed") {
   const std::string faults = faults_of([](Json& scene) {
     scene["seed"] = 2;

@@ -66,6 +66,8 @@ const std::vector<std::string> cross_field_messages{
     "a crystal needs a rectangular footprint",
     "polar moves fall",
     "nothing settles",
+    "skipping needs trials that only fall",
+    "skipping does not see the upward trials",
     "these are measured from a floor",
     "a tap has no meaning without gravity",
     "every relaxation would end capped",

@@ -45,6 +45,12 @@ class Bits {
     add(state.move.window_trials);
     add(state.move.window_base);
     add(state.move.window_accepted);
+    add(std::uint64_t{state.sampler.skipping});
+    add(state.sampler.window_trials);
+    add(state.sampler.window_accepted);
+    add(state.sampler.candidate);
+    add(state.sampler.pending);
+    add(state.sampler.reference_step);
     add(state.relaxation.trials);
     add(state.relaxation.accepted);
     add(state.relaxation.last_value);

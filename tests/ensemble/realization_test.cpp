@@ -47,10 +47,27 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
     CAPTURE(name);
     const RecordedRealization undisturbed = straight(plan);
     REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
+    const bool skipped = undisturbed.state->sampler.candidate > 0;
+    CHECK(skipped == (plan.sampler == Sampler::skipping));
     for (int repeat = 0; repeat < 3; ++repeat) {
       CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
     }
   }
+}
+
+TEST_CASE("The sampler of the plan is the one that relaxes, and its state is kept") {
+  Plan plan = small_plan();
+  plan.stop = {.rule = SweepsStop{.sweeps = 2000}};
+  CHECK(straight(plan).state->sampler == SamplerState{});
+  plan.sampler = Sampler::skipping;
+  Realization realization(plan, 0);
+  while (realization.state().rows == 0) realization.advance(1'000);
+  realization.advance(1500 * plan.n_spheres);
+  const RealizationState state = realization.state();
+  CHECK(state.relaxing);
+  CHECK(state.sampler.skipping);
+  CHECK(state.sampler.candidate > 0);
+  CHECK(state.sampler.pending >= state.move.next_trial);
 }
 
 TEST_CASE("Taps leave no overlap in any container") {

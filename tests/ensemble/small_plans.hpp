@@ -67,6 +67,19 @@ inline std::vector<NamedPlan> various_plans() {
   fluid.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
   fluid.stop = {.rule = SweepsStop{.sweeps = 60}, .max_sweeps = 40};
   fluid.observables = {MeanHeight{}, BulkFraction{.window = HeightWindow{1, 4}}};
+
+  Plan& skipped = add("periodic, random settle, polar, skipping");
+  skipped.start = RandomSettle{};
+  skipped.stop = {.rule = MeanHeightStop{.eta = 1e-5, .every_sweeps = 30}, .max_sweeps = 2000};
+  skipped.sampler = Sampler::skipping;
+
+  Plan& skipped_walls = add("walls, Metropolis that keeps its step, sweeps, skipping");
+  skipped_walls.container = WalledBox{4.5, 4.2};
+  skipped_walls.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  std::get<MetropolisMove>(skipped_walls.move).adaptation->factor = 0.999;
+  std::get<MetropolisMove>(skipped_walls.move).adaptation->reset_each_tap = false;
+  skipped_walls.stop = {.rule = SweepsStop{.sweeps = 400}};
+  skipped_walls.sampler = Sampler::skipping;
   return plans;
 }
 
