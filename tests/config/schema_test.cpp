@@ -127,10 +127,13 @@ const std::vector<PlainJson> replacements{
     {{"name", "x"}},
 };
 
-/// A shipped scene is named after its folder and its file, so that results of two papers differ.
+/// A shipped scene is named after its folders and its file, so that results of two papers differ.
 std::string name_of_file(const std::filesystem::path& scene) {
-  const auto folder = scene.parent_path();
-  return (folder == shipped_scenes ? "" : folder.filename().string() + "-") + scene.stem().string();
+  std::string name;
+  for (const auto& part : std::filesystem::relative(scene, shipped_scenes).parent_path()) {
+    name += part.string() + "-";
+  }
+  return name + scene.stem().string();
 }
 
 /// Calls visit(mutant) for the scene with one value replaced, taken away or added.
