@@ -1,0 +1,232 @@
+#include "structure/pores.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/cell_grid.hpp"
+#include "engine/geometry.hpp"
+#include "engine/slab.hpp"
+
+namespace jostle {
+namespace {
+
+double xi_of(const Pore& pore) {
+  return pore.radius / sphere_radius;
+}
+
+// Every vertex from every cell that has it: at degenerate ones the cells that meet do not all see
+// one another, and only together they name all the spheres around it.
+std::vector<Pore> found_pores(const Packing& packing, const VoronoiCells& cells) {
+  std::vector<Pore> found;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
+      if (vertex.on_boundary) continue;
+      const auto others = cells.owners_of(vertex);
+      Pore pore;
+      pore.radius = std::sqrt(norm_squared(vertex.position - packing.centres[i])) - sphere_radius;
+      pore.centre = std::visit([&](const auto& box) { return wrapped(box, vertex.position); },
+                               packing.container);
+      pore.owners.assign(others.begin(), others.end());
+      pore.owners.push_back(i);
+      found.push_back(std::move(pore));
+    }
+  }
+  return found;
+}
+
+Pore merged(const Container& container, const std::vector<Pore>& found,
+            const std::vector<std::uint32_t>& cluster) {
+  Pore pore = found[cluster.front()];
+  const Vec3 first = pore.centre;
+  Vec3 shift;
+  double radius = 0;
+  for (const std::uint32_t k : cluster) {
+    shift =
+        shift + std::visit([&](const auto& box) { return separation(box, found[k].centre, first); },
+                           container);
+    radius += found[k].radius;
+    pore.owners.insert(pore.owners.end(), found[k].owners.begin(), found[k].owners.end());
+  }
+  const double part = 1.0 / static_cast<double>(cluster.size());
+  pore.radius = part * radius;
+  pore.centre =
+      std::visit([&](const auto& box) { return wrapped(box, first + part * shift); }, container);
+  std::ranges::sort(pore.owners);
+  const auto repeated = std::ranges::unique(pore.owners);
+  pore.owners.erase(repeated.begin(), repeated.end());
+  return pore;
+}
+
+double squared_distance(const Container& container, Vec3 a, Vec3 b) {
+  return std::visit([&](const auto& box) { return norm_squared(separation(box, a, b)); },
+                    container);
+}
+
+// The part of the region that spheres of radius sigma R around the centres fill, sigma <= 1.
+double filled_part(const Packing& packing, const Region& region, double sigma) {
+  if (sigma == 0) return 0;
+  const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
+  double filled = 0;
+  for (const Vec3& r : packing.centres) {
+    for (int image = bulk ? -1 : 0; image <= (bulk ? 1 : 0); ++image) {
+      const double z = r.z + (bulk ? image * bulk->height : 0);
+      filled += sphere_volume_in_slab(z / sigma, region.low / sigma, region.high / sigma);
+    }
+  }
+  return filled * sigma * sigma * sigma / region.volume(packing.container);
+}
+
+Vec3 random_point(const Container& container, const Region& region, RandomStream& random) {
+  while (true) {
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    const Vec3 r{width_x(container) * x, width_y(container) * y,
+                 region.low + (region.high - region.low) * z};
+    if (region.contains(container, r)) return r;
+  }
+}
+
+}  // namespace
+
+bool Region::contains(const Container& container, Vec3 r) const {
+  if (r.z < low || r.z > high) return false;
+  if (std::holds_alternative<WalledBox>(container)) {
+    return r.x >= from_sides && r.x <= width_x(container) - from_sides && r.y >= from_sides &&
+           r.y <= width_y(container) - from_sides;
+  }
+  if (const auto* tube = std::get_if<Cylinder>(&container)) {
+    const double axis = 0.5 * tube->diameter, reach = axis - from_sides;
+    const double x = r.x - axis, y = r.y - axis;
+    return reach >= 0 && x * x + y * y <= reach * reach;
+  }
+  return true;
+}
+
+double Region::volume(const Container& container) const {
+  const double depth = high - low;
+  if (std::holds_alternative<WalledBox>(container)) {
+    return depth * std::max(0.0, width_x(container) - 2 * from_sides) *
+           std::max(0.0, width_y(container) - 2 * from_sides);
+  }
+  if (const auto* tube = std::get_if<Cylinder>(&container)) {
+    const double reach = std::max(0.0, 0.5 * tube->diameter - from_sides);
+    return depth * std::numbers::pi * reach * reach;
+  }
+  return depth * footprint_area(container);
+}
+
+std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
+  const std::vector<Pore> found = found_pores(packing, cells);
+  const auto n = static_cast<std::uint32_t>(found.size());
+  CellGrid grid;
+  grid.build(packing.container, std::max(merge, 1e-3), n,
+             [&](std::uint32_t k) { return found[k].centre; });
+  std::vector<bool> taken(n, false);
+  std::vector<Pore> all;
+  std::vector<std::uint32_t> cluster;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    if (taken[k]) continue;
+    cluster = {k};
+    taken[k] = true;
+    for (std::size_t at = 0; at < cluster.size(); ++at) {
+      const Vec3 here = found[cluster[at]].centre;
+      grid.for_each_near(here, [&](std::uint32_t j) {
+        if (taken[j]) return;
+        if (squared_distance(packing.container, here, found[j].centre) > merge * merge) return;
+        taken[j] = true;
+        cluster.push_back(j);
+      });
+    }
+    all.push_back(merged(packing.container, found, cluster));
+  }
+  return all;
+}
+
+std::vector<Pore> pores_in(const std::vector<Pore>& all, const Container& container,
+                           const Region& region) {
+  std::vector<Pore> inside;
+  std::ranges::copy_if(all, std::back_inserter(inside),
+                       [&](const Pore& pore) { return region.contains(container, pore.centre); });
+  return inside;
+}
+
+Site site_of(const Pore& pore, double tolerance) {
+  const double tetrahedral = std::sqrt(1.5) - 1, octahedral = std::numbers::sqrt2 - 1;
+  if (std::abs(xi_of(pore) - tetrahedral) <= tolerance) return Site::tetrahedral;
+  if (std::abs(xi_of(pore) - octahedral) <= tolerance) return Site::octahedral;
+  return Site::other;
+}
+
+PoreDistribution pore_distribution(std::span<const Pore> pores, double bin_width, double xi_max) {
+  assert(bin_width > 0 && xi_max > 0);
+  const auto n_bins = static_cast<std::size_t>(std::ceil(xi_max / bin_width));
+  PoreDistribution density;
+  density.rho_xi.assign(n_bins, 0);
+  for (const Pore& pore : pores) {
+    const double bin = xi_of(pore) / bin_width;
+    if (bin >= 0 && bin < static_cast<double>(n_bins)) {
+      density.rho_xi[static_cast<std::size_t>(bin)] += 1 / bin_width;
+    }
+  }
+  for (std::size_t b = 0; b < n_bins; ++b) {
+    const double xi = (static_cast<double>(b) + 0.5) * bin_width;
+    density.xi.push_back(xi);
+    density.rho_v.push_back(density.rho_xi[b] / (3 * xi * xi));
+    density.v_rho_v.push_back(density.rho_xi[b] * xi / 3);
+  }
+  return density;
+}
+
+double mean_pore_volume(std::span<const Pore> pores) {
+  double sum = 0;
+  for (const Pore& pore : pores) sum += xi_of(pore) * xi_of(pore) * xi_of(pore);
+  return sum / static_cast<double>(pores.size());
+}
+
+VoidProbability void_probability(const Packing& packing, const Region& region,
+                                 std::span<const double> sigma, std::uint64_t points,
+                                 StreamKey key) {
+  const double longest = sphere_radius * (sigma.empty() ? 1 : std::ranges::max(sigma));
+  CellGrid grid;
+  grid.build(packing.container, std::max(longest, sphere_radius),
+             static_cast<std::uint32_t>(packing.centres.size()),
+             [&](std::uint32_t i) { return packing.centres[i]; });
+  std::vector<std::uint64_t> empty(sigma.size(), 0);
+  RandomStream random(key);
+  for (std::uint64_t p = 0; p < points; ++p) {
+    const Vec3 r = random_point(packing.container, region, random);
+    double nearest = std::numeric_limits<double>::infinity();
+    grid.for_each_near(r, [&](std::uint32_t i) {
+      nearest = std::min(nearest, squared_distance(packing.container, r, packing.centres[i]));
+    });
+    for (std::size_t s = 0; s < sigma.size(); ++s) {
+      const double reach = sigma[s] * sphere_radius;
+      empty[s] += nearest >= reach * reach;
+    }
+  }
+  VoidProbability result;
+  result.sigma.assign(sigma.begin(), sigma.end());
+  for (std::size_t s = 0; s < sigma.size(); ++s) {
+    if (sigma[s] <= 1 && region.from_sides == 0) {
+      result.probability.push_back(1 - filled_part(packing, region, sigma[s]));
+      result.error.push_back(0);
+    } else {
+      const double p = static_cast<double>(empty[s]) / static_cast<double>(points);
+      result.probability.push_back(p);
+      result.error.push_back(std::sqrt(p * (1 - p) / static_cast<double>(points)));
+    }
+  }
+  return result;
+}
+
+double gotoh_void_probability(double phi, double sigma) {
+  const double cube = sigma * sigma * sigma;
+  if (sigma <= 1) return 1 - phi * cube;
+  const double exponent = phi / ((1 - phi) * (1 - phi)) *
+                          (-(1 + 2 * phi) * cube + 4.5 * phi * sigma * sigma + 1 - 2.5 * phi);
+  return (1 - phi) * std::exp(exponent);
+}
+
+}  // namespace jostle
