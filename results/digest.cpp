@@ -9,6 +9,7 @@
 #include "results/hdf5_read.hpp"
 #include "results/results_file.hpp"
 #include "results/seal.hpp"
+#include "results/tables.hpp"
 
 // The digest is a SHA-256 over a canonical text and byte stream: for every object in the order of
 // its path a line "path kind type shape", its values, then its attributes in the order of their
@@ -73,10 +74,15 @@ std::string shape_text(hid_t space) {
   return text;
 }
 
+bool is_derived(const std::string& path) {
+  return std::ranges::any_of(derived_groups,
+                             [&](const char* name) { return path == std::string("/") + name; });
+}
+
 void Digest::add_members(hid_t group, const std::string& path) {
   for (const std::string& name : member_names(group)) {
     const std::string member = path + "/" + name;
-    if (member == "/provenance" || member == "/timing") continue;
+    if (member == "/provenance" || member == "/timing" || is_derived(member)) continue;
     add_object(group, name, member);
   }
 }

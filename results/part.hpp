@@ -55,8 +55,8 @@ PartState read_state(const std::string& path, const PartIdentity& identity);
 SeriesPiece read_segment(const std::string& path, const PartIdentity& identity,
                          std::uint32_t number);
 
-/// Restart states, also as they are kept in the results file. Reading throws std::out_of_range where
-/// the bytes end too early or are those of another version of the program.
+/// Restart states, also as they are kept in the results file. Reading throws std::out_of_range
+/// where the bytes end too early or are those of another version of the program.
 void put(ByteWriter& writer, const RealizationState& state);
 RealizationState get_realization_state(ByteReader& reader);
 

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "results/hdf5_new_file.hpp"
+#include "results/hdf5_writable_file.hpp"
 #include "results/layout.hpp"
 #include "results/point_writer.hpp"
 #include "results/publish.hpp"
@@ -13,7 +13,7 @@ namespace jostle {
 namespace {
 
 /// Writes every realization; returns whether all of the shard are done or failed.
-bool write_points(const NewHdf5File& file, const FileContent& content) {
+bool write_points(const WritableHdf5File& file, const FileContent& content) {
   bool complete = true;
   const Study& study = content.study;
   create_point_folders(file);
@@ -31,7 +31,7 @@ bool write_points(const NewHdf5File& file, const FileContent& content) {
 }
 
 void write_hdf5(const std::string& path, const FileContent& content) {
-  NewHdf5File file(path);
+  WritableHdf5File file(path);
   write_root(file);
   write_study(file, content.study);
   RunState state = RunState::running;

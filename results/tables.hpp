@@ -5,19 +5,25 @@
 #include <vector>
 
 #include "ensemble/table.hpp"
+#include "results/study.hpp"
 
 // What is derived from a run's data and kept in its file: the groups /fits, /analysis and
 // /structure. They can be made again from the data at any time, and are not part of the digest.
 namespace jostle {
 
+inline constexpr const char* derived_groups[] = {"fits", "analysis", "structure"};
+
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
 /// replaced, others stay. Every table tells who made it: attributes version, git_revision,
-/// command_line, made (UTC). The file is never written in place: a changed copy is published over
-/// it. Throws ResultsError, also where another process holds the file's lock.
-void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables);
+/// command_line, made. The file is never written in place: a changed copy is published over it.
+/// Throws ResultsError, also where another process holds the file's lock, and
+/// std::invalid_argument for a quantity whose number of values its axes do not give.
+void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                  const Provenance& provenance);
 
-/// The tables of a group, in the order of their names; none where there is no such group.
+/// The tables of a group, in the order of their names; none where there is no such group. Throws
+/// ResultsError.
 std::vector<Table> read_tables(const std::string& path, const std::string& group);
 
 }  // namespace jostle

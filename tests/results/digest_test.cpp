@@ -2,7 +2,7 @@
 #include <functional>
 #include <random>
 
-#include "results/hdf5_new_file.hpp"
+#include "results/hdf5_writable_file.hpp"
 #include "results/hdf5_write.hpp"
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
@@ -20,7 +20,7 @@ std::string digest_of_numbers(std::vector<double> numbers, const Shape& shape, c
                               const std::string& units = "diameter") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
-  NewHdf5File file(path);
+  WritableHdf5File file(path);
   {
     const Hdf5Handle dataset = write_numbers<double>(file, name, shape, numbers, chunk);
     write_attribute(dataset, "units", units);

@@ -1,4 +1,4 @@
-#include "results/hdf5_new_file.hpp"
+#include "results/hdf5_writable_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -18,6 +18,7 @@ namespace {
 /// What the driver is told through the access properties.
 struct DriverSettings {
   int* error;
+  bool keep;  // what is in the file
 };
 
 /// HDF5 sees the first member and hands its address back to every function below.
@@ -57,12 +58,16 @@ void write_waiting(DriverFile& file) {
 
 H5FD_t* open_file(const char* name, unsigned, hid_t properties, haddr_t) {
   const auto* settings = static_cast<const DriverSettings*>(H5Pget_driver_info(properties));
-  const int descriptor = ::open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) {
+  const int begin = settings->keep ? 0 : O_CREAT | O_TRUNC;
+  const int descriptor = ::open(name, O_RDWR | begin | O_CLOEXEC, 0666);
+  struct stat status;
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
     *settings->error = errno;
+    if (descriptor >= 0) ::close(descriptor);
     return nullptr;
   }
-  return &(new DriverFile{{}, descriptor, settings->error, 0, 0, 0, {}})->hdf5;
+  const auto size = static_cast<haddr_t>(status.st_size);
+  return &(new DriverFile{{}, descriptor, settings->error, 0, size, 0, {}})->hdf5;
 }
 
 herr_t close_file(H5FD_t* base) {
@@ -166,27 +171,30 @@ H5FD_class_t driver_class() {
 
 }  // namespace
 
-NewHdf5File::NewHdf5File(const std::string& path) : path_(path), error_(std::make_unique<int>(0)) {
+WritableHdf5File::WritableHdf5File(const std::string& path, Begin begin)
+    : path_(path), error_(std::make_unique<int>(0)) {
   silence_hdf5();
   const H5FD_class_t driver = driver_class();
   driver_ = Hdf5Handle(H5FDregister(&driver), H5FDunregister);
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   checked(H5Pset_obj_track_times(creation, false));
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  const DriverSettings settings{error_.get()};
+  const DriverSettings settings{error_.get(), begin == Begin::as_it_is};
   checked(H5Pset_driver(access, driver_, &settings));
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
+  const hid_t file = begin == Begin::as_it_is
+                         ? H5Fopen(path.c_str(), H5F_ACC_RDWR, access)
+                         : H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
   check();
   file_ = Hdf5Handle(file, H5Fclose);
 }
 
-NewHdf5File::~NewHdf5File() = default;
+WritableHdf5File::~WritableHdf5File() = default;
 
-void NewHdf5File::check() const {
+void WritableHdf5File::check() const {
   if (*error_ != 0) fail_on_disk(path_, "write", *error_);
 }
 
-void NewHdf5File::close() {
+void WritableHdf5File::close() {
   file_.close();
   check();
 }

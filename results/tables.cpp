@@ -1,0 +1,221 @@
+#include "results/tables.hpp"
+
+#include <fmt/format.h>
+#include <hdf5_hl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "results/axes.hpp"
+#include "results/hdf5_read.hpp"
+#include "results/hdf5_writable_file.hpp"
+#include "results/hdf5_write.hpp"
+#include "results/lock.hpp"
+#include "results/publish.hpp"
+#include "results/seal.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr const char* axes_attribute = "jostle_axes";
+constexpr const char* quantities_attribute = "jostle_quantities";
+
+std::size_t n_values(const Quantity& quantity) {
+  return std::visit([](const auto& values) { return values.size(); }, quantity.values);
+}
+
+Shape shape_in(const Table& table, const Quantity& quantity) {
+  Shape shape;
+  for (const std::string& name : quantity.axes) {
+    const auto axis =
+        std::ranges::find_if(table.axes, [&](const Quantity& a) { return a.name == name; });
+    if (axis == table.axes.end()) throw std::invalid_argument(table.name + " has no axis " + name);
+    shape.push_back(n_values(*axis));
+  }
+  if (n_elements(shape) != n_values(quantity))
+    throw std::invalid_argument(fmt::format("{}/{} has {} values for {} places", table.name,
+                                            quantity.name, n_values(quantity), n_elements(shape)));
+  return shape;
+}
+
+struct WriteValues {
+  hid_t group;
+  const std::string& name;
+  const Shape& shape;
+
+  Hdf5Handle operator()(const std::vector<std::string>& texts) const {
+    return write_texts(group, name, shape, texts);
+  }
+  template <class Number>
+  Hdf5Handle operator()(const std::vector<Number>& numbers) const {
+    return write_numbers<Number>(group, name, shape, numbers,
+                                 shape.empty() ? shape : chunk_along_first(shape));
+  }
+};
+
+Hdf5Handle write_quantity(hid_t group, const Table& table, const Quantity& quantity) {
+  const Shape shape = shape_in(table, quantity);
+  Hdf5Handle dataset = std::visit(WriteValues{group, quantity.name, shape}, quantity.values);
+  write_label(dataset, {quantity.name, quantity.units, quantity.long_name, quantity.source});
+  return dataset;
+}
+
+std::vector<std::string> names_of(const std::vector<Quantity>& quantities) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities) names.push_back(quantity.name);
+  return names;
+}
+
+/// The group of a path below `parent`, made where it is not there.
+Hdf5Handle group_at(hid_t parent, const std::string& path) {
+  const auto slash = path.find('/');
+  const std::string first = path.substr(0, slash);
+  Hdf5Handle group =
+      exists(parent, first) ? open_group(parent, first) : create_group(parent, first);
+  return slash == std::string::npos ? std::move(group) : group_at(group, path.substr(slash + 1));
+}
+
+void write_table(hid_t parent, const Table& table, const Provenance& provenance) {
+  if (exists(parent, table.name)) checked(H5Ldelete(parent, table.name.c_str(), H5P_DEFAULT));
+  const Hdf5Handle group = group_at(parent, table.name);
+  write_attribute(group, axes_attribute, names_of(table.axes));
+  write_attribute(group, quantities_attribute, names_of(table.quantities));
+  write_attribute(group, "version", provenance.version);
+  write_attribute(group, "git_revision", provenance.git_revision);
+  write_attribute(group, "command_line", provenance.command_line);
+  write_attribute(group, "made", provenance.started);
+  for (const auto& [name, text] : table.notes) write_attribute(group, "note_" + name, text);
+  std::map<std::string, Hdf5Handle> axes;
+  for (const Quantity& axis : table.axes) {
+    Hdf5Handle dataset = write_quantity(group, table, axis);
+    make_axis(dataset, axis.name);
+    axes.emplace(axis.name, std::move(dataset));
+  }
+  for (const Quantity& quantity : table.quantities) {
+    const Hdf5Handle dataset = write_quantity(group, table, quantity);
+    std::vector<const Hdf5Handle*> along;
+    for (const std::string& name : quantity.axes) along.push_back(&axes.at(name));
+    attach_axes(dataset, along);
+  }
+}
+
+void copy_to_temporary(const std::string& path) {
+  std::error_code error;
+  std::filesystem::copy_file(path, temporary_name(path),
+                             std::filesystem::copy_options::overwrite_existing, error);
+  if (error) fail_on_disk(temporary_name(path), "write", error.value());
+}
+
+std::string text_attribute_or_empty(hid_t object, const char* name) {
+  return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
+}
+
+Quantity read_quantity(hid_t group, const std::string& name) {
+  const Hdf5Handle dataset = open_dataset(group, name);
+  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+  Quantity quantity{.name = name,
+                    .units = text_attribute_or_empty(dataset, "units"),
+                    .long_name = text_attribute_or_empty(dataset, "long_name"),
+                    .source = text_attribute_or_empty(dataset, "source")};
+  switch (H5Tget_class(type)) {
+    case H5T_STRING:
+      quantity.values = read_texts(group, name);
+      break;
+    case H5T_INTEGER:
+      quantity.values = read_numbers<std::uint64_t>(group, name);
+      break;
+    default:
+      quantity.values = read_numbers<double>(group, name);
+  }
+  if (checked(H5DSis_scale(dataset)) > 0) {
+    quantity.axes = {name};
+    return quantity;
+  }
+  const auto keep = [](hid_t, unsigned, hid_t scale, void* names) -> herr_t {
+    char scale_name[1024];
+    if (H5DSget_scale_name(scale, scale_name, sizeof scale_name) <= 0) return -1;
+    static_cast<std::vector<std::string>*>(names)->push_back(scale_name);
+    return 0;
+  };
+  for (unsigned dimension = 0; dimension < shape_of(dataset).size(); ++dimension)
+    checked(H5DSiterate_scales(dataset, dimension, nullptr, keep, &quantity.axes));
+  return quantity;
+}
+
+Table read_table(hid_t group, const std::string& name) {
+  Table table{.name = name, .axes = {}, .quantities = {}, .notes = {}};
+  for (const std::string& axis : read_texts_attribute(group, axes_attribute))
+    table.axes.push_back(read_quantity(group, axis));
+  for (const std::string& quantity : read_texts_attribute(group, quantities_attribute))
+    table.quantities.push_back(read_quantity(group, quantity));
+  std::vector<std::string> notes;
+  const auto keep = [](hid_t, const char* attribute, const H5A_info_t*, void* all) -> herr_t {
+    if (std::string_view(attribute).starts_with("note_"))
+      static_cast<std::vector<std::string>*>(all)->push_back(attribute);
+    return 0;
+  };
+  checked(H5Aiterate2(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &notes));
+  for (const std::string& note : notes)
+    table.notes.emplace_back(note.substr(5), read_text_attribute(group, note));
+  return table;
+}
+
+void collect_tables(hid_t group, const std::string& path, std::vector<Table>& tables) {
+  if (checked(H5Aexists(group, quantities_attribute)) > 0) {
+    tables.push_back(read_table(group, path));
+    return;
+  }
+  std::vector<std::string> members;
+  const auto keep = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+    static_cast<std::vector<std::string>*>(all)->push_back(name);
+    return 0;
+  };
+  checked(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &members));
+  for (const std::string& member : members)
+    collect_tables(open_group(group, member), path.empty() ? member : path + "/" + member, tables);
+}
+
+}  // namespace
+
+void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                  const Provenance& provenance) {
+  for (const Table& table : tables) {
+    for (const Quantity& quantity : table.axes) shape_in(table, quantity);
+    for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
+  }
+  const RunLock lock(path, false);
+  verify_seal(path);
+  copy_to_temporary(path);
+  const std::string temporary = temporary_name(path);
+  try {
+    naming_file(temporary, [&] {
+      WritableHdf5File file(temporary, WritableHdf5File::Begin::as_it_is);
+      {
+        const Hdf5Handle parent = group_at(file, group);
+        for (const Table& table : tables) write_table(parent, table, provenance);
+      }
+      file.close();
+    });
+    seal(temporary);
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  publish_temporary(path);
+}
+
+std::vector<Table> read_tables(const std::string& path, const std::string& group) {
+  verify_seal(path);
+  silence_hdf5();
+  return naming_file(path, [&] {
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    std::vector<Table> tables;
+    if (exists(file, group)) collect_tables(open_group(file, group), "", tables);
+    return tables;
+  });
+}
+
+}  // namespace jostle
