@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
-constexpr double process_bytes = 40e6;              // libraries and bookkeeping
+constexpr double process_bytes = 40e6;               // libraries and bookkeeping
 
 struct CheckArguments {
   std::string scene;

@@ -10,12 +10,14 @@
 #include "cli/commands.hpp"
 #include "cli/curve_file.hpp"
 #include "cli/fit_output.hpp"
+#include "cli/fit_run.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_error.hpp"
 #include "fitting/models.hpp"
-#include "fitting/report.hpp"
 #include "results/error.hpp"
+#include "results/tables.hpp"
 
 namespace jostle {
 
@@ -31,18 +33,9 @@ struct FitArguments {
   bool json = false;
 };
 
-// Laws of an approach to a final value, that compete for one curve.
-constexpr const char* relaxation_laws[] = {"inverse_log", "inverse_log_height", "two_exponentials",
-                                           "kww"};
-
 std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
-  std::vector<std::unique_ptr<Model>> models;
-  if (name == "all") {
-    for (const char* law : relaxation_laws) models.push_back(make_model(law));
-    return models;
-  }
-  models.push_back(make_model(name));
-  if (models.back()) return models;
+  auto models = models_named(name);
+  if (!models.empty()) return models;
   std::string names;
   for (const auto& model : all_models()) names += ", " + model->name();
   throw BadInput(fmt::format("--model {}: there is none; there are all{}", name, names));
@@ -82,20 +75,14 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
   return {source};
 }
 
-FitOutcome fit_model(const Model& model, const FitSource& source, const FitArguments& arguments) {
-  FitOptions options;
-  options.fixed = fixed_parameters(arguments.fixed);
-  FitOutcome outcome{model.name(), fit(model, source.curve, options), {}};
-  const auto* found = std::get_if<Fit>(&outcome.result);
-  if (!found || !source.realizations || arguments.resample == "none") return outcome;
-  const bool bootstrap = arguments.resample == "bootstrap";
-  outcome.resampled =
-      resample(model, *source.realizations, *found,
-               {.kind = bootstrap ? Resampling::bootstrap : Resampling::jackknife,
-                .count = arguments.count,
-                .seed = arguments.seed,
-                .threads = arguments.threads > 0 ? arguments.threads : available_cpus()});
-  return outcome;
+FitManner manner_of(const FitArguments& arguments) {
+  return {.fixed = fixed_parameters(arguments.fixed),
+          .resampled = arguments.resample != "none",
+          .resampling = {.kind = arguments.resample == "bootstrap" ? Resampling::bootstrap
+                                                                   : Resampling::jackknife,
+                         .count = arguments.count,
+                         .seed = arguments.seed,
+                         .threads = arguments.threads > 0 ? arguments.threads : available_cpus()}};
 }
 
 nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
@@ -112,16 +99,14 @@ nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome
   return object;
 }
 
-void print_for_people(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
-  fmt::print("{}\n", source.title);
-  if (!source.remark.empty()) fmt::print("  ! {}\n", source.remark);
-  std::vector<Fit> fits;
-  for (const FitOutcome& outcome : outcomes) {
-    fmt::print("\n{}", fit_text(outcome));
-    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+// A file that cannot be changed, as in an archive, still gives its fits.
+void store_fits(const std::string& path, const std::vector<Table>& tables,
+                const Provenance& provenance) {
+  try {
+    store_tables(path, "fits", tables, provenance);
+  } catch (const ResultsError& error) {
+    print_to_standard_error(fmt::format("jostle: the fits are not stored: {}\n", error.what()));
   }
-  if (fits.size() > 1) fmt::print("\n{}", compare(fits));
-  fmt::print("\n");
 }
 
 void write_csv(const std::string& path, const std::string& text) {
@@ -137,23 +122,28 @@ int run_fits(const FitArguments& arguments) {
   if (!arguments.csv.empty() && sources.size() > 1) {
     throw BadInput("--csv holds one curve: choose it with --sweep-point");
   }
+  const FitManner manner = manner_of(arguments);
+  const Provenance by = provenance_of_this_run("");
   bool any = false;
+  std::vector<Table> tables;
   nlohmann::json curves = nlohmann::json::array();
   for (const FitSource& source : sources) {
-    std::vector<FitOutcome> outcomes;
-    for (const auto& model : models) outcomes.push_back(fit_model(*model, source, arguments));
+    const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
     for (const FitOutcome& outcome : outcomes) {
       any = any || std::holds_alternative<Fit>(outcome.result);
     }
     if (arguments.json) {
       curves.push_back(source_json(source, outcomes));
     } else {
-      print_for_people(source, outcomes);
+      std::fputs(fits_text(source, outcomes).c_str(), stdout);
+    }
+    if (source.point) {
+      const auto made = fit_tables(source, outcomes, manner);
+      tables.insert(tables.end(), made.begin(), made.end());
     }
     if (!arguments.csv.empty()) write_csv(arguments.csv, fit_csv(source.curve, outcomes));
   }
   if (arguments.json) {
-    const Provenance by = provenance_of_this_run("");
     const nlohmann::json object = {{"input", arguments.input},
                                    {"curves", curves},
                                    {"provenance",
@@ -163,6 +153,7 @@ int run_fits(const FitArguments& arguments) {
                                      {"started", by.started}}}};
     std::fputs((object.dump(2) + "\n").c_str(), stdout);
   }
+  if (!tables.empty()) store_fits(arguments.input, tables, by);
   return any ? exit_ok : exit_bad_input;
 }
 
@@ -201,7 +192,8 @@ void add_fit(CLI::App& app, int& code) {
       "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "\n"
-      "What a report means: docs/fitting.md. Exit code 2 where no law could be fitted.");
+      "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
+      "Exit code 2 where no law could be fitted.");
   command->callback([arguments, &code] { code = run_fits(*arguments); });
 }
 

@@ -10,6 +10,7 @@
 #include "cli/text_table.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
+#include "results/tables.hpp"
 
 namespace jostle {
 namespace {
@@ -80,6 +81,7 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
           {"scene", Json::parse(study.resolved_scene)},
           {"points", points},
           {"realizations", realizations},
+          {"tables", table_names(file.path())},
           {"bytes", {{"file", status.file_bytes}, {"parts", status.parts_bytes}}}};
 }
 
@@ -118,6 +120,7 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
   line("seed", fmt::to_string(study.points.front().seed));
   line("size", fmt::format("{} and {} of parts", format_bytes(double(status.file_bytes)),
                            format_bytes(double(status.parts_bytes))));
+  for (const std::string& table : table_names(file.path())) line("table", "/" + table);
   for (const auto& process : file.provenance()) {
     line("made by",
          fmt::format("jostle {} ({}) on {}, {}, {} threads", process.version, process.git_revision,

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
+#include "cli/fit_run.hpp"
 #include "cli/provenance.hpp"
 #include "results/merge.hpp"
 
@@ -37,6 +39,7 @@ void add_merge(CLI::App& app, int& code) {
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"),
                 arguments->force);
     fmt::print("{}: {} files merged\n", arguments->output, arguments->inputs.size());
+    make_scene_fits(arguments->output, available_cpus(), false);
     code = exit_ok;
   });
 }

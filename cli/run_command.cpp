@@ -12,6 +12,7 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
+#include "cli/fit_run.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
 #include "cli/report.hpp"
@@ -201,6 +202,8 @@ int run(const RunArguments& arguments) {
   OpenedRun run = open_run(arguments, loaded, threads);
   try {
     if (compute(arguments, loaded, run, threads)) return exit_stopped;
+    run.store.reset();  // gives the lock back
+    if (arguments.shard.count == 1) make_scene_fits(run.output, threads, arguments.quiet);
   } catch (const ResultsError& error) {
     print_to_standard_error(
         fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "config/grids.hpp"
 #include "config/parts.hpp"
+#include "config/suggestion.hpp"
 #include "ensemble/sink.hpp"
 
 namespace jostle {
@@ -114,6 +116,25 @@ class Check {
     }
   }
 
+  void fits_have_curves() {
+    if (!all_sound({"/fits", "/observe", "/protocol"})) return;
+    std::vector<std::string> names;
+    for (const Observable& observable : scene_.observables) names.push_back(name_of(observable));
+    for (std::size_t i = 0; i < scene_.fits.size(); ++i) {
+      const FitRequest& fit = scene_.fits[i];
+      const std::string place = fmt::format("/fits/{}", i);
+      if (std::ranges::find(names, fit.observable) == names.end()) {
+        note(place + "/observable",
+             fmt::format("\"{}\" is not observed (observed: {}).{}", fit.observable, listed(names),
+                         did_you_mean(fit.observable, names)));
+      }
+      if (fit.first > total_taps(scene_.protocol)) {
+        note(place + "/range", fmt::format("begins at tap {}, after the last one, {}", fit.first,
+                                           total_taps(scene_.protocol)));
+      }
+    }
+  }
+
   void snapshots_are_reached() {
     if (!all_sound({"/snapshots", "/protocol"})) return;
     const std::vector<std::uint64_t> taps = snapshot_taps(scene_.snapshots);
@@ -173,6 +194,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check.relaxation_can_end();
   check.observables_have_names();
   check.snapshots_are_reached();
+  check.fits_have_curves();
 }
 
 }  // namespace jostle

@@ -24,6 +24,7 @@ Window read_window(const Reader& in);
 std::vector<Observable> read_observables(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
+std::vector<FitRequest> read_fits(const Reader& in);
 
 Json written(const Container& container);
 Json written(const StartChoice& start);
@@ -34,6 +35,7 @@ Json written(const Window& window);
 Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
 Json written(const std::vector<SweepAxis>& sweep);
+Json written(const std::vector<FitRequest>& fits);
 
 /// A number as a person writes it: 16, not 16.0.
 Json plain_number(double value);

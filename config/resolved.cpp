@@ -27,6 +27,7 @@ Json resolved(const Scene& scene) {
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);
   out["sweep"] = written(scene.sweep);
+  out["fits"] = written(scene.fits);
   return out;
 }
 

@@ -128,7 +128,9 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
   }
   Json before = resolved(*was.scene), after = resolved(*is.scene);
   for (Json* scene : {&before, &after}) {
-    for (const char* free : {"name", "description", "realizations", "protocol"}) scene->erase(free);
+    for (const char* free : {"name", "description", "realizations", "protocol", "fits"}) {
+      scene->erase(free);
+    }
     (*scene)["snapshots"].erase("taps");
   }
   compare(before, after, "", faults);

@@ -83,6 +83,15 @@ struct SweepAxis {
   bool operator==(const SweepAxis&) const = default;
 };
 
+/// A law fitted to the mean of an observable against taps, at every sweep point, when a run ends.
+struct FitRequest {
+  std::string observable;   // as the scene calls it
+  std::string model;        // of docs/fitting.md, or "all": every law of relaxation
+  std::uint64_t first = 1;  // tap
+  std::optional<std::uint64_t> last = std::nullopt;  // tap; absent: the last one
+  bool operator==(const FitRequest&) const = default;
+};
+
 struct Scene {
   std::string name = "scene", description;
   std::uint64_t seed = 0;
@@ -100,6 +109,7 @@ struct Scene {
   std::vector<Observable> observables;
   SnapshotChoice snapshots;
   std::vector<SweepAxis> sweep;
+  std::vector<FitRequest> fits;
   bool operator==(const Scene&) const = default;
 };
 
@@ -132,7 +142,7 @@ std::string_view scene_schema();
 
 /// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, and another name or description.
+/// those, more realizations, other fits, and another name or description.
 std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
                                  const nlohmann::ordered_json& new_resolved);
 

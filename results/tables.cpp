@@ -163,11 +163,10 @@ Table read_table(hid_t group, const std::string& name) {
   return table;
 }
 
-void collect_tables(hid_t group, const std::string& path, std::vector<Table>& tables) {
-  if (checked(H5Aexists(group, quantities_attribute)) > 0) {
-    tables.push_back(read_table(group, path));
-    return;
-  }
+/// Calls visit(group, path) for every table below a group, in the order of their names.
+template <class Visit>
+void for_each_table(hid_t group, const std::string& path, const Visit& visit) {
+  if (checked(H5Aexists(group, quantities_attribute)) > 0) return visit(group, path);
   std::vector<std::string> members;
   const auto keep = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
     static_cast<std::vector<std::string>*>(all)->push_back(name);
@@ -175,7 +174,13 @@ void collect_tables(hid_t group, const std::string& path, std::vector<Table>& ta
   };
   checked(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &members));
   for (const std::string& member : members)
-    collect_tables(open_group(group, member), path.empty() ? member : path + "/" + member, tables);
+    for_each_table(open_group(group, member), path.empty() ? member : path + "/" + member, visit);
+}
+
+Hdf5Handle open_verified(const std::string& path) {
+  verify_seal(path);
+  silence_hdf5();
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
 }
 
 }  // namespace
@@ -208,13 +213,25 @@ void store_tables(const std::string& path, const std::string& group, std::span<c
 }
 
 std::vector<Table> read_tables(const std::string& path, const std::string& group) {
-  verify_seal(path);
-  silence_hdf5();
   return naming_file(path, [&] {
-    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle file = open_verified(path);
     std::vector<Table> tables;
-    if (exists(file, group)) collect_tables(open_group(file, group), "", tables);
+    const auto read = [&](hid_t table, const std::string& name) {
+      tables.push_back(read_table(table, name));
+    };
+    if (exists(file, group)) for_each_table(open_group(file, group), "", read);
     return tables;
+  });
+}
+
+std::vector<std::string> table_names(const std::string& path) {
+  return naming_file(path, [&] {
+    const Hdf5Handle file = open_verified(path);
+    std::vector<std::string> names;
+    const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
+    for (const std::string group : derived_groups)
+      if (exists(file, group)) for_each_table(open_group(file, group), group, name);
+    return names;
   });
 }
 

@@ -11,7 +11,7 @@
 // /structure. They can be made again from the data at any time, and are not part of the digest.
 namespace jostle {
 
-inline constexpr const char* derived_groups[] = {"fits", "analysis", "structure"};
+inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"};
 
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
@@ -25,5 +25,8 @@ void store_tables(const std::string& path, const std::string& group, std::span<c
 /// The tables of a group, in the order of their names; none where there is no such group. Throws
 /// ResultsError.
 std::vector<Table> read_tables(const std::string& path, const std::string& group);
+
+/// Names of all tables of the file with their group first, in order: "fits/point_0000/...".
+std::vector<std::string> table_names(const std::string& path);
 
 }  // namespace jostle

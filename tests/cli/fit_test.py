@@ -155,5 +155,56 @@ class Results(Case):
                               self.jostle("fit", "tiny.h5", *arguments, expect=BAD_INPUT).stderr)
 
 
+class Kept(Case):
+    """Fits in the results file."""
+
+    def tables(self, file="tiny.h5"):
+        return self.info(file)["tables"]
+
+    def test_fits_are_kept_beside_the_data_and_replaced(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
+        self.run_scene()
+        digest = self.digest("tiny.h5")
+        self.assertEqual(self.tables(), [])
+        for _ in range(2):
+            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
+        self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--sweep-point", "1")
+        laws = ["inverse_log", "inverse_log_height", "kww", "two_exponentials"]
+        self.assertEqual(self.tables(), ["fits/point_0000/mean_height/kww"] +
+                         [f"fits/point_0001/mean_height/{law}" for law in laws])
+        self.assertEqual(self.digest("tiny.h5"), digest)
+
+    def test_a_file_that_cannot_be_changed_still_gives_its_fits(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
+        self.run_scene()
+        (self.folder / "tiny.h5.lock").mkdir()  # no lock can be made there, even by root
+        done = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
+        self.assertIn("not stored", done.stderr)
+        self.assertIn("rho_inf", done.stdout)
+        self.assertEqual(self.tables(), [])
+
+    def test_a_run_ends_with_the_fits_of_its_scene(self):
+        asked = [{"observable": "mean_height", "model": "inverse_log", "range": [1, 30]}]
+        protocol = [{"tap": {"dilate": 0.05}, "count": 40}]
+        self.write(changed(TINY, protocol=protocol, fits=asked))
+        done = self.run_scene()
+        self.assertIn("inverse_log", done.stdout)
+        names = [f"fits/point_000{point}/mean_height/inverse_log" for point in (0, 1)]
+        self.assertEqual(self.tables(), names)
+        asked[0]["model"] = "kww"
+        self.write(changed(TINY, protocol=protocol, fits=asked))
+        self.run_scene("--resume")
+        self.assertEqual(self.tables(), [name.replace("inverse_log", "kww") for name in names])
+
+    def test_shards_are_fitted_when_they_are_merged(self):
+        asked = [{"observable": "mean_height", "model": "kww"}]
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], fits=asked))
+        for share in (1, 2):
+            self.run_scene("--shard", f"{share}/2", "-o", f"{share}.h5")
+            self.assertEqual(self.tables(f"{share}.h5"), [])
+        self.jostle("merge", "1.h5", "2.h5", "-o", "all.h5")
+        self.assertEqual(len(self.tables("all.h5")), 2)
+
+
 if __name__ == "__main__":
     unittest.main()

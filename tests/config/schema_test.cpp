@@ -78,6 +78,9 @@ const std::vector<std::string> cross_field_messages{
     "belongs to the study as a whole",
     "sweep one of them",
     "list a value once",
+    "is empty: the first tap must be the lower",
+    "is not observed (observed:",
+    "after the last one,",
 };
 
 bool is_beyond_schema(const Fault& fault) {

@@ -86,6 +86,7 @@ TEST_CASE("storing again replaces a table and leaves the others") {
   store(path, "fits", {sample("a"), sample("b")});
   store(path, "structure", {sample("c")});
   for (int turn = 0; turn < 30; ++turn) store(path, "fits", {sample("b", turn)});
+  CHECK(table_names(path) == std::vector<std::string>{"fits/a", "fits/b", "structure/c"});
   const auto fits = read_tables(path, "fits");
   REQUIRE(fits.size() == 2);
   check_same(fits[0], sample("a"));
