@@ -1,81 +1,15 @@
-#include <Eigen/Core>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "fitting/fit_statistics.hpp"
-#include "fitting/levenberg_marquardt.hpp"
-#include "nist_models.hpp"
+#include "tests/fitting/nist_sets.hpp"
 
 namespace jostle {
 namespace {
-
-/// A certified set of NIST StRD, nonlinear regression.
-struct NistSet {
-  std::string name;
-  NistModel model;
-  std::vector<std::vector<double>> x;  // [n][n_predictors]
-  Eigen::VectorXd y;                   // [n]
-  std::vector<double> starts[2], parameters, errors;
-  double residual_sum = 0;
-};
-
-NistSet read_set(const std::string& name, NistModel model) {
-  std::ifstream file(TEST_DATA "/nist/" + name + ".json");
-  const auto json = nlohmann::json::parse(file);
-  NistSet set{name,
-              model,
-              {},
-              {},
-              {json["start1"], json["start2"]},
-              json["certified_params"],
-              json["certified_stderr"],
-              json["certified_rss"]};
-  const std::vector<double> y = json["y"];
-  set.y = Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size()));
-  // The model is that of log(y).
-  if (name == "Nelson") set.y = set.y.array().log();
-  for (const auto& x : json["x"]) {
-    set.x.push_back(x.is_array() ? x.get<std::vector<double>>() : std::vector<double>{x});
-  }
-  return set;
-}
-
-class NistResiduals final : public Residuals {
- public:
-  explicit NistResiduals(const NistSet& set) : set_(set) {}
-
-  Eigen::Index n_residuals() const override { return set_.y.size(); }
-  Eigen::Index n_variables() const override {
-    return static_cast<Eigen::Index>(set_.parameters.size());
-  }
-  void values(const Eigen::VectorXd& b, Eigen::VectorXd& r) const override {
-    Eigen::MatrixXd unused(n_residuals(), n_variables());
-    values_and_jacobian(b, r, unused);
-  }
-  void values_and_jacobian(const Eigen::VectorXd& b, Eigen::VectorXd& r,
-                           Eigen::MatrixXd& jacobian) const override {
-    std::vector<Dual> parameters;
-    for (Eigen::Index j = 0; j < b.size(); ++j) {
-      parameters.push_back(Dual::variable(b[j], static_cast<std::size_t>(j)));
-    }
-    for (Eigen::Index i = 0; i < r.size(); ++i) {
-      const Dual f = set_.model(parameters.data(), set_.x[static_cast<std::size_t>(i)].data());
-      r[i] = f.v - set_.y[i];
-      for (Eigen::Index j = 0; j < b.size(); ++j) {
-        jacobian(i, j) = f.d[static_cast<std::size_t>(j)];
-      }
-    }
-  }
-
- private:
-  const NistSet& set_;
-};
 
 struct NistRun {
   double parameter_digits = 16, error_digits = 16;  // the fewest of any parameter
@@ -113,7 +47,7 @@ TEST_CASE("every NIST set is solved from both starts, without a fallback") {
   table << std::fixed << std::setprecision(1)
         << "set        start  digits of parameters, errors  iterations  evaluations  Jacobians\n";
   for (const auto& [name, model] : nist_models()) {
-    const NistSet set = read_set(name, model);
+    const NistSet set = read_nist_set(TEST_DATA "/nist", name, model);
     for (int start : {1, 0}) {
       const NistRun result = run(set, start);
       const Minimum& minimum = result.minimum;
