@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace jostle {
+
+/// tau = 1/2 + sum of the correlation over lags 1, 2, ...: the mean of n taps has the variance
+/// 2 tau sigma^2 / n. 1/2 for independent taps, (1 + rho) / (1 - rho) / 2 for AR(1).
+struct AutocorrelationTime {
+  double time = 0;         // taps
+  double error = 0;        // standard error
+  std::size_t window = 0;  // lags summed; 0 where no window was found: the time is a lower bound
+  double variance = 0;     // of single taps about the true mean
+  double squares = 0;      // sum of the squared correlation over lags 1 .. window
+
+  bool found() const { return window > 0; }
+};
+
+/// Pooled over series of one length, at least 4, each about its own mean. The sum ends at the first
+/// lag of at least 6 tau (Madras and Sokal 1988, doi:10.1007/BF01022990), up to half a series; the
+/// bias by subtracting each series' own mean is put right to first order, and the error is that of
+/// Wolff 2004, doi:10.1016/S0010-4655(03)00467-3, eqs. 32 and 42.
+class Autocorrelation {
+ public:
+  void add(std::span<const double> series);
+  AutocorrelationTime result() const;
+
+ private:
+  std::size_t n_ = 0, realizations_ = 0;
+  std::vector<double> products_;  // [n / 2 + 1], by lag, summed over taps and realizations
+};
+
+}  // namespace jostle
