@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -104,6 +105,28 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
   CHECK(shortest.estimates[0].identifiability == Identifiability::bounded_below);
   CHECK(shortest.estimates[0].statement.find("not identifiable") != std::string::npos);
   CHECK(shortest.estimates[0].statement.find("X_inf >") != std::string::npos);
+}
+
+TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters run away together") {
+  // Twenty nearly straight points: nothing says where the logarithm bends.
+  for (const double noise : {1e-6, 1e-4, 1e-3}) {
+    Curve curve;
+    for (int t = 1; t <= 20; ++t) {
+      curve.t.push_back(t);
+      curve.x.push_back(0.541 + 2.3e-4 * t + noise * std::sin(12.9898 * t * t));
+      curve.sigma.push_back(2e-3);
+    }
+    for (const auto& model : all_models()) {
+      const auto outcome = fit(*model, curve);
+      const auto* fitted = std::get_if<Fit>(&outcome);
+      if (fitted == nullptr) continue;
+      CAPTURE(noise, model->name());
+      for (const Estimate& estimate : fitted->estimates) {
+        CHECK(estimate.intervals[1].lower <= estimate.intervals[0].lower);
+        CHECK(estimate.intervals[1].upper >= estimate.intervals[0].upper);
+      }
+    }
+  }
 }
 
 TEST_CASE("a good curve is reported as identified, without remarks") {
