@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
 #include "cli/commands.hpp"
 #include "cli/scene_file.hpp"
@@ -54,6 +55,9 @@ int run_program(int argc, char** argv) {
     print_to_standard_error("jostle: cannot write to standard output\n");
     return exit_broken_surroundings;
   } catch (const BadInput& error) {
+    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
+    return exit_bad_input;
+  } catch (const std::invalid_argument& error) {  // an environment variable, for one
     print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
     return exit_bad_input;
   } catch (const std::exception& error) {

@@ -96,10 +96,23 @@ std::uint64_t recorded_taps(const std::string& output, const std::vector<Realiza
   return taps;
 }
 
+/// Where results go. A link is followed: what it names is replaced, not the link.
+std::string output_path(const RunArguments& arguments, const LoadedScene& loaded) {
+  const std::string output =
+      arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output;
+  if (std::filesystem::is_directory(output)) {
+    throw BadInput(
+        fmt::format("{} is a folder: name a file in it with -o, as {}", output,
+                    (std::filesystem::path(output) / (loaded.scene.name + ".h5")).string()));
+  }
+  if (!std::filesystem::is_symlink(output)) return output;
+  const std::filesystem::path link(output);
+  return (link.parent_path() / std::filesystem::read_symlink(link)).string();
+}
+
 OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
-  OpenedRun run{.study = study_of(loaded),
-                .output = arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output,
-                .store = nullptr};
+  OpenedRun run{
+      .study = study_of(loaded), .output = output_path(arguments, loaded), .store = nullptr};
   const bool exists = std::filesystem::exists(run.output);
   const Provenance provenance = provenance_of_this_run(fmt::to_string(threads));
   if (exists && (arguments.resume || arguments.retry_failed)) {

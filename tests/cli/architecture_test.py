@@ -15,7 +15,7 @@ MAY_INCLUDE = {
     "ensemble": {"engine", "structure", "fitting", "ensemble"},
     "config": {"engine", "structure", "ensemble", "config"},
     "results": {"engine", "structure", "ensemble", "results"},
-    "bench": {"engine", "structure", "ensemble", "config", "bench"},
+    "bench": {"engine", "structure", "fitting", "ensemble", "config", "bench", "tests"},
     "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "cli"},
 }
 

@@ -167,6 +167,21 @@ class Runs(Case):
             self.exit_code_writing_to_a_full_disk("stderr", *run, "--time-limit", "0s"), STOPPED)
         self.assertEqual(self.exit_code_writing_to_a_full_disk("stdout", "schema"), BROKEN)
 
+    def test_output_that_is_a_folder_is_refused_before_anything_runs(self):
+        self.write(TINY)
+        (self.folder / "out").mkdir()
+        done = self.run_scene("-o", "out", expect=BAD_INPUT)
+        self.assertIn("out/tiny.h5", done.stderr)
+        self.assertEqual(self.files(), ["out", "scene.json"])
+
+    def test_a_link_stays_and_what_it_names_is_written(self):
+        self.write(TINY)
+        (self.folder / "disk").mkdir()
+        (self.folder / "tiny.h5").symlink_to(self.folder / "disk" / "big.h5")
+        self.run_scene()
+        self.assertTrue((self.folder / "tiny.h5").is_symlink())
+        self.assertEqual(self.files(), ["disk", "disk/big.h5", "scene.json", "tiny.h5"])
+
     def test_output_in_a_missing_folder_is_a_broken_surrounding(self):
         self.write(TINY)
         result = self.run_scene("-o", "nowhere/out.h5", expect=BROKEN)
