@@ -17,23 +17,29 @@ namespace jostle {
 
 /// For every sphere and direction bin a length beyond which a step is certainly refused. A function
 /// of the centres alone: neither lists nor the order and history of moves change anything.
-template <class Box>
+template <class Box, int n_sectors>
 class BoundTables {
  public:
   using Index = std::uint32_t;
-  using BoundsKernel = std::uint32_t (*)(const DirectionBins&, const Obstacles&, BoundRow&);
+  using Bins = DirectionBins<n_sectors>;
+  using Row = BoundRow<n_sectors>;
 
-  BoundTables(const Box& box, BoundsKernel kernel) : box_(box), packed_box_(box), kernel_(kernel) {}
+  BoundTables(const Box& box, BoundsKernel<n_sectors> kernel)
+      : box_(box), packed_box_(box), kernel_(kernel) {}
 
   /// Builds everything.
-  void build(const DirectionBins& bins, std::vector<PackedCentre> centres) {
+  void build(const Bins& bins, std::vector<PackedCentre> centres) {
     bins_ = bins;
     reach_squared_ = reach(bins.longest) * reach(bins.longest);
     centres_ = std::move(centres);
     build_lists();
     rows_.resize(centres_.size());
     std::vector<std::uint32_t> weights(centres_.size());
-    for (Index i = 0; i < centres_.size(); ++i) weights[i] = make_row(i);
+    obstacles_.resize(1);
+    for (Index i = 0; i < centres_.size(); ++i) {
+      look_around(i, obstacles_[0]);
+      weights[i] = make_row(i, obstacles_[0]);
+    }
     tree_.assign(std::move(weights));
   }
 
@@ -46,17 +52,27 @@ class BoundTables {
       if (!lists_.renew(box_, j, centre)) build_lists();
       for_each_listed(j, [&](Index i) { stale_.push_back(i); });
     } else {
+      stale_.resize(1 + lists_.stride());
+      std::size_t n = 1;
       for_each_listed(j, [&](Index i) {
-        if (in_the_way(centres_[i], old) || in_the_way(centres_[i], centre)) stale_.push_back(i);
+        stale_[n] = i;
+        n += seen_from(centres_[i], old).in_the_way(reach_squared_) |
+             seen_from(centres_[i], centre).in_the_way(reach_squared_);
       });
+      stale_.resize(n);
     }
-    for (const Index i : stale_) tree_.set(i, make_row(i));
+    // What was just written is read faster a little later.
+    if (obstacles_.size() < stale_.size()) obstacles_.resize(stale_.size());
+    for (std::size_t k = 0; k < stale_.size(); ++k) look_around(stale_[k], obstacles_[k]);
+    for (std::size_t k = 0; k < stale_.size(); ++k) {
+      tree_.set(stale_[k], make_row(stale_[k], obstacles_[k]));
+    }
   }
 
   const std::vector<PackedCentre>& centres() const { return centres_; }
-  const DirectionBins& bins() const { return bins_; }
+  const Bins& bins() const { return bins_; }
   const WeightTree& weights() const { return tree_; }
-  const BoundRow& row(Index i) const { return rows_[i]; }
+  const Row& row(Index i) const { return rows_[i]; }
   std::uint64_t rows_made() const { return rows_made_; }
 
   /// Whether another sphere overlaps sphere i placed at `target`, one step away from its centre.
@@ -71,14 +87,14 @@ class BoundTables {
 
   void prefetch(Index i) const {
     const char* const row = reinterpret_cast<const char*>(&rows_[i]);
-    for (std::size_t line = 0; line < sizeof(BoundRow); line += 64) __builtin_prefetch(row + line);
+    for (std::size_t line = 0; line < sizeof(Row); line += 64) __builtin_prefetch(row + line);
     __builtin_prefetch(&centres_[i]);
     __builtin_prefetch(lists_.rows() + i * lists_.stride());
   }
 
   std::size_t bytes() const {
     return lists_.bytes() + sizeof(PackedCentre) * centres_.capacity() +
-           sizeof(BoundRow) * rows_.capacity() + tree_.bytes();
+           sizeof(Row) * rows_.capacity() + tree_.bytes();
   }
 
  private:
@@ -93,84 +109,97 @@ class BoundTables {
     for (const Index *j = row + 1, *const last = j + *row; j != last; ++j) visit(*j);
   }
 
-  // Neighbours higher than that are left out: they hardly ever bound a step that does not rise.
-  static constexpr double highest = 0.3;
+  static constexpr bool cubic = n_sectors == cubic_sectors;
+
+  // Neighbours higher than that are left out: they hardly ever bound a step that does not rise, but
+  // for the many nearly horizontal ones of the Metropolis move.
+  static constexpr double highest = cubic ? 0.75 : 0.3;
 
   // The distance up to which a neighbour is taken into account. A step as long as a sphere is wide
   // may pass it by: then no bound holds.
   static double reach(double longest) {
-    return longest < 1.99 ? 1 + std::min(0.5 * longest, 0.3) : 0;
+    return longest < 1.99 ? 1 + std::min((cubic ? 1 : 0.5) * longest, 0.3) : 0;
   }
 
-  // Whether the sphere at `other` counts in the table of a sphere at `own`.
-  bool in_the_way(const PackedCentre& own, const PackedCentre& other) const {
-    return other.z - own.z < highest && distance_squared(packed_box_, other, own) < reach_squared_;
+  // Another centre as seen from a sphere's own. All say in the same arithmetic what is in the way.
+  struct Seen {
+    Pair away;
+    double up, squared;
+    bool in_the_way(double reach_squared) const {
+      return (up < highest) & (squared < reach_squared);  // no branch: it could not be guessed
+    }
+  };
+  Seen seen_from(const PackedCentre& own, const PackedCentre& other) const {
+    const Pair away = packed_box_.lateral(other.xy - own.xy);
+    const double up = other.z - own.z;
+    const Pair squares = away * away;
+    return {away, up, squares[0] + squares[1] + up * up};
   }
 
   void build_lists() {
     lists_.build(box_, centres_, bins_.longest + 2 * spare + margin, {0, 0, -0.43 * bins_.longest});
   }
 
-  std::uint32_t make_row(Index i) {
+  // Notes what is in the way of sphere i.
+  void look_around(Index i, Obstacles& seen) const {
     const PackedCentre& own = centres_[i];
     std::uint32_t n = 0;
     for_each_listed(i, [&](Index j) {
-      const PackedCentre& other = centres_[j];
-      if (!in_the_way(own, other)) return;
-      const Pair away = packed_box_.lateral(other.xy - own.xy);
-      const double up = other.z - own.z;
-      const Pair squares = away * away;
-      obstacles_.x[n] = static_cast<float>(away[0]);
-      obstacles_.y[n] = static_cast<float>(away[1]);
-      obstacles_.z[n] = static_cast<float>(-up);
-      obstacles_.tangent_squared[n] =
-          static_cast<float>(squares[0] + squares[1] + up * up - 1 + margin);
-      ++n;
+      const Seen other = seen_from(own, centres_[j]);
+      seen.x[n] = static_cast<float>(other.away[0]);
+      seen.y[n] = static_cast<float>(other.away[1]);
+      seen.z[n] = static_cast<float>(-other.up);
+      seen.tangent_squared[n] = static_cast<float>(other.squared - 1 + margin);
+      n += other.in_the_way(reach_squared_);
     });
-    obstacles_.n_spheres = n;
-    obstacles_.n_planes = 0;
-    add_plane({0, 0, 1}, own.z - sphere_radius + margin);
-    add_sides(box_, own);
+    assert(n < Obstacles::most_spheres);
+    seen.n_spheres = n;
+    seen.n_planes = 0;
+    add_plane(seen, {0, 0, 1}, own.z - sphere_radius + margin);
+    add_sides(seen, box_, own);
+  }
+
+  std::uint32_t make_row(Index i, const Obstacles& seen) {
     ++rows_made_;
-    return kernel_(bins_, obstacles_, rows_[i]);
+    return kernel_(bins_, seen, rows_[i]);
   }
 
-  void add_plane(Vec3 normal, double gap) {
+  void add_plane(Obstacles& seen, Vec3 normal, double gap) const {
     if (gap > bins_.longest) return;
-    const std::uint32_t w = obstacles_.n_planes++;
-    obstacles_.plane_x[w] = static_cast<float>(normal.x);
-    obstacles_.plane_y[w] = static_cast<float>(normal.y);
-    obstacles_.plane_z[w] = static_cast<float>(normal.z);
-    obstacles_.gap[w] = static_cast<float>(gap);
+    const std::uint32_t w = seen.n_planes++;
+    seen.plane_x[w] = static_cast<float>(normal.x);
+    seen.plane_y[w] = static_cast<float>(normal.y);
+    seen.plane_z[w] = static_cast<float>(normal.z);
+    seen.gap[w] = static_cast<float>(gap);
   }
 
-  void add_sides(const PeriodicBox&, const PackedCentre&) {}
-  void add_sides(const WalledBox& box, const PackedCentre& own) {
+  void add_sides(Obstacles&, const PeriodicBox&, const PackedCentre&) const {}
+  void add_sides(Obstacles& seen, const WalledBox& box, const PackedCentre& own) const {
     const double beyond = margin - sphere_radius;
-    add_plane({-1, 0, 0}, own.xy[0] + beyond);
-    add_plane({1, 0, 0}, box.width_x - own.xy[0] + beyond);
-    add_plane({0, -1, 0}, own.xy[1] + beyond);
-    add_plane({0, 1, 0}, box.width_y - own.xy[1] + beyond);
+    add_plane(seen, {-1, 0, 0}, own.xy[0] + beyond);
+    add_plane(seen, {1, 0, 0}, box.width_x - own.xy[0] + beyond);
+    add_plane(seen, {0, -1, 0}, own.xy[1] + beyond);
+    add_plane(seen, {0, 1, 0}, box.width_y - own.xy[1] + beyond);
   }
   // A tube lies within every plane that touches it.
-  void add_sides(const Cylinder& tube, const PackedCentre& own) {
+  void add_sides(Obstacles& seen, const Cylinder& tube, const PackedCentre& own) const {
     const double axis = 0.5 * tube.diameter;
     const double x = own.xy[0] - axis, y = own.xy[1] - axis;
     const double distance = std::sqrt(x * x + y * y);
     if (distance < 1e-3) return;
-    add_plane({x / distance, y / distance, 0}, axis - sphere_radius - distance + margin);
+    add_plane(seen, {x / distance, y / distance, 0}, axis - sphere_radius - distance + margin);
   }
 
   Box box_;
   PackedBox<Box> packed_box_;
-  BoundsKernel kernel_;
-  DirectionBins bins_{};
+  BoundsKernel<n_sectors> kernel_;
+  Bins bins_{};
   double reach_squared_ = 0;
   std::vector<PackedCentre> centres_;
   NeighbourLists lists_;
-  std::vector<BoundRow> rows_;
+  std::vector<Row> rows_;
   WeightTree tree_;
-  Obstacles obstacles_;
+  std::vector<Obstacles> obstacles_;  // of the stale spheres
   std::vector<Index> stale_;
   std::uint64_t rows_made_ = 0;
 };

@@ -29,13 +29,35 @@ double half_theta(const std::vector<double>& table, double probability) {
   return table[node] + (table[node + 1] - table[node]) * along;
 }
 
-SineCosine azimuth_angle(double sectors) {
-  return doubled(doubled(sine_cosine(quarter_pi * (sectors * (2.0 / n_sectors) - 1))));
+SineCosine azimuth_angle(double share) {
+  return doubled(doubled(sine_cosine(quarter_pi * (2 * share - 1))));
 }
 
 Vec3 along_meridian(SineCosine theta, SineCosine azimuth) {
   return {theta.sine * azimuth.cosine, theta.sine * azimuth.sine, theta.cosine};
 }
+
+// The shares of the rings and the probability of a direction beyond the rings before each.
+struct RingShares {
+  std::array<int, n_rings> parts;
+  std::array<double, n_rings + 1> edges{};
+
+  constexpr explicit RingShares(const std::array<int, n_rings>& of) : parts(of) {
+    int sum = 0;
+    for (int k = 0; k < n_rings; ++k) {
+      sum += parts[k];
+      edges[k + 1] = static_cast<double>(sum) / n_ring_parts;
+    }
+  }
+  constexpr double within(int k, double u) const {
+    return edges[k] + (edges[k + 1] - edges[k]) * u;
+  }
+};
+
+// Few polar steps are nearly horizontal, but their bounds are the loosest.
+constexpr RingShares polar_rings({1, 1, 2, 4, 8, 16, 32, 64});
+constexpr RingShares cubic_rings({8, 8, 12, 16, 16, 20, 28, 20});
+static_assert(polar_rings.edges[n_rings] == 1 && cubic_rings.edges[n_rings] == 1);
 
 // The middle of a ring's bins, the direction nearest to its farthest corner, and cos(alpha).
 struct BinShape {
@@ -43,8 +65,7 @@ struct BinShape {
   double cos_alpha = -1;
 };
 
-BinShape bin_shape(SineCosine inner, SineCosine outer) {
-  const SineCosine half_sector = doubled(doubled(sine_cosine(quarter_pi / n_sectors)));
+BinShape bin_shape(SineCosine inner, SineCosine outer, SineCosine half_sector) {
   const Vec3 near = along_meridian(inner, half_sector), far = along_meridian(outer, half_sector);
   constexpr int choices = 64;
   BinShape best;
@@ -61,40 +82,26 @@ BinShape bin_shape(SineCosine inner, SineCosine outer) {
   return best;
 }
 
-DirectionBins bins_between(const RingEdges& edges) {
-  DirectionBins bins{};
+template <int n_sectors>
+DirectionBins<n_sectors> bins_between(const RingEdges& edges, const RingShares& rings) {
+  const SineCosine half_sector = doubled(doubled(sine_cosine(quarter_pi / n_sectors)));
+  DirectionBins<n_sectors> bins{};
+  std::ranges::copy(rings.parts, bins.parts);
   for (int p = 0; p < n_sectors; ++p) {
-    const SineCosine azimuth = azimuth_angle(p + 0.5);
+    const SineCosine azimuth = azimuth_angle((p + 0.5) / n_sectors);
     bins.cosine[p] = static_cast<float>(azimuth.cosine);
     bins.sine[p] = static_cast<float>(azimuth.sine);
   }
   for (int k = 0; k < n_rings; ++k) {
     const bool ascending = edges[k].sine < edges[k + 1].sine;
-    const BinShape shape =
-        ascending ? bin_shape(edges[k], edges[k + 1]) : bin_shape(edges[k + 1], edges[k]);
+    const BinShape shape = ascending ? bin_shape(edges[k], edges[k + 1], half_sector)
+                                     : bin_shape(edges[k + 1], edges[k], half_sector);
     const double sin_alpha = std::sqrt(std::max(0.0, 1 - shape.cos_alpha * shape.cos_alpha));
     bins.across[k] = static_cast<float>(shape.theta.sine * shape.cos_alpha);
     bins.down[k] = static_cast<float>(shape.theta.cosine * shape.cos_alpha);
     bins.spread[k] = static_cast<float>(sin_alpha + 1e-6);
   }
   return bins;
-}
-
-// The probability of a direction beyond the rings before k.
-constexpr double ring_edge(int k) {
-  int parts = 0;
-  for (int before = 0; before < k; ++before) parts += ring_parts[before];
-  return static_cast<double>(parts) / n_ring_parts;
-}
-
-constexpr auto ring_edges = [] {
-  std::array<double, n_rings + 1> edges{};
-  for (int k = 0; k <= n_rings; ++k) edges[k] = ring_edge(k);
-  return edges;
-}();
-
-double within_ring(int k, double u) {
-  return ring_edges[k] + ring_parts[k] * (1.0 / n_ring_parts) * u;
 }
 
 // The least modulus of a cosine or sine, given at both ends of a stretch within one quadrant.
@@ -104,28 +111,29 @@ double least_modulus(double a, double b) {
 
 }  // namespace
 
-DirectionBins polar_bins(const std::vector<double>& theta_table, double max_step) {
+DirectionBins<polar_sectors> polar_bins(const std::vector<double>& theta_table, double max_step) {
   RingEdges edges;
   for (int k = 0; k <= n_rings; ++k) {
-    edges[k] = doubled(sine_cosine(half_theta(theta_table, ring_edge(k))));
+    edges[k] = doubled(sine_cosine(half_theta(theta_table, polar_rings.edges[k])));
   }
-  DirectionBins bins = bins_between(edges);
+  auto bins = bins_between<polar_sectors>(edges, polar_rings);
   bins.longest = max_step;
   for (auto& ring : bins.cap) std::fill(std::begin(ring), std::end(ring), whole_weight);
   return bins;
 }
 
-DirectionBins cubic_bins(double step) {
+DirectionBins<cubic_sectors> cubic_bins(double step) {
   RingEdges edges;
   for (int k = 0; k <= n_rings; ++k) {
-    const double cosine = ring_edge(k);
+    const double cosine = cubic_rings.edges[k];
     edges[k] = {std::sqrt(1 - cosine * cosine), cosine};
   }
-  DirectionBins bins = bins_between(edges);
+  auto bins = bins_between<cubic_sectors>(edges, cubic_rings);
   bins.longest = 1.7320508075688773 * step * 1.000001;
   for (int k = 0; k < n_rings; ++k) {
-    for (int p = 0; p < n_sectors; ++p) {
-      const SineCosine begin = azimuth_angle(p), end = azimuth_angle(p + 1);
+    for (int p = 0; p < cubic_sectors; ++p) {
+      const SineCosine begin = sector_begin(p, cubic_sectors);
+      const SineCosine end = sector_begin(p + 1, cubic_sectors);
       const double x = edges[k + 1].sine * least_modulus(begin.cosine, end.cosine);
       const double y = edges[k + 1].sine * least_modulus(begin.sine, end.sine);
       const double reach = step / std::max({x, y, edges[k].cosine});
@@ -137,16 +145,16 @@ DirectionBins cubic_bins(double step) {
 }
 
 SineCosine polar_angle(const std::vector<double>& theta_table, int ring, double u) {
-  return doubled(sine_cosine(half_theta(theta_table, within_ring(ring, u))));
+  return doubled(sine_cosine(half_theta(theta_table, polar_rings.within(ring, u))));
 }
 
 SineCosine cubic_angle(int ring, double u) {
-  const double cosine = within_ring(ring, u);
+  const double cosine = cubic_rings.within(ring, u);
   return {std::sqrt(1 - cosine * cosine), cosine};
 }
 
-SineCosine sector_begin(int sector) {
-  return azimuth_angle(sector);
+SineCosine sector_begin(int sector, int n_sectors) {
+  return azimuth_angle(static_cast<double>(sector) / n_sectors);
 }
 
 }  // namespace jostle

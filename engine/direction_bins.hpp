@@ -10,19 +10,19 @@ namespace jostle {
 
 /// Bins of the polar move. Rings are stretches of the probability of a larger angle; `theta_table`
 /// is that of the move (engine/theta_table.hpp).
-DirectionBins polar_bins(const std::vector<double>& theta_table, double max_step);
+DirectionBins<polar_sectors> polar_bins(const std::vector<double>& theta_table, double max_step);
 
 /// Bins of the cold Metropolis move. Rings are stretches of the cosine, so that probability is
 /// solid angle on the lower hemisphere. A bin's cap covers the cube |x|, |y|, |z| <= step; what
 /// lies beyond the cube is no trial.
-DirectionBins cubic_bins(double step);
+DirectionBins<cubic_sectors> cubic_bins(double step);
 
 /// The angle from the downward vertical at coordinate u in (0, 1) of a ring, uniform in
 /// probability.
 SineCosine polar_angle(const std::vector<double>& theta_table, int ring, double u);
 SineCosine cubic_angle(int ring, double u);
 
-/// Sine and cosine of the azimuth where a sector begins.
-SineCosine sector_begin(int sector);
+/// Sine and cosine of the azimuth where a sector of n_sectors begins.
+SineCosine sector_begin(int sector, int n_sectors);
 
 }  // namespace jostle

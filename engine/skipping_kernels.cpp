@@ -24,38 +24,49 @@ using Shorts = std::uint16_t __attribute__((vector_size(2 * lanes)));
 inline Floats load(const float* at) {
   return *reinterpret_cast<const Floats*>(at);
 }
+inline void store(Floats values, float* at) {
+  *reinterpret_cast<Floats*>(at) = values;
+}
 
-// For component s of r an inverse length 1 / L >= slope s + level, wherever this exceeds
-// 1 / longest.
+// For component s of r an inverse length 1 / L >= slope s + level, wherever this is at least the
+// onset.
 struct Coefficients {
   static constexpr std::uint32_t size = Obstacles::most_spheres + 16;
-  alignas(64) float x[size], y[size], z[size], norm[size], level[size];
+  alignas(64) float x[size], y[size], z[size], norm[size], level[size], onset[size];
 };
 
 // A step along a direction with component s of r enters the sphere at L = c / h(s), with
-// c = |r|^2 - 1 and h = s + sqrt(s^2 - c), and leaves it at h. h is concave, so it is above the
-// straight line from h = c / longest at s = (longest + c / longest) / 2, where the longest step
-// enters or leaves the sphere, to h = |r| + 1 at s = |r|. Between them every step beyond c / line
-// is refused; for a lesser s the line gives a bound beyond the longest step.
+// c = |r|^2 - 1 and h = s + sqrt(s^2 - c), and leaves it at h. From s = (longest + c / longest) / 2
+// on, where the longest step enters or leaves the sphere, every step beyond L is refused. There h
+// is the greater of longest and c / longest; it is concave, so it is above the straight line from
+// there to norm + 1 at any norm >= |r|. A line from c / longest, which is lower, needs no onset:
+// for a lesser s it gives a bound beyond the longest step.
+template <bool with_onset>
 void sphere_coefficients(const Obstacles& obstacles, float longest, Coefficients& out) {
   const float per_longest = 1.0f / longest;
-  for (std::uint32_t j = 0; j < obstacles.n_spheres; ++j) {
-    const float x = obstacles.x[j], y = obstacles.y[j], z = obstacles.z[j];
-    const float c = obstacles.tangent_squared[j];
-    const float norm = __builtin_sqrtf(x * x + y * y + z * z);
-    const float least = 0.5f * (longest + c * per_longest);
-    const float slope = ((norm + 1.0f) / c - per_longest) / (norm - least);
-    out.x[j] = x * slope;
-    out.y[j] = y * slope;
-    out.z[j] = z * slope;
-    out.norm[j] = norm * slope;
-    out.level[j] = per_longest - slope * least;
+  for (std::uint32_t j = 0; j < obstacles.n_spheres; j += lanes) {
+    const Floats x = load(&obstacles.x[j]), y = load(&obstacles.y[j]), z = load(&obstacles.z[j]);
+    const Floats c = load(&obstacles.tangent_squared[j]);
+    const Floats norm = 1.0f + 0.5f * c;
+    const Floats per_c = 1.0f / c;
+    const Floats least = 0.5f * (longest + c * per_longest);
+    Floats onset = Floats{} + per_longest;
+    if constexpr (with_onset) {
+      const Floats inside = longest * per_c;
+      onset = inside > onset ? inside : onset;
+    }
+    const Floats slope = ((norm + 1.0f) * per_c - onset) / (norm - least);
+    store(x * slope, &out.x[j]);
+    store(y * slope, &out.y[j]);
+    store(z * slope, &out.z[j]);
+    store(norm * slope, &out.norm[j]);
+    store(onset - slope * least, &out.level[j]);
+    store(onset * 1.00001f, &out.onset[j]);  // safe from rounding
   }
 }
 
 // A plane is met at the gap over the component of its normal.
-std::uint32_t all_coefficients(const Obstacles& obstacles, float longest, Coefficients& out) {
-  sphere_coefficients(obstacles, longest, out);
+void add_planes(const Obstacles& obstacles, Coefficients& out) {
   std::uint32_t n = obstacles.n_spheres;
   for (std::uint32_t w = 0; w < obstacles.n_planes; ++w, ++n) {
     const float per_gap = 1.0f / obstacles.gap[w];
@@ -64,22 +75,24 @@ std::uint32_t all_coefficients(const Obstacles& obstacles, float longest, Coeffi
     out.z[n] = obstacles.plane_z[w] * per_gap;
     out.norm[n] = per_gap;
     out.level[n] = 0;
+    out.onset[n] = 0;
   }
-  return n;
 }
 
 // The lines of all obstacles, [obstacle][sector] and [obstacle][ring]: their product with a ring's
 // width and their sum is the inverse length.
+template <int n_sectors>
 struct Lines {
   alignas(64) float sideways[Coefficients::size][n_sectors];
   alignas(64) float downward[Coefficients::size][n_rings];
 };
 
-void draw_lines(const DirectionBins& bins, const Coefficients& of, std::uint32_t n, Lines& lines) {
+template <int n_sectors>
+void draw_lines(const DirectionBins<n_sectors>& bins, const Coefficients& of, std::uint32_t n,
+                Lines<n_sectors>& lines) {
   for (std::uint32_t j = 0; j < n; ++j) {
     for (int p = 0; p < n_sectors; p += lanes) {
-      *reinterpret_cast<Floats*>(&lines.sideways[j][p]) =
-          of.x[j] * load(&bins.cosine[p]) + of.y[j] * load(&bins.sine[p]);
+      store(of.x[j] * load(&bins.cosine[p]) + of.y[j] * load(&bins.sine[p]), &lines.sideways[j][p]);
     }
     for (int k = 0; k < n_rings; ++k) {
       lines.downward[j][k] = (of.z[j] * bins.down[k] - of.norm[j] * bins.spread[k]) + of.level[j];
@@ -87,39 +100,54 @@ void draw_lines(const DirectionBins& bins, const Coefficients& of, std::uint32_t
   }
 }
 
-[[gnu::always_inline]] inline std::uint32_t bounds(const DirectionBins& bins,
-                                                   const Obstacles& obstacles, BoundRow& row,
-                                                   bool cubic) {
+// 1 / x for x from 1e-30 to 1e30, too small by at most 2 parts in 100 000: a first guess from the
+// bits, 6 % off at most, and Newton's method twice. A division takes longer.
+inline Floats reciprocal(Floats x) {
+  Floats y = (Floats)(0x7ef127ea - (Integers)x);
+  y *= 2.0f - x * y;
+  return y * (2.0f - x * y);
+}
+
+template <bool cubic, int n_sectors>
+[[gnu::always_inline]] inline std::uint32_t bounds(const DirectionBins<n_sectors>& bins,
+                                                   const Obstacles& obstacles,
+                                                   BoundRow<n_sectors>& row) {
   constexpr int block = 4;
   Coefficients coefficients;
-  Lines lines;
-  const std::uint32_t n =
-      all_coefficients(obstacles, static_cast<float>(bins.longest), coefficients);
+  Lines<n_sectors> lines;
+  sphere_coefficients<cubic>(obstacles, static_cast<float>(bins.longest), coefficients);
+  add_planes(obstacles, coefficients);
+  const std::uint32_t n = obstacles.n_spheres + obstacles.n_planes;
   draw_lines(bins, coefficients, n, lines);
-  // A part in a thousand more than rounding can take away.
-  const float scale = static_cast<float>(1.001 / bins.longest);
+  // Inverse lengths are positive where they count, so that they compare as the integers they are
+  // stored as: these have more units to run on.
+  const Integers open = (Integers)(Floats{} + 1.0f / static_cast<float>(bins.longest));
+  // A part in a thousand more than reciprocals and rounding can take away.
+  const float scale = 1.001f / static_cast<float>(bins.longest);
   Integers sum = {};
   for (int p = 0; p < n_sectors; p += lanes) {
     Integers sector_weight = {};
     for (int first = 0; first < n_rings; first += block) {
-      Floats inverse[block];
-      for (Floats& open : inverse) open = Floats{} + scale;
+      Integers inverse[block];
+      for (Integers& least : inverse) least = open;
       for (std::uint32_t j = 0; j < n; ++j) {
         const Floats sideways = load(&lines.sideways[j][p]);
         for (int k = 0; k < block; ++k) {
-          const Floats here = sideways * bins.across[first + k] + lines.downward[j][first + k];
-          inverse[k] = here > inverse[k] ? here : inverse[k];
+          Floats here = sideways * bins.across[first + k] + lines.downward[j][first + k];
+          // A polar step is so short that the lower line serves as well.
+          if constexpr (cubic) here = here >= coefficients.onset[j] ? here : Floats{};
+          inverse[k] = (Integers)here > inverse[k] ? (Integers)here : inverse[k];
         }
       }
       for (int k = 0; k < block; ++k) {
-        const Floats ratio = scale / inverse[k];
+        const Floats ratio = scale * reciprocal((Floats)inverse[k]);
         const Floats bound = (cubic ? ratio * ratio * ratio : ratio) * float{whole_weight};
         const Integers above = __builtin_convertvector(bound, Integers) + 1;
         const Integers cap = *reinterpret_cast<const Integers*>(&bins.cap[first + k][p]);
         const Integers weight = above < cap ? above : cap;
         *reinterpret_cast<Shorts*>(&row.weight[first + k][p]) =
             __builtin_convertvector(weight, Shorts);
-        sector_weight += weight * ring_parts[first + k];
+        sector_weight += weight * bins.parts[first + k];
       }
     }
     *reinterpret_cast<Integers*>(&row.sector_weight[p]) = sector_weight;
@@ -130,12 +158,14 @@ void draw_lines(const DirectionBins& bins, const Coefficients& of, std::uint32_t
   return static_cast<std::uint32_t>(total);
 }
 
-std::uint32_t linear_bounds(const DirectionBins& bins, const Obstacles& obstacles, BoundRow& row) {
-  return bounds(bins, obstacles, row, false);
+std::uint32_t linear_bounds(const DirectionBins<polar_sectors>& bins, const Obstacles& obstacles,
+                            BoundRow<polar_sectors>& row) {
+  return bounds<false>(bins, obstacles, row);
 }
 
-std::uint32_t cubic_bounds(const DirectionBins& bins, const Obstacles& obstacles, BoundRow& row) {
-  return bounds(bins, obstacles, row, true);
+std::uint32_t cubic_bounds(const DirectionBins<cubic_sectors>& bins, const Obstacles& obstacles,
+                           BoundRow<cubic_sectors>& row) {
+  return bounds<true>(bins, obstacles, row);
 }
 
 // The four words of the n consecutive blocks (first, lane), (first + 1, lane), ... of a stream,
@@ -176,9 +206,9 @@ inline double unit_interval(std::uint32_t w) {
          (0.5 + 0x1p-33);
 }
 
-void candidates(std::uint64_t key, std::uint64_t first, CandidateBatch& batch) {
+void candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch) {
   constexpr std::uint32_t n = CandidateBatch::size;
-  constexpr double half_sector = 3.14159265358979323846 / n_sectors;
+  const double half_sector = 3.14159265358979323846 / n_sectors;
   alignas(64) std::uint32_t w[2][n];
   philox_words(key, first, 2, n, w[0], batch.theta, w[1], batch.length[0]);
   for (std::uint32_t t = 0; t < n; ++t) batch.waiting[t] = -natural_log(unit_interval(w[0][t]));

@@ -7,24 +7,27 @@
 namespace jostle {
 
 /// Directions are sorted into rings of the angle from the downward vertical, each cut into sectors
-/// of the azimuth. z counts downward throughout.
+/// of the azimuth. z counts downward throughout. Metropolis steps want finer bins: there it is the
+/// cube of a length that a bin too wide overestimates.
 inline constexpr int n_rings = 8;
-inline constexpr int n_sectors = 16;
+inline constexpr int polar_sectors = 16, cubic_sectors = 32;
 
-/// The share of the probability that a ring's directions have, in parts of n_ring_parts; rings go
-/// from the horizontal down.
-inline constexpr int ring_parts[n_rings] = {1, 1, 2, 2, 2, 2, 3, 3};
-inline constexpr int n_ring_parts = 16;
+/// The share of the probability that a ring's directions have is parts / n_ring_parts; rings
+/// go from the horizontal down.
+inline constexpr int n_ring_parts = 128;
 
 /// The shapes of the bins (engine/direction_bins.hpp). Over the bin (k, p) with centre u and
 /// half-angle alpha, u.r cos(alpha) - |r| sin(alpha) bounds the component of r from below.
+template <int n_sectors>
 struct DirectionBins {
+  static constexpr int sectors = n_sectors;
   alignas(64) float cosine[n_sectors], sine[n_sectors];  // of the azimuth of a sector's middle
   float across[n_rings];                                 // sin(theta) cos(alpha) of a ring's middle
   float down[n_rings];                                   // cos(theta) cos(alpha)
   float spread[n_rings];                                 // sin(alpha), rounded up
   alignas(64) std::int32_t cap[n_rings][n_sectors];      // of what no step exceeds
-  double longest;                                        // step, diameters
+  int parts[n_rings];
+  double longest;  // step, diameters
 };
 
 /// A bound is kept as the weight it gives its bin: the length beyond which a step is certainly
@@ -43,6 +46,7 @@ struct Obstacles {
 
 /// The weights of all bins of a sphere; and their sums over a sector, each times the parts of its
 /// ring.
+template <int n_sectors>
 struct alignas(64) BoundRow {
   std::uint16_t weight[n_rings][n_sectors];
   std::int32_t sector_weight[n_sectors];
@@ -57,14 +61,17 @@ struct CandidateBatch {
   alignas(64) std::uint32_t theta[size], length[3][size];
 };
 
+/// Fills the row and returns the sum of its weights.
+template <int n_sectors>
+using BoundsKernel = std::uint32_t (*)(const DirectionBins<n_sectors>& bins,
+                                       const Obstacles& obstacles, BoundRow<n_sectors>& row);
+
 struct SkippingKernels {
-  /// Fill the row and return the sum of its weights: of lengths, or of their cubes.
-  std::uint32_t (*linear_bounds)(const DirectionBins& bins, const Obstacles& obstacles,
-                                 BoundRow& row);
-  std::uint32_t (*cubic_bounds)(const DirectionBins& bins, const Obstacles& obstacles,
-                                BoundRow& row);
-  /// Candidates first .. first + CandidateBatch::size - 1 of a stream; first is a multiple of size.
-  void (*candidates)(std::uint64_t key, std::uint64_t first, CandidateBatch& batch);
+  BoundsKernel<polar_sectors> linear_bounds;  // weights are lengths
+  BoundsKernel<cubic_sectors> cubic_bounds;   // and their cubes
+  /// Candidates first .. first + CandidateBatch::size - 1 of a stream, where azimuths are cut into
+  /// n_sectors; first is a multiple of size.
+  void (*candidates)(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
 };
 
 namespace baseline {

@@ -15,12 +15,13 @@ namespace jostle {
 
 /// The trial loop that looks only at candidates: trials that the bounds do not certainly refuse.
 /// The number of trials up to the next candidate is geometric, so the law of the trajectory, counts
-/// of trials included, is that of the exhaustive loop; the random numbers are others. After a tap
-/// it is exhaustive until few trials are accepted, then skips until the next tap.
+/// of trials included, is that of the exhaustive loop; the random numbers are others. It skips
+/// while few trials are accepted, and is exhaustive otherwise, as after a tap.
 template <class Box, Rise rise>
 class SkippingTrialLoop final : public TrialLoop {
   static_assert(rise == Rise::impossible || rise == Rise::refused);
   static constexpr bool cubic = rise == Rise::refused;
+  static constexpr int n_sectors = cubic ? cubic_sectors : polar_sectors;
 
  public:
   SkippingTrialLoop(const Box& box, const Move& move, StreamKey key,
@@ -30,13 +31,13 @@ class SkippingTrialLoop final : public TrialLoop {
         key_(key),
         kernels_(kernels),
         exhaustive_(box, move, key, proposals),
-        tables_(box, cubic ? kernels.cubic_bounds : kernels.linear_bounds) {
+        tables_(box, bounds_kernel(kernels)) {
     if (const auto* polar = std::get_if<PolarMove>(&move)) {
       theta_table_ = make_theta_table(*polar);
     } else {
       adaptation_ = std::get<MetropolisMove>(move).adaptation;
     }
-    for (int p = 0; p < n_sectors; ++p) sector_begins_[p] = sector_begin(p);
+    for (int p = 0; p < n_sectors; ++p) sector_begins_[p] = sector_begin(p, n_sectors);
   }
 
   void load(const Packing& packing) override {
@@ -51,11 +52,7 @@ class SkippingTrialLoop final : public TrialLoop {
   }
 
   void begin_tap() override {
-    if (sampler_.skipping) {
-      Packing packing{box_, {}};
-      store(packing);
-      load(packing);
-    }
+    look_again();
     be_exhaustive();
     exhaustive_.begin_tap();
   }
@@ -68,14 +65,12 @@ class SkippingTrialLoop final : public TrialLoop {
       tally_.trials += piece;
       tally_.bound_rows = tables_.rows_made();
       n_trials -= piece;
-      if (sampler_.skipping) {
-        const std::uint64_t accepted = tally_.accepted - accepted_before;
-        if (adaptation_ && adapt_step(*adaptation_, move_, {piece, 0, accepted, 0})) {
-          adapt_to_new_step();
-        }
-      } else {
-        decide(piece, tally_.accepted - accepted_before);
+      const std::uint64_t accepted = tally_.accepted - accepted_before;
+      if (sampler_.skipping && adaptation_ &&
+          adapt_step(*adaptation_, move_, {piece, 0, accepted, 0})) {
+        adapt_to_new_step();
       }
+      decide(piece, accepted);
     }
   }
 
@@ -111,18 +106,28 @@ class SkippingTrialLoop final : public TrialLoop {
   }
 
  private:
-  // The exhaustive loop hands over once fewer than this share of a window's trials is accepted.
-  static constexpr double least_acceptance = 0.03;
+  // The exhaustive loop hands over once fewer than this share of a window's trials is accepted, and
+  // takes over again where more than several times as many are: a step that adapts grows short.
+  // Measured where both cost the same; a cold Metropolis trial is cheap to look at.
+  static constexpr double least_acceptance = cubic ? 0.004 : 0.015, several = 3;
   static constexpr std::uint64_t window_sweeps = 25;
   // Beyond this share of candidates the bounds are of no use.
   static constexpr double most_candidates = 0.3;
+  static constexpr std::uint32_t most_ahead = 8;
   static constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
-  std::uint64_t until_decision() const {
-    if (sampler_.skipping) {
-      return adaptation_ ? adaptation_->every_trials - move_.window_trials : never;
+  static BoundsKernel<n_sectors> bounds_kernel(const SkippingKernels& kernels) {
+    if constexpr (cubic) {
+      return kernels.cubic_bounds;
+    } else {
+      return kernels.linear_bounds;
     }
-    return window_sweeps * n_spheres() - sampler_.window_trials;
+  }
+
+  std::uint64_t until_decision() const {
+    const std::uint64_t window = window_sweeps * n_spheres() - sampler_.window_trials;
+    if (!sampler_.skipping || !adaptation_) return window;
+    return std::min(window, adaptation_->every_trials - move_.window_trials);
   }
 
   void look_at_all(std::uint64_t n_trials) {
@@ -141,7 +146,16 @@ class SkippingTrialLoop final : public TrialLoop {
     const double share =
         static_cast<double>(sampler_.window_accepted) / static_cast<double>(sampler_.window_trials);
     sampler_.window_trials = sampler_.window_accepted = 0;
-    if (share < least_acceptance) begin_skipping();
+    if (!sampler_.skipping && share < least_acceptance) begin_skipping();
+    if (sampler_.skipping && share > several * least_acceptance) look_again();
+  }
+
+  // Hands the centres back to the exhaustive loop, if they are not there.
+  void look_again() {
+    if (!sampler_.skipping) return;
+    Packing packing{box_, {}};
+    store(packing);
+    load(packing);
   }
 
   void be_exhaustive() {
@@ -168,9 +182,12 @@ class SkippingTrialLoop final : public TrialLoop {
   }
 
   void build_tables(std::vector<PackedCentre> centres) {
-    tables_.build(cubic ? cubic_bins(sampler_.reference_step)
-                        : polar_bins(theta_table_, sampler_.reference_step),
-                  std::move(centres));
+    if constexpr (cubic) {
+      tables_.build(cubic_bins(sampler_.reference_step), std::move(centres));
+    } else {
+      tables_.build(polar_bins(theta_table_, sampler_.reference_step), std::move(centres));
+    }
+    n_located_ = 0;
     weigh();
   }
 
@@ -204,7 +221,8 @@ class SkippingTrialLoop final : public TrialLoop {
     const auto place = static_cast<std::uint32_t>(number % CandidateBatch::size);
     const std::uint64_t first = number - place;
     if (batch_valid_ && batch_first_ == first) return place;
-    kernels_.candidates(static_cast<std::uint64_t>(key_), first, batch_);
+    kernels_.candidates(static_cast<std::uint64_t>(key_), first, n_sectors, batch_);
+    n_located_ = 0;
     batch_first_ = first;
     batch_valid_ = true;
     return place;
@@ -212,21 +230,25 @@ class SkippingTrialLoop final : public TrialLoop {
 
   void skip(std::uint64_t n_trials) {
     const std::uint64_t end = move_.next_trial + n_trials;
-    bool known = false;
-    WeightTree::Hit next;
     while (sampler_.pending < end) {
       const std::uint32_t t = fetch(sampler_.candidate);
-      const WeightTree::Hit hit = known ? next : locate(t);
-      // Most candidates are refused and change nothing: the next one is already known.
-      known = t + 1 < CandidateBatch::size;
-      if (known) {
-        next = locate(t + 1);
-        tables_.prefetch(next.index);
-      }
-      if (try_candidate(t, hit)) known = false;
+      if (t - first_located_ >= n_located_) locate_from(t);
+      if (try_candidate(t, located_[t - first_located_])) n_located_ = 0;
       draw_candidate(sampler_.pending + 1);
     }
     move_.next_trial = end;
+  }
+
+  // Finds the spheres of some candidates of the batch: most are refused and change nothing, so
+  // that the next ones are already known. After an acceptance fewer.
+  void locate_from(std::uint32_t t) {
+    n_ahead_ = n_located_ == 0 ? 2 : std::min(2 * n_ahead_, most_ahead);
+    first_located_ = t;
+    n_located_ = std::min(n_ahead_, CandidateBatch::size - t);
+    for (std::uint32_t k = 0; k < n_located_; ++k) {
+      located_[k] = locate(t + k);
+      tables_.prefetch(located_[k].index);
+    }
   }
 
   // The sphere of a candidate of the batch, and what chooses its bin.
@@ -238,12 +260,12 @@ class SkippingTrialLoop final : public TrialLoop {
   }
 
   Vec3 displacement(std::uint32_t t, const WeightTree::Hit& hit) const {
-    const BoundRow& row = tables_.row(hit.index);
+    const BoundRow<n_sectors>& row = tables_.row(hit.index);
     auto rest = static_cast<std::int32_t>(hit.rest);
     int sector = 0, ring = 0;
     while (rest >= row.sector_weight[sector]) rest -= row.sector_weight[sector++];
     for (;; ++ring) {
-      const std::int32_t weight = row.weight[ring][sector] * ring_parts[ring];
+      const std::int32_t weight = row.weight[ring][sector] * tables_.bins().parts[ring];
       if (rest < weight) break;
       rest -= weight;
     }
@@ -304,13 +326,15 @@ class SkippingTrialLoop final : public TrialLoop {
   std::optional<StepAdaptation> adaptation_;
   std::vector<double> theta_table_;
   TypedTrialLoop<Box, rise> exhaustive_;
-  BoundTables<Box> tables_;
+  BoundTables<Box, n_sectors> tables_;
   MoveState move_;  // while skipping, when the centres are those of the tables
   SamplerState sampler_;
   TrialTally tally_;
   std::array<SineCosine, n_sectors> sector_begins_;
   double mean_wait_ = 0;
   CandidateBatch batch_;
+  std::array<WeightTree::Hit, most_ahead> located_;
+  std::uint32_t first_located_ = 0, n_located_ = 0, n_ahead_ = 0;
   std::uint64_t batch_first_ = 0;
   bool batch_valid_ = false;
 };

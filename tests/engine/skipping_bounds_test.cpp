@@ -26,19 +26,31 @@ std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
   return centres;
 }
 
-DirectionBins bins_of(const Move& move) {
-  if (const auto* polar = std::get_if<PolarMove>(&move)) {
-    return polar_bins(make_theta_table(*polar), polar->max_step);
+// The bins, tables and directions of the two moves.
+struct Polar {
+  PolarMove move;
+  std::vector<double> theta_table = make_theta_table(move);
+  static constexpr int n_sectors = polar_sectors;
+  double longest_side() const { return move.max_step; }
+  auto bins() const { return polar_bins(theta_table, move.max_step); }
+  SineCosine angle(int ring, double u) const {
+    return polar_angle(theta_table, ring, u);
   }
-  return cubic_bins(std::get<MetropolisMove>(move).max_step);
-}
+  static double ratio(double weight) { return weight; }
+  static auto kernel() { return baseline::skipping_kernels().linear_bounds; }
+};
+struct Cubic {
+  MetropolisMove move;
+  static constexpr int n_sectors = cubic_sectors;
+  double longest_side() const { return move.max_step; }
+  auto bins() const { return cubic_bins(move.max_step); }
+  static SineCosine angle(int ring, double u) { return cubic_angle(ring, u); }
+  static double ratio(double weight) { return std::cbrt(weight); }
+  static auto kernel() { return baseline::skipping_kernels().cubic_bounds; }
+};
 
-template <class Box>
-BoundTables<Box> tables_for(const Box& box, const Move& move) {
-  const SkippingKernels kernels = baseline::skipping_kernels();
-  const bool polar = std::holds_alternative<PolarMove>(move);
-  return {box, polar ? kernels.linear_bounds : kernels.cubic_bounds};
-}
+template <class Box, class Kind>
+using TablesOf = BoundTables<Box, Kind::n_sectors>;
 
 // Whether a step is possible, against all spheres.
 template <class Box>
@@ -57,21 +69,18 @@ struct Tried {
 };
 
 // Random steps of every bin, to either side of its bound.
-template <class Box>
-Tried try_steps(const Box& box, const Move& move, const BoundTables<Box>& tables) {
-  const bool polar = std::holds_alternative<PolarMove>(move);
-  const auto theta_table = make_theta_table(polar ? std::get<PolarMove>(move) : PolarMove{});
+template <class Box, class Kind>
+Tried try_steps(const Box& box, const Kind& kind, const TablesOf<Box, Kind>& tables) {
   RandomStream random(stream_key(48, 0, 0, Purpose::start));
   const double longest = tables.bins().longest;
   Tried tried;
   for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
-    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
-      const int ring = bin / n_sectors, sector = bin % n_sectors;
+    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
+      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
       const double weight = tables.row(i).weight[ring][sector] / double{whole_weight};
-      const double bound = longest * (polar ? weight : std::cbrt(weight));
-      const SineCosine theta = polar ? polar_angle(theta_table, ring, random.uniform())
-                                     : cubic_angle(ring, random.uniform());
-      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / n_sectors;
+      const double bound = longest * Kind::ratio(weight);
+      const SineCosine theta = kind.angle(ring, random.uniform());
+      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / Kind::n_sectors;
       const bool beyond = random.uniform() < 0.5;
       double length =
           beyond ? bound + (longest - bound) * random.uniform() : bound * random.uniform();
@@ -81,7 +90,7 @@ Tried try_steps(const Box& box, const Move& move, const BoundTables<Box>& tables
       const Vec3 step{-length * theta.sine * std::cos(azimuth),
                       -length * theta.sine * std::sin(azimuth), -length * theta.cosine};
       const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
-      if (!polar && side > std::get<MetropolisMove>(move).max_step) continue;
+      if (side > kind.longest_side()) continue;
       const bool free = possible(box, tables.centres(), i, step);
       (beyond ? tried.beyond : tried.within) += 1;
       (beyond ? tried.wrong : tried.possible_within) += free;
@@ -90,21 +99,56 @@ Tried try_steps(const Box& box, const Move& move, const BoundTables<Box>& tables
   return tried;
 }
 
+template <class Box, class Kind>
+void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres, const Kind& kind) {
+  TablesOf<Box, Kind> tables(box, Kind::kernel());
+  tables.build(kind.bins(), centres);
+  const Tried tried = try_steps(box, kind, tables);
+  CHECK(tried.wrong == 0);
+  // A step longer than a sphere is wide may pass it by, and nothing bounds it.
+  if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * centres.size()));
+  // The bounds are of use: some of what they leave is free.
+  CHECK(tried.possible_within > 0);
+}
+
 template <class Box>
 void check_bounds(const Box& box, std::uint32_t n) {
   const auto centres = bed(box, n);
-  for (const Move& move :
-       {Move{PolarMove{}}, Move{PolarMove{0.4, 1.5, ThetaLaw::linear}},
-        Move{PolarMove{0.1, 0.2, ThetaLaw::exponential}}, Move{MetropolisMove{0.1}},
-        Move{MetropolisMove{0.02}}, Move{MetropolisMove{0.7}}, Move{PolarMove{2.5}}}) {
-    BoundTables<Box> tables = tables_for(box, move);
-    tables.build(bins_of(move), centres);
-    const Tried tried = try_steps(box, move, tables);
-    CHECK(tried.wrong == 0);
-    // A step longer than a sphere is wide may pass it by, and nothing bounds it.
-    if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * n));
-    // The bounds are of use: some of what they leave is free.
-    CHECK(tried.possible_within > 0);
+  for (const PolarMove& move : {PolarMove{}, PolarMove{0.4, 1.5, ThetaLaw::linear},
+                                PolarMove{0.1, 0.2, ThetaLaw::exponential}, PolarMove{0.01},
+                                PolarMove{1.2}, PolarMove{2.5}}) {
+    check_bounds_of(box, centres, Polar{move});
+  }
+  for (const double step : {0.1, 0.02, 0.3, 0.7}) {
+    check_bounds_of(box, centres, Cubic{MetropolisMove{step}});
+  }
+}
+
+template <class Kind>
+void check_function_of_centres(const Kind& kind) {
+  const PeriodicBox box{4, 5};
+  TablesOf<PeriodicBox, Kind> moved(box, Kind::kernel()), fresh(box, Kind::kernel());
+  moved.build(kind.bins(), bed(box, 100));
+  RandomStream random(stream_key(49, 0, 0, Purpose::start));
+  int moves = 0;
+  for (int trial = 0; trial < 200'000; ++trial) {
+    const auto i = static_cast<std::uint32_t>(random.below(100));
+    const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
+                    0.2 * random.uniform() - 0.1};
+    const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
+    if (norm_squared(step) > 0.01 || !possible(box, moved.centres(), i, step)) continue;
+    moved.move(i, packed(target));
+    ++moves;
+  }
+  CHECK(moves > 1000);
+  fresh.build(kind.bins(), moved.centres());
+  CHECK(fresh.weights().total() == moved.weights().total());
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
+    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
+      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
+      REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
+    }
   }
 }
 
@@ -126,31 +170,8 @@ TEST_CASE("every step beyond its bound overlaps, in a tube") {
 }
 
 TEST_CASE("bounds are a function of the centres, whatever moves led there") {
-  const PeriodicBox box{4, 5};
-  const Move move = PolarMove{};
-  BoundTables<PeriodicBox> moved = tables_for(box, move), fresh = tables_for(box, move);
-  moved.build(bins_of(move), bed(box, 100));
-  RandomStream random(stream_key(49, 0, 0, Purpose::start));
-  int moves = 0;
-  for (int trial = 0; trial < 200'000; ++trial) {
-    const auto i = static_cast<std::uint32_t>(random.below(100));
-    const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
-                    0.2 * random.uniform() - 0.1};
-    const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
-    if (norm_squared(step) > 0.01 || !possible(box, moved.centres(), i, step)) continue;
-    moved.move(i, packed(target));
-    ++moves;
-  }
-  CHECK(moves > 1000);
-  fresh.build(bins_of(move), moved.centres());
-  CHECK(fresh.weights().total() == moved.weights().total());
-  for (std::uint32_t i = 0; i < 100; ++i) {
-    CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
-    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
-      const int ring = bin / n_sectors, sector = bin % n_sectors;
-      REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
-    }
-  }
+  check_function_of_centres(Polar{});
+  check_function_of_centres(Cubic{});
 }
 
 TEST_CASE("a weight tree finds what adding up the weights finds") {

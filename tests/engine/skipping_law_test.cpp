@@ -115,11 +115,12 @@ void compare_taps(Packing bed, const Course& course, int taps) {
   check_same_law("acceptance", exhaustive.acceptance, skipping.acceptance);
 }
 
-Packing settled(const Container& container, std::uint32_t n, const Move& move) {
+Packing settled(const Container& container, std::uint32_t n, const Move& move,
+                std::uint64_t sweeps = 5000) {
   Packing packing = random_packing(container, n, 0.3 * n, 73);
   const auto loop = loop_of(packing, move, Sampler::exhaustive, 3);
   loop->load(packing);
-  loop->run(std::uint64_t{5000} * n);
+  loop->run(sweeps * n);
   loop->store(packing);
   return packing;
 }
@@ -176,7 +177,7 @@ TEST_CASE("skipping has the law of looking at every trial: Metropolis taps", "[s
 
 TEST_CASE("skipping has the law of looking at every trial: accepted steps", "[statistics]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
-    const Packing bed = settled(PeriodicBox{4, 4}, 100, move);
+    const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
     const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 3000);
     const StepSamples skipping = steps_from(bed, move, Sampler::skipping, 3000);
     CHECK(exhaustive.length.size() > 1000);
