@@ -178,8 +178,8 @@ TEST_CASE("skipping has the law of looking at every trial: Metropolis taps", "[s
 TEST_CASE("skipping has the law of looking at every trial: accepted steps", "[statistics]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
     const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
-    const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 3000);
-    const StepSamples skipping = steps_from(bed, move, Sampler::skipping, 3000);
+    const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 5000);
+    const StepSamples skipping = steps_from(bed, move, Sampler::skipping, 5000);
     CHECK(exhaustive.length.size() > 1000);
     check_same_law("length", exhaustive.length, skipping.length);
     check_same_law("fall", exhaustive.fall, skipping.fall);
