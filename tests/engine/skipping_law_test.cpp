@@ -175,6 +175,16 @@ TEST_CASE("skipping has the law of looking at every trial: Metropolis taps", "[s
                {move, Lift{0.25}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}}, 200);
 }
 
+TEST_CASE("skipping has the law of looking at every trial: taps in a tube", "[statistics]") {
+  const Cylinder tube{5};
+  compare_taps(settled(tube, 100, PolarMove{}),
+               {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
+               200);
+  compare_taps(settled(tube, 100, MetropolisMove{}),
+               {MetropolisMove{}, Lift{0.25}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
+               200);
+}
+
 TEST_CASE("skipping has the law of looking at every trial: accepted steps", "[statistics]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
     const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
