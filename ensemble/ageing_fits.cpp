@@ -1,0 +1,230 @@
+#include "ensemble/ageing_fits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/resampled_fit.hpp"
+#include "ensemble/shared_ageing.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr int reweightings = 3;
+
+const AgeingLaw no_law = {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number,
+                          not_a_number, not_a_number, not_a_number, "not fitted"};
+
+std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
+  std::vector<std::uint32_t> complete;
+  for (std::uint32_t r = 0; r < rows.realizations; ++r) {
+    bool finite = true;
+    for (std::size_t i = r; i < rows.values.size(); i += rows.realizations) {
+      finite = finite && std::isfinite(rows.values[i]);
+    }
+    if (finite) complete.push_back(r);
+  }
+  return complete;
+}
+
+// Squared changes over lags that the series has and over which anything changes.
+RealizationCurves squared_changes(const TapRows& rows, std::span<const std::uint32_t> realizations,
+                                  std::uint64_t wait, std::span<const std::uint64_t> lags) {
+  RealizationCurves curves;
+  curves.realizations = static_cast<std::uint32_t>(realizations.size());
+  const std::span<const double> early = rows.row(wait);
+  for (const std::uint64_t lag : lags) {
+    const std::span<const double> late = rows.row(wait + lag);
+    if (early.empty() || late.empty()) continue;
+    std::vector<double> squares;
+    for (const std::uint32_t r : realizations) {
+      squares.push_back((late[r] - early[r]) * (late[r] - early[r]));
+    }
+    if (std::ranges::all_of(squares, [](double x) { return x == 0; })) continue;
+    curves.t.push_back(static_cast<double>(lag));
+    curves.values.insert(curves.values.end(), squares.begin(), squares.end());
+  }
+  return curves;
+}
+
+// Root mean square over lags of the relative error of the mean.
+double relative_error(const RealizationCurves& curves) {
+  double sum = 0;
+  for (std::size_t i = 0; i < curves.t.size(); ++i) {
+    Moments moments;
+    for (std::uint32_t r = 0; r < curves.realizations; ++r) {
+      moments.add(curves.values[i * curves.realizations + r]);
+    }
+    const double relative = moments.standard_error() / moments.mean();
+    sum += relative * relative;
+  }
+  return std::sqrt(sum / static_cast<double>(curves.t.size()));
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+struct WeightedFit {
+  Fit fit;
+  RealizationCurves curves;  // with the weights of the fit
+};
+
+std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves,
+                                                  bool profiles) {
+  const double relative = relative_error(curves);
+  curves.sigma = scaled(mean_curve(curves).x, relative);
+  std::optional<Fit> last;
+  for (int i = 0; i <= reweightings; ++i) {
+    FitOptions options{.profiles = profiles && i == reweightings};
+    if (last) options.start = last->values();
+    options.multi_start = !last;
+    auto fitted = fit(model, mean_curve(curves), options);
+    if (auto* refusal = std::get_if<Refusal>(&fitted)) return *refusal;
+    last = std::move(std::get<Fit>(fitted));
+    const std::vector<double> sigma = scaled(last->fitted, relative);
+    const bool positive = std::ranges::all_of(sigma, [](double s) { return s > 0; });
+    if (positive && i < reweightings) curves.sigma = sigma;
+  }
+  return WeightedFit{std::move(*last), std::move(curves)};
+}
+
+double misfit(std::span<const double> x, std::span<const double> fitted) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double relative = x[i] / fitted[i] - 1;
+    sum += relative * relative;
+  }
+  return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+std::string verdict(const Fit& fit) {
+  std::string text;
+  if (!is_minimum(fit.reason)) text = std::string("did not settle: ") + describe(fit.reason);
+  for (const Estimate& estimate : fit.estimates) {
+    if (estimate.identifiability == Identifiability::identified ||
+        estimate.identifiability == Identifiability::not_examined) {
+      continue;
+    }
+    text += (text.empty() ? "" : ", ") + estimate.statement;
+  }
+  return text.empty() ? "identified" : text;
+}
+
+AgeingLaw own_law(const RealizationCurves& curves, int threads) {
+  const Ageing model;
+  const auto found = reweighted_fit(model, curves, true);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) {
+    AgeingLaw law = no_law;
+    law.verdict = refusal->message;
+    return law;
+  }
+  const auto& [fit, weighted] = std::get<WeightedFit>(found);
+  const ResampledErrors errors = resample(model, weighted, fit, {.threads = threads});
+  const std::vector<double> p = fit.values();
+  return {.a_inf = p[0],
+          .a_inf_error = errors.errors[0],
+          .b = p[1],
+          .b_error = errors.errors[1],
+          .tau = p[2],
+          .tau_error = errors.errors[2],
+          .reduced_chi2 = fit.reduced_chi2,
+          .misfit = misfit(mean_curve(weighted).x, fit.fitted),
+          .verdict = verdict(fit)};
+}
+
+// All curves with at least as many points as a law has parameters, one after another.
+struct JoinedCurves {
+  std::vector<std::size_t> waiting_times;  // [n_curves], indices
+  std::vector<SharedAgeing::Point> points;
+  RealizationCurves curves;
+};
+
+JoinedCurves join(const std::vector<RealizationCurves>& all) {
+  JoinedCurves joined;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].t.size() < Ageing().parameters().size()) continue;
+    for (const double lag : all[k].t) {
+      joined.curves.t.push_back(static_cast<double>(joined.points.size()));
+      joined.points.push_back({joined.waiting_times.size(), lag});
+    }
+    joined.curves.values.insert(joined.curves.values.end(), all[k].values.begin(),
+                                all[k].values.end());
+    joined.curves.realizations = all[k].realizations;
+    joined.waiting_times.push_back(k);
+  }
+  return joined;
+}
+
+void fit_shared(const std::vector<RealizationCurves>& all, int threads,
+                std::vector<AgeingLaw>& laws) {
+  const JoinedCurves joined = join(all);
+  if (joined.waiting_times.empty()) return;
+  const SharedAgeing model(joined.points);
+  const auto found = reweighted_fit(model, joined.curves, false);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) {
+    for (AgeingLaw& law : laws) law.verdict = refusal->message;
+    return;
+  }
+  const auto& [fit, weighted] = std::get<WeightedFit>(found);
+  const std::vector<double> errors = resample(model, weighted, fit, {.threads = threads}).errors;
+  const std::vector<double> p = fit.values();
+  const std::vector<double> x = mean_curve(weighted).x;
+  std::size_t first = 0;
+  for (std::size_t curve = 0; curve < joined.waiting_times.size(); ++curve) {
+    const std::size_t k = joined.waiting_times[curve], n = all[k].t.size();
+    const std::size_t a_inf = SharedAgeing::a_inf_index(curve),
+                      tau = SharedAgeing::tau_index(curve);
+    laws[k] = {
+        .a_inf = p[a_inf],
+        .a_inf_error = errors[a_inf],
+        .b = p[0],
+        .b_error = errors[0],
+        .tau = p[tau],
+        .tau_error = errors[tau],
+        .reduced_chi2 = fit.reduced_chi2,
+        .misfit = misfit(std::span(x).subspan(first, n), std::span(fit.fitted).subspan(first, n)),
+        .verdict = is_minimum(fit.reason) ? "settled"
+                                          : std::string("did not settle: ") + describe(fit.reason)};
+    first += n;
+  }
+}
+
+}  // namespace
+
+AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) {
+  AgeingFits fits;
+  const std::size_t n = grid.waiting_times.size();
+  fits.own.assign(n, no_law);
+  fits.shared.assign(n, no_law);
+  const std::vector<std::uint32_t> complete = complete_realizations(rows);
+  fits.realizations = complete.size();
+  if (complete.size() < 3) {
+    for (std::vector<AgeingLaw>* laws : {&fits.own, &fits.shared}) {
+      for (AgeingLaw& law : *laws) {
+        law.verdict = std::to_string(complete.size()) +
+                      " realizations reached every tap asked for: fits need 3, so run more of "
+                      "them, or ask for earlier taps";
+      }
+    }
+    return fits;
+  }
+  std::vector<RealizationCurves> curves;
+  for (std::size_t k = 0; k < n; ++k) {
+    curves.push_back(squared_changes(rows, complete, grid.waiting_times[k], grid.lags));
+    if (!curves[k].t.empty()) {
+      fits.own[k] = own_law(curves[k], threads);
+    } else {
+      fits.own[k].verdict = "nothing changes after this waiting time, or the series ends before";
+    }
+  }
+  fit_shared(curves, threads, fits.shared);
+  return fits;
+}
+
+}  // namespace jostle
