@@ -5,8 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/random.hpp"
 #include "fitting/models.hpp"
+#include "noise.hpp"
 
 namespace jostle {
 namespace {
@@ -43,20 +43,13 @@ RealizationCurves shifted_lines(const std::vector<double>& x) {
   return curves;
 }
 
-// Close to normal: the sum of twelve uniform numbers.
-double noise(RandomStream& random) {
-  double sum = -6;
-  for (int i = 0; i < 12; ++i) sum += random.uniform();
-  return sum;
-}
-
 // Inverse logs whose realizations differ by a slow drift: the points of a mean are not independent.
 RealizationCurves drifting(std::uint64_t seed, std::uint32_t realizations) {
   const ParameterValues truth = {0.625, 0.045, 0.8, 3};
   RealizationCurves curves;
   curves.t = geometric(1, 4000, 40);
   curves.realizations = realizations;
-  RandomStream random(stream_key(seed, 1, 0, Purpose::resampling));
+  RandomStream random = test_stream(seed);
   std::vector<double> drift(realizations, 0.0);
   for (double t : curves.t) {
     for (double& d : drift) {
