@@ -42,7 +42,7 @@ struct VoronoiCells {
 
   std::size_t size() const { return volumes.size(); }
   std::span<const VoronoiFace> faces_of(std::uint32_t i) const {
-    return {&faces[first_face[i]], &faces[first_face[i + 1]]};
+    return {faces.data() + first_face[i], faces.data() + first_face[i + 1]};
   }
   std::span<const VoronoiVertex> vertices_of(std::uint32_t i) const {
     return {vertices.data() + first_vertex[i], vertices.data() + first_vertex[i + 1]};
