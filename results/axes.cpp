@@ -107,7 +107,8 @@ Shape chunk_along_first(const Shape& shape) {
   hsize_t others = 1;
   for (std::size_t i = 1; i < shape.size(); ++i) others *= shape[i];
   Shape chunk = shape;
-  chunk[0] = std::clamp<hsize_t>(numbers_a_chunk / std::max<hsize_t>(others, 1), 1, shape[0]);
+  chunk[0] = std::clamp<hsize_t>(numbers_a_chunk / std::max<hsize_t>(others, 1), 1,
+                                 std::max<hsize_t>(shape[0], 1));
   return chunk;
 }
 
