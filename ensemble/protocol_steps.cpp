@@ -1,0 +1,66 @@
+#include "ensemble/protocol_steps.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "ensemble/moments.hpp"
+
+namespace jostle {
+
+namespace {
+
+struct ControlOf {
+  Control operator()(const Dilate& tap) const {
+    return {"sqrt_epsilon", "1", std::sqrt(tap.epsilon)};
+  }
+  Control operator()(const DilateFloorHeld& tap) const {
+    return {"sqrt_delta", "1", std::sqrt(tap.delta)};
+  }
+  Control operator()(const Lift& tap) const { return {"gamma", "diameters", tap.gamma}; }
+  Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
+};
+
+}  // namespace
+
+Control control(const Tap& tap) {
+  return std::visit(ControlOf{}, tap);
+}
+
+std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> protocol,
+                                                        std::uint64_t last_taps) {
+  assert(last_taps >= 1);
+  ProtocolSteps steps;
+  std::uint64_t last = 0;
+  for (const Stage& stage : protocol) {
+    if (stage.count == 0) continue;
+    const Control here = control(stage.tap);
+    if (!steps.control.empty() && steps.control != here.name) {
+      return "The protocol taps in different ways (" + steps.control + ", " + here.name +
+             "), whose strengths cannot be compared: use one kind of tap.";
+    }
+    steps.control = here.name;
+    steps.units = here.units;
+    steps.strengths.push_back(here.value);
+    last += stage.count;
+    steps.windows.push_back({last + 1 - std::min(last_taps, stage.count), last});
+  }
+  return steps;
+}
+
+std::vector<double> means_over_rows(std::span<const double> rows, std::uint32_t realizations) {
+  assert(realizations > 0 && rows.size() % realizations == 0);
+  std::vector<double> means;
+  for (std::uint32_t r = 0; r < realizations; ++r) {
+    Moments moments;
+    bool complete = true;
+    for (std::size_t i = r; i < rows.size(); i += realizations) {
+      complete = complete && !std::isnan(rows[i]);
+      moments.add(rows[i]);
+    }
+    means.push_back(complete ? moments.mean() : std::nan(""));
+  }
+  return means;
+}
+
+}  // namespace jostle

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ensemble/plan.hpp"
+
+// The stages of a protocol as steps of a control parameter, each with its steady-state value.
+namespace jostle {
+
+/// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
+/// of a lift (Rosato et al. 2010), lambda of a shake.
+struct Control {
+  std::string name;  // "sqrt_epsilon"
+  std::string units;
+  double value = 0;
+};
+Control control(const Tap& tap);
+
+/// Taps first .. last, both included.
+struct TapRange {
+  std::uint64_t first = 0, last = 0;
+  bool operator==(const TapRange&) const = default;
+};
+
+struct ProtocolSteps {
+  std::string control, units;     // of all steps
+  std::vector<double> strengths;  // [n_steps], in the order of the protocol
+  std::vector<TapRange> windows;  // [n_steps], the last taps of each
+};
+
+/// One step a stage, with its last `last_taps` taps (at least 1; all of a shorter stage). A message
+/// where the stages tap in different ways: their strengths cannot be compared.
+std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> protocol,
+                                                        std::uint64_t last_taps);
+
+/// Means over rows [n_rows, n_realizations] of each realization; NaN where a row has none.
+std::vector<double> means_over_rows(std::span<const double> rows, std::uint32_t realizations);
+
+}  // namespace jostle
