@@ -15,5 +15,6 @@ void add_info(CLI::App& app, int& code);
 void add_merge(CLI::App& app, int& code);
 void add_bench(CLI::App& app, int& code);
 void add_fit(CLI::App& app, int& code);
+void add_analyse(CLI::App& app, int& code);
 
 }  // namespace jostle

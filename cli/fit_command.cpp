@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <memory>
 
@@ -12,12 +11,10 @@
 #include "cli/fit_output.hpp"
 #include "cli/fit_run.hpp"
 #include "cli/fit_source.hpp"
+#include "cli/keep_tables.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
 #include "fitting/models.hpp"
-#include "results/error.hpp"
-#include "results/tables.hpp"
 
 namespace jostle {
 
@@ -61,14 +58,14 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
       throw BadInput("a results file needs --observable NAME; jostle info lists them");
     }
     // Tap 0 is the start: a law of taps begins with the first.
-    const FitRange range = read_range(arguments.range.empty() ? "1:" : arguments.range);
+    const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
     return results_curves(arguments.input, arguments.observable, arguments.point, range);
   }
   if (!arguments.observable.empty() || !arguments.point.empty()) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
                                arguments.input));
   }
-  const FitRange range = read_range(arguments.range.empty() ? ":" : arguments.range);
+  const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
   FitSource source;
   source.title = arguments.input;
   source.curve = within(read_curve(arguments.input), range.first, range.last);
@@ -99,23 +96,6 @@ nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome
   return object;
 }
 
-// A file that cannot be changed, as in an archive, still gives its fits.
-void store_fits(const std::string& path, const std::vector<Table>& tables,
-                const Provenance& provenance) {
-  try {
-    store_tables(path, "fits", tables, provenance);
-  } catch (const ResultsError& error) {
-    print_to_standard_error(fmt::format("jostle: the fits are not stored: {}\n", error.what()));
-  }
-}
-
-void write_csv(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw ResultsError(path, "cannot be written");
-}
-
 int run_fits(const FitArguments& arguments) {
   const auto models = chosen_models(arguments.model);
   const std::vector<FitSource> sources = read_sources(arguments);
@@ -141,19 +121,14 @@ int run_fits(const FitArguments& arguments) {
       const auto made = fit_tables(source, outcomes, manner);
       tables.insert(tables.end(), made.begin(), made.end());
     }
-    if (!arguments.csv.empty()) write_csv(arguments.csv, fit_csv(source.curve, outcomes));
+    if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, outcomes));
   }
   if (arguments.json) {
-    const nlohmann::json object = {{"input", arguments.input},
-                                   {"curves", curves},
-                                   {"provenance",
-                                    {{"version", by.version},
-                                     {"git_revision", by.git_revision},
-                                     {"command_line", by.command_line},
-                                     {"started", by.started}}}};
+    const nlohmann::json object = {
+        {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
     std::fputs((object.dump(2) + "\n").c_str(), stdout);
   }
-  if (!tables.empty()) store_fits(arguments.input, tables, by);
+  if (!tables.empty()) keep_tables(arguments.input, "fits", tables, by);
   return any ? exit_ok : exit_bad_input;
 }
 

@@ -17,15 +17,16 @@ namespace jostle {
 
 namespace {
 
-double read_end(const std::string& text, double otherwise, const std::string& range) {
+double read_end(const std::string& text, double otherwise, const std::string& option,
+                const std::string& range) {
   if (text.empty()) return otherwise;
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
     throw BadInput(
-        fmt::format("--range {}: not FIRST:LAST, two numbers of which one may be left "
+        fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left "
                     "out",
-                    range));
+                    option, range));
   }
   return value;
 }
@@ -33,25 +34,6 @@ double read_end(const std::string& text, double otherwise, const std::string& ra
 bool has_value(const StudyPoint& point, const std::string& wanted) {
   return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
                      [&](const auto& value) { return value.first + "=" + value.second == wanted; });
-}
-
-std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
-  std::vector<std::uint32_t> chosen;
-  std::string known;
-  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
-    const StudyPoint& point = study.points[i];
-    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
-      chosen.push_back(i);
-    }
-    known += fmt::format("\n  {}", i);
-    for (const auto& [pointer, value] : point.sweep_values) {
-      known += fmt::format("  {}={}", pointer, value);
-    }
-  }
-  if (chosen.empty()) {
-    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
-  }
-  return chosen;
 }
 
 // The number of rows that every realization with any value has.
@@ -132,12 +114,31 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
 
 }  // namespace
 
-FitRange read_range(const std::string& text) {
+FitRange read_range(const std::string& option, const std::string& text) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const auto colon = text.find(':');
   const std::string first = text.substr(0, colon);
   const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
-  return {read_end(first, -infinite, text), read_end(last, infinite, text)};
+  return {read_end(first, -infinite, option, text), read_end(last, infinite, option, text)};
+}
+
+std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
+  std::vector<std::uint32_t> chosen;
+  std::string known;
+  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
+    const StudyPoint& point = study.points[i];
+    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
+      chosen.push_back(i);
+    }
+    known += fmt::format("\n  {}", i);
+    for (const auto& [pointer, value] : point.sweep_values) {
+      known += fmt::format("  {}={}", pointer, value);
+    }
+  }
+  if (chosen.empty()) {
+    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
+  }
+  return chosen;
 }
 
 bool is_results_file(const std::string& path) {

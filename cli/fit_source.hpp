@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ensemble/resampled_fit.hpp"
+#include "results/study.hpp"
 
 namespace jostle {
 
@@ -23,8 +24,12 @@ struct FitRange {
   double first, last;
 };
 
-/// "1:4000", ":4000", "1:". Throws BadInput.
-FitRange read_range(const std::string& text);
+/// "1:4000", ":4000", "1:". Throws BadInput naming the option.
+FitRange read_range(const std::string& option, const std::string& text);
+
+/// The sweep points that `wanted` names, by number or as "pointer=value"; all where it is empty.
+/// Throws BadInput naming what there is.
+std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
 
 bool is_results_file(const std::string& path);
 

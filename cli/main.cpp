@@ -20,6 +20,7 @@ constexpr const char* footer =
     "  jostle run config/scenes/quickstart.json     writes quickstart.h5\n"
     "  jostle info quickstart.h5                    what is in it\n"
     "  jostle fit quickstart.h5 --observable bottom_fraction\n"
+    "  jostle analyse quickstart.h5 steady --observable mean_height\n"
     "\n"
     "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
     "failed,\n"
@@ -39,6 +40,7 @@ int parse_and_run(int argc, char** argv) {
   add_merge(app, code);
   add_bench(app, code);
   add_fit(app, code);
+  add_analyse(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

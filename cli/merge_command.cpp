@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/analyse_run.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/fit_run.hpp"
@@ -40,6 +41,7 @@ void add_merge(CLI::App& app, int& code) {
                 arguments->force);
     fmt::print("{}: {} files merged\n", arguments->output, arguments->inputs.size());
     make_scene_fits(arguments->output, available_cpus(), false);
+    make_scene_analyses(arguments->output, available_cpus(), false);
     code = exit_ok;
   });
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/analyse_run.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
@@ -216,7 +217,10 @@ int run(const RunArguments& arguments) {
   try {
     if (compute(arguments, loaded, run, threads)) return exit_stopped;
     run.store.reset();  // gives the lock back
-    if (arguments.shard.count == 1) make_scene_fits(run.output, threads, arguments.quiet);
+    if (arguments.shard.count == 1) {
+      make_scene_fits(run.output, threads, arguments.quiet);
+      make_scene_analyses(run.output, threads, arguments.quiet);
+    }
   } catch (const ResultsError& error) {
     print_to_standard_error(
         fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "

@@ -25,6 +25,7 @@ std::vector<Observable> read_observables(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
+Analyses read_analyses(const Reader& in);
 
 Json written(const Container& container);
 Json written(const StartChoice& start);
@@ -36,6 +37,7 @@ Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
 Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
+Json written(const Analyses& analyses);
 
 /// A number as a person writes it: 16, not 16.0.
 Json plain_number(double value);
@@ -51,5 +53,7 @@ Scene read_scene(const Reader& in);
 
 /// Notes what is at odds in values that are right one by one.
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns its analyses.
+void check_analyses(const Scene& scene, std::vector<Fault>& faults);
 
 }  // namespace jostle

@@ -28,6 +28,7 @@ Json resolved(const Scene& scene) {
   out["snapshots"] = written(scene.snapshots);
   out["sweep"] = written(scene.sweep);
   out["fits"] = written(scene.fits);
+  out["analyse"] = written(scene.analyse);
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "ensemble/analyses.hpp"
 #include "ensemble/plan.hpp"
 
 // A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
@@ -92,6 +93,22 @@ struct FitRequest {
   bool operator==(const FitRequest&) const = default;
 };
 
+/// An analysis of one observable, as the scene calls it.
+template <class Settings>
+struct AnalysisRequest {
+  std::string observable;
+  Settings settings;
+  bool operator==(const AnalysisRequest&) const = default;
+};
+
+/// What a run ends with, at every sweep point. docs/analysis.md.
+struct Analyses {
+  std::vector<AnalysisRequest<SteadySettings>> steady;
+  std::vector<AnalysisRequest<SpectrumSettings>> spectrum;
+  bool operator==(const Analyses&) const = default;
+  bool empty() const { return steady.empty() && spectrum.empty(); }
+};
+
 struct Scene {
   std::string name = "scene", description;
   std::uint64_t seed = 0;
@@ -110,6 +127,7 @@ struct Scene {
   SnapshotChoice snapshots;
   std::vector<SweepAxis> sweep;
   std::vector<FitRequest> fits;
+  Analyses analyse;
   bool operator==(const Scene&) const = default;
 };
 
@@ -142,7 +160,7 @@ std::string_view scene_schema();
 
 /// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, other fits, and another name or description.
+/// those, more realizations, other fits and analyses, and another name or description.
 std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
                                  const nlohmann::ordered_json& new_resolved);
 

@@ -22,7 +22,8 @@ FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, doub
 
 /// Frequencies, in 1/taps, both ends included.
 struct Band {
-  double lowest, highest;
+  double lowest = 0, highest = 0.5;
+  bool operator==(const Band&) const = default;
 };
 
 /// s of density ~ frequency^s by least squares on the logarithms, every point with equal weight.

@@ -12,9 +12,9 @@ namespace jostle {
 
 namespace {
 
-std::vector<double> weights_of(Window window, std::size_t n) {
+std::vector<double> weights_of(Taper window, std::size_t n) {
   std::vector<double> weights(n, 1.0);
-  if (window == Window::hann) {
+  if (window == Taper::hann) {
     for (std::size_t i = 0; i < n; ++i) {
       const double s = std::sin(std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
       weights[i] = s * s;
@@ -37,7 +37,7 @@ std::vector<double> detrended(std::span<const double> series, Detrending detrend
 /// Adds up periodograms of segments of one length.
 class Periodograms {
  public:
-  Periodograms(std::size_t n, Window window, Detrending detrending)
+  Periodograms(std::size_t n, Taper window, Detrending detrending)
       : window_(weights_of(window, n)), detrending_(detrending), sum_(n / 2 + 1, 0.0) {
     fft_.SetFlag(fft_.HalfSpectrum);
     for (const double weight : window_) power_ += weight * weight;
@@ -117,12 +117,12 @@ Spectrum welch(std::span<const double> series, const SpectrumOptions& options) {
   return periodograms.mean();
 }
 
-Spectrum periodogram(std::span<const double> series, Window window, Detrending detrending) {
+Spectrum periodogram(std::span<const double> series, Taper window, Detrending detrending) {
   return welch(series, {.window = window, .detrending = detrending});
 }
 
 std::size_t first_sound_line(const SpectrumOptions& options) {
-  const std::size_t lobe = options.window == Window::hann ? 3 : 1;
+  const std::size_t lobe = options.window == Taper::hann ? 3 : 1;
   return options.detrending == Detrending::linear ? lobe + 1 : lobe;
 }
 

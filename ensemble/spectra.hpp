@@ -8,11 +8,11 @@
 // one-sided, the window periodic. Frequencies are in 1/taps.
 namespace jostle {
 
-enum class Window { boxcar, hann };
+enum class Taper { boxcar, hann };             // the window: engine/stops.hpp has another Window
 enum class Detrending { none, mean, linear };  // of every segment, before the window
 
 struct SpectrumOptions {
-  Window window = Window::hann;
+  Taper window = Taper::hann;
   Detrending detrending = Detrending::mean;
   std::size_t segment = 0;  // taps of one, at least 2; 0: the whole series in one
   std::size_t overlap = 0;  // taps shared by neighbouring segments, below `segment`
@@ -29,7 +29,7 @@ struct Spectrum {
 /// |FFT(w (x - trend))|^2 / sum w^2, doubled but for the lines 0 and n/2: the sum of the lines
 /// times 1/n is the variance of a series that boxcar and mean leave as it is. Cost grows with the
 /// largest prime factor of the length.
-Spectrum periodogram(std::span<const double> series, Window window, Detrending detrending);
+Spectrum periodogram(std::span<const double> series, Taper window, Detrending detrending);
 
 /// The mean of the periodograms of overlapping segments (Welch 1967, doi:10.1109/TAU.1967.1161901);
 /// taps at the end that fill no segment are left out. The series holds at least one segment.

@@ -45,6 +45,21 @@ Shape shape_of(hid_t dataset) {
   return shape;
 }
 
+std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
+                               const Shape& shape) {
+  const Hdf5Handle dataset = open_dataset(parent, name);
+  std::vector<double> values(n_elements(shape));
+  if (values.empty()) return values;
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  checked(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr));
+  const Hdf5Handle memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                          H5Sclose);
+  checked(
+      H5Dread(dataset, Hdf5Number<double>::memory(), memory, space, H5P_DEFAULT, values.data()));
+  return values;
+}
+
 std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
   const Hdf5Handle dataset = open_dataset(parent, name);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);

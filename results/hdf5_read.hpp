@@ -25,6 +25,10 @@ std::vector<Number> read_numbers(hid_t parent, const std::string& name) {
   return values;
 }
 
+/// The part of a dataset of numbers that begins at `offset` and has `shape`.
+std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
+                               const Shape& shape);
+
 std::vector<std::string> read_texts(hid_t parent, const std::string& name);
 std::string read_text(hid_t parent, const std::string& name);
 

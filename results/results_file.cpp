@@ -1,5 +1,6 @@
 #include "results/results_file.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -22,10 +23,9 @@ Hdf5Handle open_sealed(const std::string& path) {
   });
 }
 
-/// What is stored of a point, but for positions and restart states.
+/// What is stored of a point, but for series, positions and restart states.
 struct PointTables {
   std::uint32_t point = 0;
-  std::vector<std::vector<double>> columns;  // [n_columns] of [n_rows, n_realizations]
   std::vector<std::uint8_t> statuses;
   std::vector<std::uint64_t> rows, trials, distance_tests;
   std::vector<std::string> reasons;
@@ -51,6 +51,18 @@ class ResultsFile::Impl {
     return *cached_;
   }
 
+  /// [n_columns] of [n_rows, n_realizations].
+  const std::vector<std::vector<double>>& columns(std::uint32_t point) {
+    if (cached_columns_point_ != point) {
+      cached_columns_.clear();
+      const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+      for (const ObservableLabel& label : column_labels(study.points.at(point)))
+        cached_columns_.push_back(read_numbers<double>(observables, label.name));
+      cached_columns_point_ = point;
+    }
+    return cached_columns_;
+  }
+
   std::string path;
   Hdf5Handle file;
   Study study;
@@ -61,14 +73,14 @@ class ResultsFile::Impl {
   PointTables read_tables(std::uint32_t point) const;
 
   std::optional<PointTables> cached_;
+  std::optional<std::uint32_t> cached_columns_point_;
+  std::vector<std::vector<double>> cached_columns_;
 };
 
 PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   PointTables tables;
   tables.point = point;
   const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
-  for (const ObservableLabel& label : column_labels(study.points.at(point)))
-    tables.columns.push_back(read_numbers<double>(observables, label.name));
   tables.statuses = read_numbers<std::uint8_t>(observables, "status");
   tables.rows = read_numbers<std::uint64_t>(observables, "rows");
   tables.reasons = read_texts(observables, "reason");
@@ -137,11 +149,27 @@ std::vector<Series> ResultsFile::series(std::uint32_t point) const {
     for (const ObservableLabel& label : column_labels(description)) {
       Series series{label, n_taps, study().realizations, {}};
       series.values = impl_->has_points
-                          ? impl_->tables(point).columns.at(all.size())
+                          ? impl_->columns(point).at(all.size())
                           : std::vector<double>(n_taps * study().realizations, std::nan(""));
       all.push_back(std::move(series));
     }
     return all;
+  });
+}
+
+std::vector<ObservableLabel> ResultsFile::columns(std::uint32_t point) const {
+  return column_labels(study().points.at(point));
+}
+
+std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& column,
+                                       const TapRange& taps, const RealizationRange& chosen) const {
+  assert(taps.first <= taps.end && taps.end <= study().points.at(point).taps + 1);
+  assert(chosen.first <= chosen.end && chosen.end <= study().realizations);
+  const std::uint64_t n_taps = taps.end - taps.first, n_realizations = chosen.end - chosen.first;
+  if (!impl_->has_points) return std::vector<double>(n_taps * n_realizations, std::nan(""));
+  return naming_file(impl_->path, [&] {
+    const Hdf5Handle group = open_group(impl_->file, "observables/" + point_name(point));
+    return read_block(group, column, {taps.first, chosen.first}, {n_taps, n_realizations});
   });
 }
 
@@ -201,7 +229,7 @@ RealizationRecord ResultsFile::record(RealizationId id) const {
     record.trials = tables.trials.at(id.realization);
     record.distance_tests = tables.distance_tests.at(id.realization);
     for (std::uint64_t tap = 0; tap < tables.rows.at(id.realization); ++tap)
-      for (const auto& column : tables.columns)
+      for (const auto& column : impl_->columns(id.point))
         record.rows.push_back(column.at(tap * study().realizations + id.realization));
   });
   record.state = restart_state(id);

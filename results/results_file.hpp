@@ -28,6 +28,15 @@ struct Series {
   }
 };
 
+/// Taps first .. end - 1.
+struct TapRange {
+  std::uint64_t first, end;
+};
+/// Realizations first .. end - 1.
+struct RealizationRange {
+  std::uint32_t first, end;
+};
+
 /// The same over the ensemble, [n_taps] each.
 struct EnsembleSeries {
   ObservableLabel label;
@@ -65,6 +74,12 @@ class ResultsFile {
   std::vector<RealizationSummary> realizations() const;
   /// The observables, then the relaxation columns.
   std::vector<Series> series(std::uint32_t point) const;
+  /// Labels of the same.
+  std::vector<ObservableLabel> columns(std::uint32_t point) const;
+  /// A part of one column, for series too long to hold: [taps, realizations], NaN where there is
+  /// no value. Throws where there is no such column.
+  std::vector<double> block(std::uint32_t point, const std::string& column, const TapRange& taps,
+                            const RealizationRange& chosen) const;
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
   /// Everything stored of one realization.
   RealizationRecord record(RealizationId id) const;

@@ -81,6 +81,9 @@ const std::vector<std::string> cross_field_messages{
     "is empty: the first tap must be the lower",
     "is not observed (observed:",
     "after the last one,",
+    "the lowest frequency comes first",
+    "but the protocol has",
+    "that are analysed",
 };
 
 bool is_beyond_schema(const Fault& fault) {

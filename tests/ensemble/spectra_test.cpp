@@ -51,8 +51,8 @@ TEST_CASE("Spectra agree with scipy's own test vectors") {
     const auto expected = vector.at("p").get<std::vector<double>>();
     const bool whole = !vector.contains("nperseg");
     const Spectrum spectrum =
-        whole ? periodogram(series, Window::boxcar, Detrending::mean)
-              : welch(series, {.window = Window::hann,
+        whole ? periodogram(series, Taper::boxcar, Detrending::mean)
+              : welch(series, {.window = Taper::hann,
                                .detrending = Detrending::mean,
                                .segment = vector.at("nperseg").get<std::size_t>(),
                                .overlap = vector.at("noverlap").get<std::size_t>()});
@@ -73,7 +73,7 @@ TEST_CASE("A boxcar periodogram gives power-law signals their densities and slop
   const auto [name, alpha] = GENERATE(std::pair<std::string, double>{"powerlaw_alpha1.0.dat", 1.0},
                                       std::pair<std::string, double>{"powerlaw_alpha2.0.dat", 2.0});
   const std::vector<double> series = numbers_of(name);
-  const Spectrum spectrum = periodogram(series, Window::boxcar, Detrending::mean);
+  const Spectrum spectrum = periodogram(series, Taper::boxcar, Detrending::mean);
   for (std::size_t k = 1; k < spectrum.n_lines() - 1; ++k) {
     const double expected =
         std::pow(static_cast<double>(k), -alpha) * static_cast<double>(series.size()) / 2;
@@ -91,7 +91,7 @@ TEST_CASE("The lines of a boxcar periodogram add up to the variance") {
   Moments moments;
   for (const double value : series) moments.add(value);
   double sum = 0;
-  for (const double density : periodogram(series, Window::boxcar, Detrending::mean).density) {
+  for (const double density : periodogram(series, Taper::boxcar, Detrending::mean).density) {
     sum += density / n;
   }
   CHECK(sum == Approx(moments.sigma() * moments.sigma()).epsilon(1e-12));
@@ -99,8 +99,8 @@ TEST_CASE("The lines of a boxcar periodogram add up to the variance") {
 
 TEST_CASE("Linear detrending leaves nothing of a ramp, on a large level") {
   const std::vector<double> ramp = synthetic::with_ramp(std::vector<double>(500, 1e6), 3);
-  const Spectrum kept = periodogram(ramp, Window::hann, Detrending::mean);
-  const Spectrum removed = periodogram(ramp, Window::hann, Detrending::linear);
+  const Spectrum kept = periodogram(ramp, Taper::hann, Detrending::mean);
+  const Spectrum removed = periodogram(ramp, Taper::hann, Detrending::linear);
   CHECK(kept.density[3] > 1e-3);
   for (const double density : removed.density) CHECK(density < 1e-15);
 }
@@ -148,7 +148,7 @@ TEST_CASE(
 
 TEST_CASE("The theoretical error of a Welch estimate is the scatter of white noise",
           "[statistics]") {
-  const auto window = GENERATE(Window::hann, Window::boxcar);
+  const auto window = GENERATE(Taper::hann, Taper::boxcar);
   const SpectrumOptions options{.window = window, .segment = 64, .overlap = 32};
   constexpr std::size_t n_taps = 256, realizations = 4000;
   const std::size_t lines = GENERATE(1, 2, 6);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "results/error.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 
@@ -78,6 +79,26 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   CHECK(record.snapshots[2].coordination == record.state->centres[0].x);
   CHECK(record.snapshots[2].height_histogram ==
         std::vector<double>{0.25, 0, record.state->centres[1].x});
+}
+
+TEST_CASE("any part of a column can be read by itself") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  synthetic::run_to_end(path, {.realizations = 7, .taps = 300});
+  const ResultsFile file(path);
+  const std::vector<Series> all = file.series(1);
+  const std::vector<ObservableLabel> labels = file.columns(1);
+  REQUIRE(labels.size() == all.size());
+  for (std::size_t column = 0; column < all.size(); ++column) {
+    CHECK(labels[column].name == all[column].label.name);
+    const auto block = file.block(1, labels[column].name, {17, 290}, {2, 6});
+    REQUIRE(block.size() == 273 * 4);
+    for (std::uint64_t tap = 17; tap < 290; ++tap)
+      for (std::uint32_t r = 2; r < 6; ++r)
+        CHECK(same(block[(tap - 17) * 4 + r - 2], all[column].at(tap, r)));
+  }
+  CHECK(file.block(0, labels[0].name, {5, 5}, {0, 7}).empty());
+  CHECK_THROWS_AS(file.block(0, "no_such_column", {0, 1}, {0, 1}), ResultsError);
 }
 
 TEST_CASE("means, deviations and errors are over realizations") {

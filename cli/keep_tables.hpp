@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "ensemble/table.hpp"
+#include "results/study.hpp"
+
+namespace jostle {
+
+/// Stores the tables in `group` of a results file. A file that cannot be changed, as in an archive,
+/// still gives its tables: a word on stderr says that they are not stored.
+void keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                 const Provenance& by);
+
+/// Throws ResultsError.
+void write_text(const std::string& path, const std::string& text);
+
+/// Who made what is printed.
+nlohmann::json provenance_json(const Provenance& by);
+
+}  // namespace jostle

@@ -1,0 +1,75 @@
+#include "cli/observable_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/scene_file.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::uint64_t piece_values = 128'000'000 / sizeof(double);
+
+ObservableLabel label_named(const ResultsFile& file, std::uint32_t point,
+                            const std::string& observable) {
+  std::string names;
+  for (const ObservableLabel& label : file.columns(point)) {
+    if (label.name == observable) return label;
+    names += (names.empty() ? "" : ", ") + label.name;
+  }
+  throw BadInput(
+      fmt::format("--observable {}: there is none; {} has {}", observable, file.path(), names));
+}
+
+}  // namespace
+
+ObservableSeries::ObservableSeries(const ResultsFile& file, std::uint32_t point,
+                                   const std::string& observable)
+    : file_(file), point_(point), label_(label_named(file, point, observable)) {
+  for (const RealizationSummary& summary : file.realizations()) {
+    const bool usable =
+        summary.status == RealizationStatus::done || summary.status == RealizationStatus::running;
+    if (summary.id.point != point || !usable || summary.rows == 0) continue;
+    n_rows_ = used_.empty() ? summary.rows : std::min(n_rows_, summary.rows);
+    used_.push_back(summary.id.realization);
+  }
+}
+
+void ObservableSeries::for_each(const TapRange& taps,
+                                const std::function<void(std::span<const double>)>& take) const {
+  const std::uint64_t n_taps = taps.end - taps.first;
+  if (n_taps == 0) return;
+  const auto at_once = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(piece_values / n_taps, 1, file_.study().realizations));
+  std::vector<double> series(n_taps);
+  auto next = used_.begin();
+  while (next != used_.end()) {
+    const RealizationRange range{*next, std::min(*next + at_once, file_.study().realizations)};
+    const std::uint32_t width = range.end - range.first;
+    const std::vector<double> block = file_.block(point_, label_.name, taps, range);
+    for (; next != used_.end() && *next < range.end; ++next) {
+      for (std::uint64_t t = 0; t < n_taps; ++t) series[t] = block[t * width + *next - range.first];
+      if (!std::ranges::all_of(series, [](double value) { return std::isfinite(value); })) {
+        throw BadInput(fmt::format("{} is not a number at every tap from {} to {}", label_.name,
+                                   taps.first, taps.end - 1));
+      }
+      take(series);
+    }
+  }
+}
+
+std::vector<double> ObservableSeries::rows(std::span<const std::uint64_t> taps) const {
+  std::vector<double> values;
+  values.reserve(taps.size() * used_.size());
+  for (const std::uint64_t tap : taps) {
+    const std::vector<double> row =
+        file_.block(point_, label_.name, {tap, tap + 1}, {0, file_.study().realizations});
+    for (const std::uint32_t r : used_) values.push_back(row[r]);
+  }
+  return values;
+}
+
+}  // namespace jostle

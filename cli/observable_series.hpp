@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// One observable at one sweep point of a results file, read in pieces of at most 128 MB, whatever
+/// the number of taps and realizations. Realizations that failed or have no taps are left out, and
+/// taps that not all others have reached.
+class ObservableSeries {
+ public:
+  /// Throws BadInput naming the observables there are. `file` must outlive this.
+  ObservableSeries(const ResultsFile& file, std::uint32_t point, const std::string& observable);
+
+  const ObservableLabel& label() const { return label_; }
+  /// Taps 0 .. n_rows() - 1 are there; 0 where there is no realization.
+  std::uint64_t n_rows() const { return n_rows_; }
+  std::uint32_t n_realizations() const { return static_cast<std::uint32_t>(used_.size()); }
+
+  /// Calls `take` with the values at these taps of one realization after another. Throws BadInput
+  /// where one of them is not a number.
+  void for_each(const TapRange& taps,
+                const std::function<void(std::span<const double>)>& take) const;
+  /// Values at chosen taps, each below n_rows(): [n_taps, n_realizations].
+  std::vector<double> rows(std::span<const std::uint64_t> taps) const;
+
+ private:
+  const ResultsFile& file_;
+  std::uint32_t point_;
+  ObservableLabel label_;
+  std::vector<std::uint32_t> used_;  // realizations
+  std::uint64_t n_rows_ = 0;
+};
+
+}  // namespace jostle

@@ -1,0 +1,233 @@
+#include "cli/table_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/text_table.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::size_t most_brief_rows = 12;
+
+std::size_t n_values(const Quantity& quantity) {
+  return std::visit([](const auto& values) { return values.size(); }, quantity.values);
+}
+
+const Quantity& axis_named(const Table& table, const std::string& name) {
+  return *std::ranges::find_if(table.axes, [&](const Quantity& axis) { return axis.name == name; });
+}
+
+/// Quantities along the same axes, in the order of the table.
+struct Block {
+  std::vector<std::string> axes;
+  std::vector<const Quantity*> columns;
+};
+
+std::vector<Block> blocks_of(const Table& table) {
+  std::vector<Block> blocks;
+  for (const Quantity& quantity : table.quantities) {
+    const auto same = [&](const Block& block) { return block.axes == quantity.axes; };
+    const auto found = std::ranges::find_if(blocks, same);
+    if (found == blocks.end()) {
+      blocks.push_back({quantity.axes, {&quantity}});
+    } else {
+      found->columns.push_back(&quantity);
+    }
+  }
+  return blocks;
+}
+
+std::size_t n_rows(const Block& block) {
+  return n_values(*block.columns.front());
+}
+
+enum class Digits { few, all };
+
+std::string cell(const Quantity& quantity, std::size_t index, Digits digits) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&quantity.values)) {
+    const double number = numbers->at(index);
+    if (std::isnan(number)) return digits == Digits::few ? "-" : "nan";
+    return digits == Digits::few ? fmt::format("{:.6g}", number) : fmt::format("{}", number);
+  }
+  if (const auto* counts = std::get_if<std::vector<std::uint64_t>>(&quantity.values)) {
+    return fmt::to_string(counts->at(index));
+  }
+  return std::get<std::vector<std::string>>(quantity.values).at(index);
+}
+
+/// Of an error two digits, of the value as many decimals.
+std::string value_and_error(const Quantity& value, const Quantity& error, std::size_t index) {
+  const auto* numbers = std::get_if<std::vector<double>>(&value.values);
+  const auto* errors = std::get_if<std::vector<double>>(&error.values);
+  if (!numbers || !errors || !std::isfinite(numbers->at(index)) ||
+      !std::isfinite(errors->at(index)) || !(errors->at(index) > 0)) {
+    return cell(value, index, Digits::few);
+  }
+  if (errors->at(index) < 1e-6) {
+    return fmt::format("{:.8g} +- {:.2g}", numbers->at(index), errors->at(index));
+  }
+  const int decimals = decimals_for(errors->at(index));
+  return fmt::format("{:.{}f} +- {:.{}f}", numbers->at(index), decimals, errors->at(index),
+                     decimals);
+}
+
+const Quantity* error_of(const Quantity& quantity, const Block& block) {
+  for (const Quantity* other : block.columns) {
+    if (other->name == quantity.name + "_error") return other;
+  }
+  return nullptr;
+}
+
+bool is_shown_beside(const Quantity& quantity, const Block& block) {
+  return std::ranges::any_of(
+      block.columns, [&](const Quantity* other) { return error_of(*other, block) == &quantity; });
+}
+
+// Indices along the block's axes of a place in its flat, row-major values.
+std::vector<std::size_t> place(const Table& table, const Block& block, std::size_t index) {
+  std::vector<std::size_t> indices(block.axes.size());
+  for (std::size_t i = block.axes.size(); i-- > 0;) {
+    const std::size_t n = n_values(axis_named(table, block.axes[i]));
+    indices[i] = index % n;
+    index /= n;
+  }
+  return indices;
+}
+
+std::string single_values(const Block& block) {
+  std::string text;
+  for (const Quantity* quantity : block.columns) {
+    if (is_shown_beside(*quantity, block)) continue;
+    const Quantity* error = error_of(*quantity, block);
+    const std::string shown =
+        error ? value_and_error(*quantity, *error, 0) : cell(*quantity, 0, Digits::few);
+    const bool unitless = quantity->units.empty() || quantity->units == "1";
+    text +=
+        fmt::format("  {:<22} {}{}", quantity->name, shown, unitless ? "" : " " + quantity->units);
+    text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
+  }
+  return text;
+}
+
+std::string columns_text(const Table& table, const Block& block) {
+  std::vector<std::string> headers = block.axes;
+  for (const Quantity* quantity : block.columns) {
+    if (!is_shown_beside(*quantity, block)) headers.push_back(quantity->name);
+  }
+  TextTable text(headers);
+  for (std::size_t row = 0; row < n_rows(block); ++row) {
+    std::vector<std::string> cells;
+    const auto indices = place(table, block, row);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      cells.push_back(cell(axis_named(table, block.axes[i]), indices[i], Digits::few));
+    }
+    for (const Quantity* quantity : block.columns) {
+      if (is_shown_beside(*quantity, block)) continue;
+      const Quantity* error = error_of(*quantity, block);
+      cells.push_back(error ? value_and_error(*quantity, *error, row)
+                            : cell(*quantity, row, Digits::few));
+    }
+    text.add(cells);
+  }
+  return fmt::format("\n{}", text.text());
+}
+
+nlohmann::json nested(const Table& table, const Quantity& quantity, std::size_t axis,
+                      std::size_t& next) {
+  if (axis == quantity.axes.size()) {
+    const std::size_t index = next++;
+    return std::visit(
+        [&](const auto& values) -> nlohmann::json {
+          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<double>>) {
+            if (!std::isfinite(values.at(index))) return nullptr;
+          }
+          return values.at(index);
+        },
+        quantity.values);
+  }
+  auto list = nlohmann::json::array();
+  const std::size_t n = n_values(axis_named(table, quantity.axes[axis]));
+  for (std::size_t i = 0; i < n; ++i) list.push_back(nested(table, quantity, axis + 1, next));
+  return list;
+}
+
+nlohmann::json quantity_json(const Table& table, const Quantity& quantity) {
+  std::size_t next = 0;
+  return {{"values", nested(table, quantity, 0, next)},
+          {"axes", quantity.axes},
+          {"units", quantity.units},
+          {"long_name", quantity.long_name},
+          {"source", quantity.source}};
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  quoted += '"';
+  return quoted;
+}
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& text : cells) line.append(line.empty() ? "" : ",").append(quoted(text));
+  line += '\n';
+  return line;
+}
+
+}  // namespace
+
+std::string table_text(const Table& table, Detail detail) {
+  std::string text = fmt::format("{}\n", table.name);
+  for (const auto& [name, note] : table.notes) text += fmt::format("  {:<22} {}\n", name, note);
+  for (const Block& block : blocks_of(table)) {
+    if (block.axes.empty()) {
+      text += single_values(block);
+    } else if (detail == Detail::full || n_rows(block) <= most_brief_rows) {
+      text += columns_text(table, block);
+    }
+  }
+  return text;
+}
+
+nlohmann::json table_json(const Table& table) {
+  nlohmann::json object = {{"name", table.name},
+                           {"notes", nlohmann::json::object()},
+                           {"axes", nlohmann::json::object()},
+                           {"quantities", nlohmann::json::object()}};
+  for (const auto& [name, note] : table.notes) object["notes"][name] = note;
+  for (const Quantity& axis : table.axes) object["axes"][axis.name] = quantity_json(table, axis);
+  for (const Quantity& quantity : table.quantities) {
+    object["quantities"][quantity.name] = quantity_json(table, quantity);
+  }
+  return object;
+}
+
+std::string table_csv(const Table& table) {
+  std::string text = fmt::format("# {}\n", table.name);
+  for (const auto& [name, note] : table.notes) text += fmt::format("# {}: {}\n", name, note);
+  for (const Block& block : blocks_of(table)) {
+    std::vector<std::string> header = block.axes;
+    for (const Quantity* quantity : block.columns) header.push_back(quantity->name);
+    text += csv_line(header);
+    for (std::size_t row = 0; row < n_rows(block); ++row) {
+      std::vector<std::string> cells;
+      const auto indices = place(table, block, row);
+      for (std::size_t i = 0; i < indices.size(); ++i) {
+        cells.push_back(cell(axis_named(table, block.axes[i]), indices[i], Digits::all));
+      }
+      for (const Quantity* quantity : block.columns) {
+        cells.push_back(cell(*quantity, row, Digits::all));
+      }
+      text += csv_line(cells);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace jostle

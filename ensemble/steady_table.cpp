@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ensemble/analyses.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr const char* flyvbjerg_petersen = "Flyvbjerg & Petersen 1989, doi:10.1063/1.457480";
+constexpr const char* wolff = "Wolff 2004, doi:10.1016/S0010-4655(03)00467-3";
+
+void add_blocking(Table& table, const AnalysedSeries& series, const BlockingResult& blocking) {
+  std::vector<std::uint64_t> lengths, counts;
+  std::vector<double> errors, errors_of_errors;
+  for (const BlockingLevel& level : blocking.levels) {
+    lengths.push_back(level.block_length);
+    counts.push_back(level.n_blocks);
+    errors.push_back(level.error);
+    errors_of_errors.push_back(level.error_error);
+  }
+  const std::vector<std::string> along = {"block_length"};
+  table.axes = {{"block_length", along, lengths, "taps", "taps of a block", flyvbjerg_petersen}};
+  table.quantities.insert(
+      table.quantities.end(),
+      {{"blocks", along, counts, "1", "blocks of all realizations", ""},
+       {"block_error", along, errors, series.units, "error of the mean if blocks are independent",
+        flyvbjerg_petersen},
+       {"block_error_error", along, errors_of_errors, series.units, "its own standard error", ""}});
+}
+
+}  // namespace
+
+Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
+  const bool single = state.realizations == 1;
+  const auto n_taps = static_cast<double>(state.n_taps);
+  const auto one = [](std::string name, double value, std::string units, std::string long_name,
+                      std::string source = "") {
+    return Quantity{std::move(name),      {},
+                    std::vector{value},   std::move(units),
+                    std::move(long_name), std::move(source)};
+  };
+  const AutocorrelationTime& time = state.autocorrelation;
+  Table table{.name = "steady/" + series.observable, .axes = {}, .quantities = {}, .notes = {}};
+  table.quantities = {
+      one("value", state.value, series.units, "mean over taps and realizations"),
+      one("value_error", state.error, series.units,
+          single ? "standard error by blocking" : "standard error over realizations"),
+      one("blocked_error", state.blocking.error(), series.units,
+          state.blocking.plateau ? "standard error by blocking, realizations pooled"
+                                 : "lower bound of the error: blocking found no plateau",
+          flyvbjerg_petersen),
+      one("sigma", state.sigma, series.units,
+          "deviation of single taps about the steady value of their realization",
+          "Philippe & Bideau 2001, fig. 3"),
+      one("sigma_error", state.sigma_error, series.units, "standard error"),
+      one("realization_sigma", state.realization_sigma, series.units,
+          "deviation of the realizations' means, 1/(M - 1)"),
+      one("autocorrelation_time", time.time, "taps",
+          time.found() ? "integrated, 1/2 for independent taps"
+                       : "lower bound: longer than the taps can tell",
+          wolff),
+      one("autocorrelation_time_error", time.error, "taps", "standard error", wolff),
+      one("drift", state.trend.change, series.units,
+          "change of the mean over the taps, by a straight line"),
+      one("drift_error", state.trend.slope_error * n_taps, series.units, "its standard error"),
+      one("halves_difference", state.halves.value, series.units,
+          "second half of the taps less the first"),
+      one("halves_difference_error", state.halves.error, series.units, "its standard error")};
+  add_blocking(table, series, state.blocking);
+  const std::string plateau =
+      state.blocking.plateau
+          ? fmt::format("from blocks of {} taps",
+                        state.blocking.levels[*state.blocking.plateau].block_length)
+          : "none: the taps are too few for the memory of the series";
+  table.notes = {
+      {"observable", series.observable},
+      {"taps", fmt::format("{} to {}", series.first_tap, series.last_tap)},
+      {"realizations", fmt::to_string(state.realizations)},
+      {"plateau", plateau},
+      {"verdict", state.reached() ? "reached" : "not reached: " + state.reasons_against}};
+  return table;
+}
+
+}  // namespace jostle

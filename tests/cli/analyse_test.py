@@ -1,0 +1,121 @@
+"""jostle analyse: steady states and spectra of results, for people and for programs."""
+
+import csv
+import json
+import math
+import unittest
+
+from support import BAD_INPUT, OK, TINY, Case, changed
+
+TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 160}])
+
+
+class Analysed(Case):
+    def analyse(self, *arguments, expect=OK):
+        return json.loads(self.jostle("analyse", *arguments, "--json", expect=expect).stdout)
+
+    def tables(self, file="tiny.h5"):
+        return self.info(file)["tables"]
+
+    def test_a_steady_state_of_every_sweep_point(self):
+        self.write(TAPPED)
+        self.run_scene()
+        digest = self.digest("tiny.h5")
+        tables = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last",
+                              "64")["tables"]
+        names = [f"point_000{point}/steady/mean_height" for point in (0, 1)]
+        self.assertEqual([table["name"] for table in tables], names)
+        self.assertEqual(self.tables(), [f"analysis/{name}" for name in names])
+        self.assertEqual(self.digest("tiny.h5"), digest)
+        for table in tables:
+            self.assertEqual(table["notes"]["taps"], "97 to 160")
+            self.assertEqual(table["notes"]["realizations"], "3")
+            self.assertRegex(table["notes"]["verdict"], "^(reached$|not reached: )")
+            value = table["quantities"]["value"]
+            self.assertEqual(value["units"], "d")
+            self.assertGreater(table["quantities"]["value_error"]["values"], 0)
+            blocks = table["quantities"]["blocks"]["values"]
+            self.assertEqual(blocks, [192, 96, 48, 24, 12, 6])
+
+        # The same mean from the ensemble's own curve.
+        curve = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "160",
+                             "--no-store", "--sweep-point", "1", "--csv", "out.csv")["tables"]
+        self.assertEqual(len(curve), 1)
+        lines = (self.folder / "out.csv").read_text().splitlines()
+        self.assertIn("# point_0001/steady/mean_height", lines)
+        header = next(i for i, line in enumerate(lines) if line.startswith("value,"))
+        row = next(csv.DictReader(lines[header:header + 2]))
+        self.assertEqual(float(row["value"]), curve[0]["quantities"]["value"]["values"])
+        self.assertEqual(self.tables(), [f"analysis/{name}" for name in names])
+
+    def test_a_spectrum_holds_the_variance_of_its_lines(self):
+        self.write(TAPPED)
+        self.run_scene()
+        asked = ["tiny.h5", "spectrum", "--observable", "mean_height", "--last", "128",
+                 "--segment", "128", "--window", "boxcar", "--sweep-point", "0"]
+        table = self.analyse(*asked)["tables"][0]
+        self.assertEqual(table["quantities"]["density"]["units"], "d^2 taps")
+        lines = table["quantities"]["lines"]["values"]
+        self.assertEqual(sum(lines), 64)
+        density = table["quantities"]["density"]["values"]
+        from_lines = sum(p * n for p, n in zip(density, lines)) / 128
+        steady = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "128",
+                              "--sweep-point", "0", "--no-store")["tables"][0]
+        # Blocks of one tap: variance of single taps / (n - 1) over all 384 of them.
+        error = steady["quantities"]["block_error"]["values"][0]
+        self.assertAlmostEqual(from_lines / (error ** 2 * 384 * 127 / 128), 1, places=9)
+        self.assertIn("drift", table["notes"]["verdict"])
+        band = self.analyse(*asked, "--band", "0.01:0.2")["tables"][0]
+        self.assertTrue(band["notes"]["band"].startswith("0.01 to 0.2 per tap"))
+        self.assertTrue(math.isfinite(band["quantities"]["slope_error"]["values"]))
+        text = self.jostle("analyse", *asked).stdout
+        self.assertRegex(text, r"slope +-?\d+\.\d+ \+- \d")
+
+    def test_what_cannot_be_analysed_is_refused_in_words(self):
+        self.write(TINY)
+        self.run_scene()
+        steady = ["analyse", "tiny.h5", "steady", "--observable"]
+        done = self.jostle(*steady, "mean_heigth", expect=BAD_INPUT)
+        self.assertIn("mean_height, bottom_fraction", done.stderr)
+        done = self.jostle(*steady, "mean_height", expect=BAD_INPUT)
+        self.assertIn("there are 4", done.stdout)
+        self.write("no results", "data.csv")
+        done = self.jostle("analyse", "data.csv", *steady[2:], "mean_height", expect=BAD_INPUT)
+        self.assertIn("not a results file", done.stderr)
+        done = self.jostle("analyse", "tiny.h5", "spectrum", "--observable", "mean_height",
+                           "--band", "0.3:0.1", expect=BAD_INPUT)
+        self.assertIn("--band", done.stderr)
+
+    def test_several_files_are_each_given_their_tables(self):
+        for name in ("a", "b"):
+            self.write(changed(TAPPED, name=name))
+            self.run_scene()
+        tables = self.analyse("a.h5", "b.h5", "steady", "--observable", "mean_height",
+                              "bottom_fraction")["tables"]
+        self.assertEqual([table["file"] for table in tables], ["a.h5"] * 4 + ["b.h5"] * 4)
+        self.assertEqual(self.tables("a.h5"), self.tables("b.h5"))
+        self.assertEqual(len(self.tables("a.h5")), 4)
+
+    def test_a_run_ends_with_the_analyses_of_its_scene(self):
+        asked = {"steady": [{"observable": "mean_height", "last": 40}],
+                 "spectrum": [{"observable": "bottom_fraction"}]}
+        self.write(changed(TAPPED, analyse=asked))
+        done = self.run_scene()
+        self.assertIn("autocorrelation_time", done.stdout)
+        names = [f"analysis/point_000{point}/{kind}" for point in (0, 1)
+                 for kind in ("spectrum/bottom_fraction", "steady/mean_height")]
+        self.assertEqual(self.tables(), names)
+        # A resume accepts other analyses; two threads give the same tables.
+        asked["steady"].append({"observable": "bottom_fraction"})
+        self.write(changed(TAPPED, analyse=asked))
+        self.run_scene("--resume")
+        self.assertEqual(len(self.tables()), 6)
+        for share in (1, 2):
+            self.run_scene("--shard", f"{share}/2", "-o", f"{share}.h5")
+            self.assertEqual(self.tables(f"{share}.h5"), [])
+        self.jostle("merge", "1.h5", "2.h5", "-o", "all.h5")
+        self.assertEqual(self.tables("all.h5"), self.tables())
+
+
+if __name__ == "__main__":
+    unittest.main()
