@@ -60,7 +60,7 @@ void add_steps(const ProtocolSteps& steps, Table& table) {
   for (std::size_t b = all.size(); b-- > 0;) {  // a step at a turn counts to the branch it ends
     for (const std::size_t step : all[b]) branch[step] = b;
   }
-  for (const TapRange& window : steps.windows) {
+  for (const StepTaps& window : steps.windows) {
     first_tap.push_back(window.first);
     last_tap.push_back(window.last);
   }
@@ -166,7 +166,7 @@ std::vector<double> step_values(const ProtocolSteps& steps, std::span<const doub
                                 std::uint32_t realizations) {
   const std::uint64_t n_taps = series.size() / realizations;
   std::vector<double> values;
-  for (const TapRange& window : steps.windows) {
+  for (const StepTaps& window : steps.windows) {
     if (window.last >= n_taps) {
       values.insert(values.end(), realizations, std::numeric_limits<double>::quiet_NaN());
       continue;

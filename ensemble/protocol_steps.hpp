@@ -20,16 +20,16 @@ struct Control {
 };
 Control control(const Tap& tap);
 
-/// Taps first .. last, both included.
-struct TapRange {
+/// Taps first .. last of a step, both included.
+struct StepTaps {
   std::uint64_t first = 0, last = 0;
-  bool operator==(const TapRange&) const = default;
+  bool operator==(const StepTaps&) const = default;
 };
 
 struct ProtocolSteps {
   std::string control, units;     // of all steps
   std::vector<double> strengths;  // [n_steps], in the order of the protocol
-  std::vector<TapRange> windows;  // [n_steps], the last taps of each
+  std::vector<StepTaps> windows;  // [n_steps], the last taps of each
 };
 
 /// One step a stage, with its last `last_taps` taps (at least 1; all of a shorter stage). A message

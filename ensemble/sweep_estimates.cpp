@@ -1,5 +1,3 @@
-#include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "ensemble/jackknife.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/sweep_curve.hpp"
+#include "fitting/polynomial.hpp"
 
 namespace jostle {
 
@@ -22,25 +21,6 @@ constexpr double doubtful_below = 0.95;
 
 using Pair = std::array<double, 2>;  // two numbers read off a curve, with their errors
 using Estimator = std::function<Pair(const std::vector<double>& y)>;
-
-// Least-squares coefficients of a polynomial in (x - origin) / scale.
-Eigen::VectorXd polynomial(std::span<const double> x, std::span<const double> y,
-                           std::span<const double> weights, double origin, double scale,
-                           Eigen::Index coefficients) {
-  const auto n = static_cast<Eigen::Index>(x.size());
-  Eigen::MatrixXd matrix(n, coefficients);
-  Eigen::VectorXd target(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    double power = weights[k];
-    for (Eigen::Index j = 0; j < coefficients; ++j) {
-      matrix(i, j) = power;
-      power *= (x[k] - origin) / scale;
-    }
-    target[i] = weights[k] * y[k];
-  }
-  return matrix.colPivHouseholderQr().solve(target);
-}
 
 std::vector<double> weights_of(const SweepCurve& curve) {
   std::vector<double> weights(curve.n_points(), 1.0);
@@ -106,8 +86,8 @@ Pair vertex(const SweepCurve& curve, std::span<const double> weights, std::size_
             std::size_t points, const std::vector<double>& y) {
   const auto x = std::span(curve.x()).subspan(first, points);
   const double origin = 0.5 * (x.front() + x.back()), scale = 0.5 * (x.back() - x.front());
-  const Eigen::VectorXd c = polynomial(x, std::span(y).subspan(first, points),
-                                       weights.subspan(first, points), origin, scale, 3);
+  const std::vector<double> c = polynomial_fit(x, std::span(y).subspan(first, points),
+                                               weights.subspan(first, points), 3, origin, scale);
   const double at = -0.5 * c[1] / c[2];
   if (!(c[2] < 0) || !(std::abs(at) <= 1)) return {not_a_number, not_a_number};
   return {origin + scale * at, c[0] + 0.5 * c[1] * at};
@@ -172,7 +152,7 @@ StraightLine straight_line(const SweepCurve& curve) {
   if (different_values(curve.x()) < 2) return line;
   const std::vector<double> weights = weights_of(curve);
   const Estimator estimator = [&](const std::vector<double>& y) -> Pair {
-    const Eigen::VectorXd c = polynomial(curve.x(), y, weights, 0, 1, 2);
+    const std::vector<double> c = polynomial_fit(curve.x(), y, weights, 2);
     return {c[0], c[1]};
   };
   const Pair found = estimator(curve.y());

@@ -89,7 +89,7 @@ TEST_CASE("A protocol's steps are its stages, with their last taps") {
   const auto steps = std::get<ProtocolSteps>(protocol_steps(protocol, 30));
   CHECK(steps.control == "sqrt_epsilon");
   CHECK(steps.strengths[1] == Approx(0.2).epsilon(1e-15));
-  CHECK(steps.windows == std::vector<TapRange>{{71, 100}, {101, 120}, {191, 220}});
+  CHECK(steps.windows == std::vector<StepTaps>{{71, 100}, {101, 120}, {191, 220}});
   protocol.push_back({Lift{0.25}, 10});
   CHECK(std::get<std::string>(protocol_steps(protocol, 30)) ==
         "The protocol taps in different ways (sqrt_epsilon, gamma), whose strengths cannot be "
