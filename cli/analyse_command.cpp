@@ -5,11 +5,13 @@
 #include <memory>
 
 #include "cli/analyse_run.hpp"
+#include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
 
 namespace jostle {
@@ -20,9 +22,12 @@ struct AnalyseArguments {
   std::vector<std::string> inputs, observables;
   std::string point, csv;
   bool json = false, not_stored = false;
+  int threads = 0;
   // Of single analyses.
   std::uint64_t last = 0, segment = 0;
   std::string window = "hann", detrend = "mean", band;
+  std::vector<std::uint64_t> waiting_times, lags;
+  std::string quantity = "value", against;
 };
 
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
@@ -58,38 +63,90 @@ std::vector<AnalysisRequest<Settings>> requests(const AnalyseArguments& argument
   return all;
 }
 
-/// All files, each with its tables stored in itself.
-int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
-  const Provenance by = provenance_of_this_run("");
-  auto listed = nlohmann::json::array();
-  std::string csv;
-  bool any = false;
-  for (const std::string& input : arguments.inputs) {
-    if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
-    std::vector<Table> tables;
-    {
-      const ResultsFile file(input);
-      tables = analyse(file, chosen_points(file.study(), arguments.point), analyses);
-    }
-    if (arguments.inputs.size() > 1 && !arguments.json) fmt::print("{}\n\n", input);
+/// Prints tables and gathers what is written at the end.
+class Output {
+ public:
+  explicit Output(const AnalyseArguments& arguments) : arguments_(arguments) {}
+
+  void show(const std::vector<Table>& tables, const std::string& input) {
+    if (arguments_.inputs.size() > 1 && !arguments_.json) fmt::print("{}\n\n", input);
     for (const Table& table : tables) {
-      any = any || is_made(table);
-      if (arguments.json) {
-        listed.push_back(table_json(table));
-        listed.back()["file"] = input;
+      any_ = any_ || is_made(table);
+      if (arguments_.json) {
+        listed_.push_back(table_json(table));
+        listed_.back()["file"] = input;
       } else {
         fmt::print("{}\n", table_text(table, Detail::full));
       }
-      if (!arguments.csv.empty()) csv += fmt::format("# {}\n{}", input, table_csv(table));
+      if (!arguments_.csv.empty()) csv_ += fmt::format("# {}\n{}", input, table_csv(table));
     }
+  }
+
+  /// Returns the exit code.
+  int end(const Provenance& by) const {
+    if (arguments_.json) {
+      const nlohmann::json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
+      std::fputs((object.dump(2) + "\n").c_str(), stdout);
+    }
+    if (!arguments_.csv.empty()) write_text(arguments_.csv, csv_);
+    return any_ ? exit_ok : exit_bad_input;
+  }
+
+ private:
+  const AnalyseArguments& arguments_;
+  nlohmann::json listed_ = nlohmann::json::array();
+  std::string csv_;
+  bool any_ = false;
+};
+
+void require_results(const AnalyseArguments& arguments) {
+  for (const std::string& input : arguments.inputs) {
+    if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
+  }
+}
+
+/// All files, each with its tables stored in itself.
+int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
+  require_results(arguments);
+  const Provenance by = provenance_of_this_run("");
+  const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
+  Output output(arguments);
+  for (const std::string& input : arguments.inputs) {
+    std::vector<Table> tables;
+    {
+      const ResultsFile file(input);
+      tables = analyse(file, chosen_points(file.study(), arguments.point), analyses, threads);
+    }
+    output.show(tables, input);
     if (!arguments.not_stored) keep_tables(input, "analysis", tables, by);
   }
-  if (arguments.json) {
-    const nlohmann::json object = {{"tables", listed}, {"provenance", provenance_json(by)}};
-    std::fputs((object.dump(2) + "\n").c_str(), stdout);
+  return output.end(by);
+}
+
+/// All files together; stored where they are one.
+int run_sweep(const AnalyseArguments& arguments) {
+  require_results(arguments);
+  const Provenance by = provenance_of_this_run("");
+  SweepSettings settings{.quantity = arguments.quantity, .against = arguments.against};
+  if (arguments.last > 0) settings.last = arguments.last;
+  std::vector<Table> tables;
+  {
+    std::vector<ResultsFile> files;
+    for (const std::string& input : arguments.inputs) files.emplace_back(input);
+    std::vector<const ResultsFile*> all;
+    for (const ResultsFile& file : files) all.push_back(&file);
+    tables = sweep_tables(all, {}, requests(arguments, settings));
   }
-  if (!arguments.csv.empty()) write_text(arguments.csv, csv);
-  return any ? exit_ok : exit_bad_input;
+  Output output(arguments);
+  std::string names;
+  for (const std::string& input : arguments.inputs) {
+    names.append(names.empty() ? "" : ", ").append(input);
+  }
+  output.show(tables, names);
+  if (!arguments.not_stored && arguments.inputs.size() == 1) {
+    keep_tables(arguments.inputs.front(), "analysis", tables, by);
+  }
+  return output.end(by);
 }
 
 CLI::App* add_kind(CLI::App& command, const char* name, const char* description,
@@ -106,8 +163,9 @@ void add_steady(CLI::App& command, const std::shared_ptr<AnalyseArguments>& argu
       add_kind(command, "steady", "Value, deviation and memory of the last taps", *arguments);
   kind->add_option("--last", arguments->last, "Taps at the end (default: a quarter)");
   kind->callback([arguments, &code] {
-    code = run_analyses(
-        *arguments, {.steady = requests(*arguments, steady_settings(*arguments)), .spectrum = {}});
+    Analyses analyses;
+    analyses.steady = requests(*arguments, steady_settings(*arguments));
+    code = run_analyses(*arguments, analyses);
   });
 }
 
@@ -126,16 +184,67 @@ void add_spectrum(CLI::App& command, const std::shared_ptr<AnalyseArguments>& ar
   kind->add_option("--band", arguments->band,
                    "LOWEST:HIGHEST frequency of the slope, in 1/taps (default: all)");
   kind->callback([arguments, &code] {
-    code = run_analyses(
-        *arguments,
-        {.steady = {}, .spectrum = requests(*arguments, spectrum_settings(*arguments))});
+    Analyses analyses;
+    analyses.spectrum = requests(*arguments, spectrum_settings(*arguments));
+    code = run_analyses(*arguments, analyses);
   });
+}
+
+void add_ageing(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
+  auto* kind = add_kind(command, "ageing", "A(t, t_W), C(t, t_W), fits of eq. 6, their collapse",
+                        *arguments);
+  kind->add_option("--waiting-times", arguments->waiting_times,
+                   "Taps t_W, separated by commas (default: 0 and two a decade)")
+      ->delimiter(',');
+  kind->add_option("--lags", arguments->lags, "Taps t, likewise (default: ten a decade)")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000000000));
+  kind->callback([arguments, &code] {
+    AgeingSettings settings{arguments->waiting_times, arguments->lags};
+    for (auto* taps : {&settings.waiting_times, &settings.lags}) {
+      std::ranges::sort(*taps);
+      taps->erase(std::unique(taps->begin(), taps->end()), taps->end());
+    }
+    Analyses analyses;
+    analyses.ageing = requests(*arguments, settings);
+    code = run_analyses(*arguments, analyses);
+  });
+}
+
+void add_hysteresis(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments,
+                    int& code) {
+  auto* kind =
+      add_kind(command, "hysteresis",
+               "Steady value of every step of a protocol, branches, areas of loops", *arguments);
+  kind->add_option("--last", arguments->last,
+                   "Taps at the end of each step (default: a quarter of the shortest)");
+  kind->callback([arguments, &code] {
+    HysteresisSettings settings;
+    if (arguments->last > 0) settings.last = arguments->last;
+    Analyses analyses;
+    analyses.hysteresis = requests(*arguments, settings);
+    code = run_analyses(*arguments, analyses);
+  });
+}
+
+void add_sweep(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
+  auto* kind =
+      add_kind(command, "sweep",
+               "A quantity against the swept value, its maximum; all files together", *arguments);
+  kind->add_option("--quantity", arguments->quantity,
+                   "value: mean of the last taps (default); or what is kept of an analysis or a "
+                   "fit: steady/sigma, kww/rho_inf");
+  kind->add_option("--against", arguments->against,
+                   "JSON pointer into the scene (default: the first of the sweep)");
+  kind->add_option("--last", arguments->last, "Taps at the end (default: a quarter)");
+  kind->callback([arguments, &code] { code = run_sweep(*arguments); });
 }
 
 }  // namespace
 
 void add_analyse(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("analyse", "Steady states and spectra of results");
+  auto* command = app.add_subcommand(
+      "analyse", "Steady states, spectra, ageing, hysteresis and sweeps of results");
   auto arguments = std::make_shared<AnalyseArguments>();
   AnalyseArguments& a = *arguments;
   command->add_option("input", a.inputs, "Results, one file or several")
@@ -146,13 +255,22 @@ void add_analyse(CLI::App& app, int& code) {
   command->add_flag("--json", a.json, "Print JSON, for programs");
   command->add_option("--csv", a.csv, "Also write the tables to this file");
   command->add_flag("--no-store", a.not_stored, "Leave the results files as they are");
+  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
   command->require_subcommand(1);
   add_steady(*command, arguments, code);
   add_spectrum(*command, arguments, code);
+  add_ageing(*command, arguments, code);
+  add_hysteresis(*command, arguments, code);
+  add_sweep(*command, arguments, code);
   command->footer(
       "Examples:\n"
       "  jostle analyse quickstart.h5 steady --observable mean_height --last 1000\n"
       "  jostle analyse *.h5 spectrum --observable mean_height --band 0.001:0.1 --json\n"
+      "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,100,1000\n"
+      "  jostle analyse fig4.h5 hysteresis --observable bulk_fraction\n"
+      "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"
       "docs/analysis.md. Exit code 2 where no analysis was possible.");

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
-#include "cli/observable_series.hpp"
+#include "cli/point_scenes.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
+#include "config/grids.hpp"
+#include "ensemble/ageing_table.hpp"
+#include "ensemble/hysteresis.hpp"
 #include "results/layout.hpp"
 #include "results/tables.hpp"
 
@@ -16,39 +21,23 @@ namespace jostle {
 
 namespace {
 
-/// The last taps, without the start.
-AnalysedSeries last_taps(const ObservableSeries& series, std::uint64_t n_taps,
-                         std::uint64_t least) {
-  const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
-  if (n_taps > available || n_taps < least) {
-    throw BadInput(fmt::format("asks for the last {} taps, at least {}; there are {}",
-                               std::max(n_taps, least), least, available));
-  }
-  return {.observable = series.label().name,
-          .units = series.label().units,
-          .first_tap = available + 1 - n_taps,
-          .last_tap = available};
-}
+/// Where an analysis finds what is not in its series.
+struct Surroundings {
+  const ResultsFile& file;
+  std::uint32_t point;
+  int threads;
+};
 
-std::uint64_t part_of(const ObservableSeries& series, std::uint64_t divisor, std::uint64_t least) {
-  const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
-  return std::max(least, available / divisor);
-}
-
-Table made(const ObservableSeries& series, const SteadySettings& settings) {
-  const std::uint64_t least = SteadyStateTest::fewest_taps;
-  const AnalysedSeries analysed =
-      last_taps(series, settings.last.value_or(part_of(series, 4, least)), least);
+Table made(const ObservableSeries& series, const SteadySettings& settings, const Surroundings&) {
+  const AnalysedSeries analysed = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
   SteadyStateTest test;
   series.for_each({analysed.first_tap, analysed.last_tap + 1},
                   [&](std::span<const double> values) { test.add(values); });
   return steady_table(analysed, test.result());
 }
 
-Table made(const ObservableSeries& series, const SpectrumSettings& settings) {
-  const std::uint64_t least = fewest_spectrum_taps;
-  const AnalysedSeries analysed =
-      last_taps(series, settings.last.value_or(part_of(series, 2, least)), least);
+Table made(const ObservableSeries& series, const SpectrumSettings& settings, const Surroundings&) {
+  const AnalysedSeries analysed = last_taps(series, settings.last, 2, fewest_spectrum_taps);
   if (settings.segment && *settings.segment > analysed.n_taps()) {
     throw BadInput(fmt::format("a segment of {} taps is longer than the {} analysed",
                                *settings.segment, analysed.n_taps()));
@@ -59,16 +48,47 @@ Table made(const ObservableSeries& series, const SpectrumSettings& settings) {
   return analysis.table();
 }
 
+Table made(const ObservableSeries& series, const AgeingSettings& settings,
+           const Surroundings& around) {
+  if (series.n_rows() < 3) throw BadInput("needs two taps");
+  AgeingGrid grid = ageing_grid(series.n_rows());
+  if (!settings.waiting_times.empty()) grid.waiting_times = settings.waiting_times;
+  if (!settings.lags.empty()) grid.lags = settings.lags;
+  TapRows rows{.taps = taps_of(grid), .realizations = series.n_realizations(), .values = {}};
+  std::erase_if(rows.taps, [&](std::uint64_t tap) { return tap >= series.n_rows(); });
+  rows.values = series.rows(rows.taps);
+  return ageing_table("", series.label(), rows, grid, around.threads);
+}
+
+Table made(const ObservableSeries& series, const HysteresisSettings& settings,
+           const Surroundings& around) {
+  const std::vector<Stage> protocol = stages(PointScenes(around.file).at(around.point).protocol);
+  std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
+  for (const Stage& stage : protocol) shortest = std::min(shortest, stage.count);
+  if (protocol.empty()) throw BadInput("the protocol has no taps");
+  const std::uint64_t last = settings.last.value_or(std::max<std::uint64_t>(1, shortest / 4));
+  const auto found = protocol_steps(protocol, last);
+  if (const auto* refusal = std::get_if<std::string>(&found)) throw BadInput(*refusal);
+  const auto& steps = std::get<ProtocolSteps>(found);
+  std::vector<double> values;
+  for (const StepTaps& window : steps.windows) {
+    const std::vector<double> means = series.means({window.first, window.last + 1});
+    values.insert(values.end(), means.begin(), means.end());
+  }
+  return hysteresis_table("", series.label(), steps, values, series.n_realizations());
+}
+
 template <class Settings>
-void add_tables(const ResultsFile& file, std::uint32_t point, const char* kind,
+void add_tables(const Surroundings& around, const char* kind,
                 const std::vector<AnalysisRequest<Settings>>& requests,
                 std::vector<Table>& tables) {
   for (const auto& request : requests) {
+    const auto& [file, point, threads] = around;
     const ObservableSeries series(file, point, request.observable);
     Table table;
     try {
       if (series.n_realizations() == 0) throw BadInput("there is no realization with taps");
-      table = made(series, request.settings);
+      table = made(series, request.settings, around);
     } catch (const BadInput& refusal) {
       table.notes = {{"refused", refusal.what()}};
     }
@@ -82,13 +102,30 @@ void add_tables(const ResultsFile& file, std::uint32_t point, const char* kind,
 }  // namespace
 
 std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
-                           const Analyses& analyses) {
+                           const Analyses& analyses, int threads) {
   std::vector<Table> tables;
   for (const std::uint32_t point : points) {
-    add_tables(file, point, "steady", analyses.steady, tables);
-    add_tables(file, point, "spectrum", analyses.spectrum, tables);
+    const Surroundings around{file, point, threads};
+    add_tables(around, "steady", analyses.steady, tables);
+    add_tables(around, "spectrum", analyses.spectrum, tables);
+    add_tables(around, "ageing", analyses.ageing, tables);
+    add_tables(around, "hysteresis", analyses.hysteresis, tables);
   }
   return tables;
+}
+
+AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
+                         std::uint64_t divisor, std::uint64_t least) {
+  const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
+  const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
+  if (wanted > available || wanted < least) {
+    throw BadInput(fmt::format("asks for the last {} taps, at least {}; there are {}",
+                               std::max(wanted, least), least, available));
+  }
+  return {.observable = series.label().name,
+          .units = series.label().units,
+          .first_tap = available + 1 - wanted,
+          .last_tap = available};
 }
 
 bool is_made(const Table& table) {
@@ -104,7 +141,11 @@ void make_scene_analyses(const std::string& results, int threads, bool quiet) {
     if (!parsed.scene || parsed.scene->analyse.empty()) return;
     std::vector<std::uint32_t> points(file.study().points.size());
     for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
-    tables = analyse(file, points, parsed.scene->analyse);
+    tables = analyse(file, points, parsed.scene->analyse, threads);
+    const ResultsFile* const files[] = {&file};
+    for (Table& table : sweep_tables(files, tables, parsed.scene->analyse.sweep)) {
+      tables.push_back(std::move(table));
+    }
   }
   for (const Table& table : tables) {
     if (!quiet) fmt::print("\n{}", table_text(table, Detail::brief));

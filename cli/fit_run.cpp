@@ -15,10 +15,6 @@ namespace jostle {
 
 namespace {
 
-// Laws of an approach to a final value, that compete for one curve.
-constexpr const char* relaxation_laws[] = {"inverse_log", "inverse_log_height", "two_exponentials",
-                                           "kww"};
-
 FitOutcome fit_model(const Model& model, const FitSource& source, const FitManner& manner) {
   FitOptions options;
   options.fixed = manner.fixed;
@@ -131,7 +127,7 @@ void add_statistics(Table& table, const Fit& fit) {
 std::vector<std::unique_ptr<Model>> models_named(const std::string& name) {
   std::vector<std::unique_ptr<Model>> models;
   if (name == "all") {
-    for (const char* law : relaxation_laws) models.push_back(make_model(law));
+    for (const std::string& law : relaxation_laws()) models.push_back(make_model(law));
   } else if (auto model = make_model(name)) {
     models.push_back(std::move(model));
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cli/scene_file.hpp"
+#include "ensemble/moments.hpp"
 
 namespace jostle {
 
@@ -59,6 +61,19 @@ void ObservableSeries::for_each(const TapRange& taps,
       take(series);
     }
   }
+}
+
+std::vector<double> ObservableSeries::means(const TapRange& taps) const {
+  if (taps.end > n_rows_ || taps.first >= taps.end) {
+    return std::vector<double>(used_.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<double> means;
+  for_each(taps, [&](std::span<const double> values) {
+    Moments moments;
+    for (const double value : values) moments.add(value);
+    means.push_back(moments.mean());
+  });
+  return means;
 }
 
 std::vector<double> ObservableSeries::rows(std::span<const std::uint64_t> taps) const {

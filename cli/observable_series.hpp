@@ -22,11 +22,16 @@ class ObservableSeries {
   /// Taps 0 .. n_rows() - 1 are there; 0 where there is no realization.
   std::uint64_t n_rows() const { return n_rows_; }
   std::uint32_t n_realizations() const { return static_cast<std::uint32_t>(used_.size()); }
+  /// Their numbers, ascending.
+  const std::vector<std::uint32_t>& realizations() const { return used_; }
 
   /// Calls `take` with the values at these taps of one realization after another. Throws BadInput
   /// where one of them is not a number.
   void for_each(const TapRange& taps,
                 const std::function<void(std::span<const double>)>& take) const;
+  /// Mean of each realization over these taps, [n_realizations]; NaN where they are beyond the last
+  /// that all have reached. Throws BadInput as for_each().
+  std::vector<double> means(const TapRange& taps) const;
   /// Values at chosen taps, each below n_rows(): [n_taps, n_realizations].
   std::vector<double> rows(std::span<const std::uint64_t> taps) const;
 

@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "config/grids.hpp"
 #include "config/names.hpp"
 #include "config/parts.hpp"
-#include "config/suggestion.hpp"
 
 namespace jostle {
 
@@ -42,6 +39,37 @@ void read_settings(const Reader& in, SpectrumSettings& settings) {
                             *lowest, *highest));
   }
   settings.band = Band{*lowest, *highest};
+}
+
+void read_settings(const Reader& in, AgeingSettings& settings) {
+  if (const auto taps = in.find("waiting_times"))
+    settings.waiting_times = chosen_taps(read_taps(*taps));
+  if (const auto taps = in.find("lags")) settings.lags = chosen_taps(read_taps(*taps));
+}
+
+void read_settings(const Reader& in, HysteresisSettings& settings) {
+  read_optional(in, "last", 1, settings.last);
+}
+
+void read_settings(const Reader& in, SweepSettings& settings) {
+  if (const auto quantity = in.find("quantity")) settings.quantity = quantity->text().value_or("");
+  read_optional(in, "last", 1, settings.last);
+  if (const auto against = in.find("against")) settings.against = against->text().value_or("");
+}
+
+const std::vector<std::string>& keys(const AgeingSettings&) {
+  static const std::vector<std::string> names = {"observable", "waiting_times", "lags"};
+  return names;
+}
+
+const std::vector<std::string>& keys(const HysteresisSettings&) {
+  static const std::vector<std::string> names = {"observable", "last"};
+  return names;
+}
+
+const std::vector<std::string>& keys(const SweepSettings&) {
+  static const std::vector<std::string> names = {"observable", "quantity", "last", "against"};
+  return names;
 }
 
 const std::vector<std::string>& keys(const SteadySettings&) {
@@ -93,6 +121,23 @@ Json written(const SpectrumSettings& settings) {
   return out;
 }
 
+Json written(const AgeingSettings& settings) {
+  return {{"waiting_times", settings.waiting_times}, {"lags", settings.lags}};
+}
+
+Json written(const HysteresisSettings& settings) {
+  Json out = Json::object();
+  if (settings.last) out["last"] = *settings.last;
+  return out;
+}
+
+Json written(const SweepSettings& settings) {
+  Json out = {{"quantity", settings.quantity}};
+  if (settings.last) out["last"] = *settings.last;
+  if (!settings.against.empty()) out["against"] = settings.against;
+  return out;
+}
+
 template <class Settings>
 Json written(const std::vector<AnalysisRequest<Settings>>& requests) {
   Json list = Json::array();
@@ -104,81 +149,25 @@ Json written(const std::vector<AnalysisRequest<Settings>>& requests) {
   return list;
 }
 
-/// Notes analyses of what the scene does not observe, or of taps that it does not have.
-class AnalysisCheck {
- public:
-  AnalysisCheck(const Scene& scene, std::vector<Fault>& faults)
-      : faults_(faults), taps_(total_taps(scene.protocol)) {
-    for (const Observable& observable : scene.observables) observed_.push_back(name_of(observable));
-  }
-
-  template <class Settings>
-  void operator()(const std::string& kind, const std::vector<AnalysisRequest<Settings>>& requests) {
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-      const std::string place = fmt::format("/analyse/{}/{}", kind, i);
-      const std::string& name = requests[i].observable;
-      if (std::ranges::find(observed_, name) == observed_.end()) {
-        note(place + "/observable", fmt::format("\"{}\" is not observed (observed: {}).{}", name,
-                                                listed(observed_), did_you_mean(name, observed_)));
-      }
-      check(place, requests[i].settings);
-    }
-  }
-
- private:
-  void check(const std::string& place, const SteadySettings& settings) {
-    check_last(place, settings.last, SteadyStateTest::fewest_taps);
-  }
-
-  void check(const std::string& place, const SpectrumSettings& settings) {
-    check_last(place, settings.last, fewest_spectrum_taps);
-    const std::uint64_t analysed =
-        settings.last.value_or(std::max(fewest_spectrum_taps, taps_ / 2));
-    if (settings.segment && *settings.segment > analysed) {
-      note(place + "/segment", fmt::format("{} taps are more than the {} that are analysed",
-                                           *settings.segment, analysed));
-    }
-  }
-
-  void check_last(const std::string& place, const std::optional<std::uint64_t>& last,
-                  std::uint64_t least) {
-    if (last && *last > taps_) {
-      note(place + "/last", fmt::format("{} taps, but the protocol has {}", *last, taps_));
-    } else if (taps_ < least) {
-      note(place, fmt::format("needs {} taps, but the protocol has {}", least, taps_));
-    }
-  }
-
-  void note(std::string pointer, std::string message) {
-    faults_.push_back({std::move(pointer), std::move(message)});
-  }
-
-  std::vector<Fault>& faults_;
-  std::vector<std::string> observed_;
-  std::uint64_t taps_;
-};
-
 }  // namespace
 
 Analyses read_analyses(const Reader& in) {
   Analyses analyses;
-  if (!in.is_object_of({"steady", "spectrum"})) return analyses;
+  if (!in.is_object_of({"steady", "spectrum", "ageing", "hysteresis", "sweep"})) return analyses;
   read_requests(in, "steady", analyses.steady);
   read_requests(in, "spectrum", analyses.spectrum);
+  read_requests(in, "ageing", analyses.ageing);
+  read_requests(in, "hysteresis", analyses.hysteresis);
+  read_requests(in, "sweep", analyses.sweep);
   return analyses;
 }
 
 Json written(const Analyses& analyses) {
-  return {{"steady", written(analyses.steady)}, {"spectrum", written(analyses.spectrum)}};
-}
-
-void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
-  for (const char* part : {"/analyse", "/observe", "/protocol"}) {
-    if (!sound(faults, part)) return;
-  }
-  AnalysisCheck check(scene, faults);
-  check("steady", scene.analyse.steady);
-  check("spectrum", scene.analyse.spectrum);
+  return {{"steady", written(analyses.steady)},
+          {"spectrum", written(analyses.spectrum)},
+          {"ageing", written(analyses.ageing)},
+          {"hysteresis", written(analyses.hysteresis)},
+          {"sweep", written(analyses.sweep)}};
 }
 
 }  // namespace jostle

@@ -137,7 +137,7 @@ class Check {
 
   void snapshots_are_reached() {
     if (!all_sound({"/snapshots", "/protocol"})) return;
-    const std::vector<std::uint64_t> taps = snapshot_taps(scene_.snapshots);
+    const std::vector<std::uint64_t> taps = chosen_taps(scene_.snapshots.taps);
     const std::uint64_t last = total_taps(scene_.protocol);
     if (taps.empty() || taps.back() <= last) return;
     note("/snapshots/taps",

@@ -17,9 +17,9 @@ FitRequest read_fit(const Reader& in) {
     in.missing("observable", "the name of an observable of this scene");
   }
   if (const auto model = in.find("model")) {
-    fit.model =
-        model->one_of({"inverse_log", "inverse_log_height", "two_exponentials", "kww", "all"})
-            .value_or("");
+    std::vector<std::string> allowed = relaxation_laws();
+    allowed.emplace_back("all");
+    fit.model = model->one_of(allowed).value_or("");
   } else {
     in.missing("model", "a law: inverse_log, inverse_log_height, two_exponentials, kww or all");
   }
@@ -36,6 +36,10 @@ FitRequest read_fit(const Reader& in) {
 }
 
 }  // namespace
+
+std::vector<std::string> relaxation_laws() {
+  return {"inverse_log", "inverse_log_height", "two_exponentials", "kww"};
+}
 
 std::vector<FitRequest> read_fits(const Reader& in) {
   std::vector<FitRequest> fits;

@@ -102,10 +102,10 @@ std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol) {
   return taps;
 }
 
-std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& snapshots) {
-  const auto* grid = std::get_if<LogarithmicTaps>(&snapshots.taps);
+std::vector<std::uint64_t> chosen_taps(const TapChoice& choice) {
+  const auto* grid = std::get_if<LogarithmicTaps>(&choice);
   std::vector<std::uint64_t> taps =
-      grid ? logarithmic(*grid) : std::get<std::vector<std::uint64_t>>(snapshots.taps);
+      grid ? logarithmic(*grid) : std::get<std::vector<std::uint64_t>>(choice);
   std::sort(taps.begin(), taps.end());
   taps.erase(std::unique(taps.begin(), taps.end()), taps.end());
   return taps;

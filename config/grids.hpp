@@ -17,7 +17,7 @@ std::vector<Stage> stages(const std::vector<ProtocolLine>& protocol);
 
 std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol);
 
-/// The taps of the snapshots, ascending.
-std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& snapshots);
+/// The taps that are chosen, ascending, none twice.
+std::vector<std::uint64_t> chosen_taps(const TapChoice& choice);
 
 }  // namespace jostle

@@ -128,6 +128,14 @@ void read_keep(const Reader& in, SnapshotChoice& snapshots) {
   snapshots.height_histogram = kept.contains("height_histogram");
 }
 
+Json written_taps(const TapChoice& choice) {
+  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice)) {
+    return {{"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
+            {"also", grid->also}};
+  }
+  return std::get<std::vector<std::uint64_t>>(choice);
+}
+
 Json written_bounds(double low, double high) {
   return Json::array({plain_number(low), plain_number(high)});
 }
@@ -150,16 +158,15 @@ std::vector<Observable> read_observables(const Reader& in) {
   return observables;
 }
 
+TapChoice read_taps(const Reader& in) {
+  if (in.value().is_object()) return read_logarithmic_taps(in);
+  return read_tap_list(in);
+}
+
 SnapshotChoice read_snapshots(const Reader& in) {
   SnapshotChoice snapshots;
   if (!in.is_object_of({"taps", "keep", "contact_cut", "bin_width"})) return snapshots;
-  if (const auto taps = in.find("taps")) {
-    if (taps->value().is_object()) {
-      snapshots.taps = read_logarithmic_taps(*taps);
-    } else {
-      snapshots.taps = read_tap_list(*taps);
-    }
-  }
+  if (const auto taps = in.find("taps")) snapshots.taps = read_taps(*taps);
   if (const auto keep = in.find("keep")) read_keep(*keep, snapshots);
   in.read("contact_cut", snapshots.contact_cut, between(1, 3));
   in.read("bin_width", snapshots.bin_width, between(0.001, 10));
@@ -203,13 +210,7 @@ Json written(const std::vector<Observable>& observables) {
 
 Json written(const SnapshotChoice& snapshots) {
   Json out;
-  if (const auto* grid = std::get_if<LogarithmicTaps>(&snapshots.taps)) {
-    out["taps"] = {
-        {"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
-        {"also", grid->also}};
-  } else {
-    out["taps"] = std::get<std::vector<std::uint64_t>>(snapshots.taps);
-  }
+  out["taps"] = written_taps(snapshots.taps);
   out["keep"] = Json::array();
   if (snapshots.positions) out["keep"].push_back("positions");
   if (snapshots.coordination) out["keep"].push_back("coordination");

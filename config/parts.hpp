@@ -22,6 +22,7 @@ std::vector<ProtocolLine> read_protocol(const Reader& in);
 Relaxation read_relaxation(const Reader& in);
 Window read_window(const Reader& in);
 std::vector<Observable> read_observables(const Reader& in);
+TapChoice read_taps(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
@@ -55,5 +56,7 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Notes analyses over the points of a sweep that does not have what they need.
+void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults);
 
 }  // namespace jostle

@@ -39,7 +39,7 @@ class StartMaker {
 };
 
 Snapshots snapshots(const SnapshotChoice& choice) {
-  return {.taps = snapshot_taps(choice),
+  return {.taps = chosen_taps(choice.taps),
           .positions = choice.positions,
           .coordination = choice.coordination,
           .contact_cut = choice.contact_cut,

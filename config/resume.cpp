@@ -74,7 +74,7 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
 
 /// Snapshots may be added beyond the taps of the run.
 std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
-  const auto before = snapshot_taps(was.snapshots), after = snapshot_taps(is.snapshots);
+  const auto before = chosen_taps(was.snapshots.taps), after = chosen_taps(is.snapshots.taps);
   const std::uint64_t last = total_taps(was.protocol);
   for (const std::uint64_t tap : before) {
     if (!std::binary_search(after.begin(), after.end(), tap)) {

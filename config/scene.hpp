@@ -68,9 +68,11 @@ struct LogarithmicTaps {
   bool operator==(const LogarithmicTaps&) const = default;
 };
 
-/// Snapshots with the taps as the scene gives them: ascending, or a logarithmic grid.
+/// Taps as the scene gives them: ascending, or a logarithmic grid.
+using TapChoice = std::variant<std::vector<std::uint64_t>, LogarithmicTaps>;
+
 struct SnapshotChoice {
-  std::variant<std::vector<std::uint64_t>, LogarithmicTaps> taps;
+  TapChoice taps;
   bool positions = true, coordination = true, height_histogram = true;
   double contact_cut = 1.05, bin_width = 0.1;  // diameters
   bool operator==(const SnapshotChoice&) const = default;
@@ -83,6 +85,9 @@ struct SweepAxis {
   std::size_t size() const { return columns.empty() ? 0 : columns.front().second.size(); }
   bool operator==(const SweepAxis&) const = default;
 };
+
+/// Laws of an approach to a final value, that compete for one curve: those of the model "all".
+std::vector<std::string> relaxation_laws();
 
 /// A law fitted to the mean of an observable against taps, at every sweep point, when a run ends.
 struct FitRequest {
@@ -105,8 +110,11 @@ struct AnalysisRequest {
 struct Analyses {
   std::vector<AnalysisRequest<SteadySettings>> steady;
   std::vector<AnalysisRequest<SpectrumSettings>> spectrum;
+  std::vector<AnalysisRequest<AgeingSettings>> ageing;
+  std::vector<AnalysisRequest<HysteresisSettings>> hysteresis;
+  std::vector<AnalysisRequest<SweepSettings>> sweep;  // over the points
   bool operator==(const Analyses&) const = default;
-  bool empty() const { return steady.empty() && spectrum.empty(); }
+  bool empty() const { return *this == Analyses{}; }
 };
 
 struct Scene {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ensemble/ensemble_spectrum.hpp"
 #include "ensemble/steady_state.hpp"
@@ -36,6 +37,28 @@ struct SpectrumSettings {
   /// Of the slope, in 1/taps; absent: from the first sound line to 1/2.
   std::optional<Band> band = std::nullopt;
   bool operator==(const SpectrumSettings&) const = default;
+};
+
+/// At which pairs of taps ageing is measured; empty: as ageing_grid() has them.
+struct AgeingSettings {
+  std::vector<std::uint64_t> waiting_times, lags;  // ascending; lags at least 1
+  bool operator==(const AgeingSettings&) const = default;
+};
+
+/// How the steps of a protocol are judged: each by its last taps.
+struct HysteresisSettings {
+  std::optional<std::uint64_t> last = std::nullopt;  // absent: a quarter of the shortest stage
+  bool operator==(const HysteresisSettings&) const = default;
+};
+
+/// What is drawn against which swept value.
+struct SweepSettings {
+  /// "value": the mean of the last taps; else what another analysis ("steady/sigma") or a fit
+  /// ("kww/rho_inf") of the same observable found.
+  std::string quantity = "value";
+  std::optional<std::uint64_t> last = std::nullopt;  // of "value"; absent: the last quarter
+  std::string against;                               // JSON pointer; empty: the first of the sweep
+  bool operator==(const SweepSettings&) const = default;
 };
 
 /// The fewest taps that a spectrum is estimated from.

@@ -5,6 +5,8 @@ import json
 import math
 import unittest
 
+import h5py
+
 from support import BAD_INPUT, OK, TINY, Case, changed
 
 TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 160}])
@@ -85,6 +87,95 @@ class Analysed(Case):
         done = self.jostle("analyse", "tiny.h5", "spectrum", "--observable", "mean_height",
                            "--band", "0.3:0.1", expect=BAD_INPUT)
         self.assertIn("--band", done.stderr)
+
+    def series(self, column, point=0, file="tiny.h5"):
+        with h5py.File(self.folder / file) as stored:
+            return stored[f"/observables/point_{point:04}/{column}"][:]
+
+    def test_ageing_is_the_mean_squared_change_over_realizations(self):
+        self.write(TAPPED)
+        self.run_scene()
+        asked = ["tiny.h5", "ageing", "--observable", "mean_height", "--waiting-times", "40,0,10",
+                 "--lags", "1,5,100,150"]
+        table = self.analyse(*asked, "--threads", "1")["tables"][1]
+        self.assertEqual(table["axes"]["waiting_time"]["values"], [0, 10, 40])
+        z = self.series("mean_height", point=1)
+        for i, waiting_time in enumerate((0, 10, 40)):
+            for j, lag in enumerate((1, 5, 100, 150)):
+                found = table["quantities"]["a"]["values"][i][j]
+                if waiting_time + lag > 160:
+                    self.assertIsNone(found)
+                    continue
+                squares = (z[waiting_time + lag] - z[waiting_time]) ** 2
+                self.assertAlmostEqual(found / squares.mean(), 1, places=12)
+                error = table["quantities"]["a_error"]["values"][i][j]
+                self.assertAlmostEqual(error / (squares.std(ddof=1) / 3 ** 0.5), 1, places=9)
+        again = self.analyse(*asked, "--threads", "2")["tables"][1]
+        self.assertEqual(again, table)
+
+    def test_hysteresis_of_a_ramp_up_and_down(self):
+        ramp = {"sqrt_from": 0.1, "sqrt_to": 0.3, "sqrt_step": 0.1}
+        down = {**ramp, "sqrt_from": 0.2, "sqrt_to": 0.1}
+        scene = changed(TINY, protocol=[{"ramp": {"dilate": ramp}, "count": 8},
+                                        {"ramp": {"dilate": down}, "count": 8}])
+        del scene["sweep"]
+        self.write(scene)
+        self.run_scene()
+        table = self.analyse("tiny.h5", "hysteresis", "--observable", "bottom_fraction",
+                             "--last", "3")["tables"][0]
+        values = table["quantities"]
+        for found, wanted in zip(values["sqrt_epsilon"]["values"], (0.1, 0.2, 0.3, 0.2, 0.1)):
+            self.assertAlmostEqual(found, wanted, places=12)
+        phi = self.series("bottom_fraction")
+        steps = [phi[8 * k + 6:8 * k + 9].mean(axis=0) for k in range(5)]
+        for found, step in zip(values["bottom_fraction"]["values"], steps):
+            self.assertAlmostEqual(found / step.mean(), 1, places=12)
+        # Later less earlier branch, by trapezia over 0.1 to 0.3.
+        area = 0.1 * ((steps[4] - steps[0]) / 2 + (steps[3] - steps[1]))
+        self.assertAlmostEqual(values["area"]["values"][0], area.mean(), places=12)
+        self.assertAlmostEqual(values["area_error"]["values"][0] / (area.std(ddof=1) / 3 ** 0.5), 1,
+                               places=9)
+
+    def test_a_sweep_is_drawn_against_the_square_root_of_epsilon(self):
+        asked = {"steady": [{"observable": "mean_height"}],
+                 "sweep": [{"observable": "bottom_fraction", "last": 50},
+                           {"observable": "mean_height", "quantity": "steady/sigma"},
+                           {"observable": "bottom_fraction", "quantity": "inverse_log/X_inf"}]}
+        scene = changed(TAPPED, analyse=asked, streams="matched",
+                        sweep={"/protocol/0/tap/dilate": [0.09, 0.01, 0.04]},
+                        fits=[{"observable": "bottom_fraction", "model": "inverse_log"}])
+        self.write(scene)
+        self.run_scene()
+        with h5py.File(self.folder / "tiny.h5") as stored:
+            value = stored["analysis/sweep/bottom_fraction/value"]
+            self.assertEqual([round(x, 12) for x in value["sqrt_epsilon"][:]], [0.1, 0.2, 0.3])
+            means = [self.series("bottom_fraction", point)[-50:].mean() for point in (1, 2, 0)]
+            for found, mean in zip(value["bottom_fraction"][:], means):
+                self.assertAlmostEqual(found / mean, 1, places=12)
+            sigma = stored["analysis/sweep/mean_height/steady_sigma/sigma"][:]
+            for found, point in zip(sigma, (1, 2, 0)):
+                steady = stored[f"analysis/point_{point:04}/steady/mean_height/sigma"][()]
+                self.assertEqual(found, steady)
+            fitted = stored["analysis/sweep/bottom_fraction/inverse_log_X_inf/X_inf"][:]
+            fit = stored["fits/point_0001/bottom_fraction/inverse_log"]
+            names = [name.decode() for name in fit["parameter"][:]]
+            self.assertEqual(fitted[0], fit["value"][names.index("X_inf")])
+
+        # Over several files without a sweep of their own, the same curve.
+        for index, dilate in enumerate((0.01, 0.04, 0.09)):
+            single = changed(scene, name=f"single{index}", analyse={}, fits=[],
+                             protocol=[{"tap": {"dilate": dilate}, "count": 160}])
+            del single["sweep"]
+            self.write(single)
+            self.run_scene()
+        curve = self.analyse("single0.h5", "single1.h5", "single2.h5", "sweep", "--observable",
+                             "bottom_fraction", "--last", "50")["tables"][0]
+        self.assertEqual(curve["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2, 0.3])
+        self.assertTrue(0.4 < min(curve["quantities"]["bottom_fraction"]["values"]) < 0.7)
+        self.assertEqual(self.tables("single0.h5"), [])
+        refused = self.jostle("analyse", "single0.h5", "sweep", "--observable", "mean_height",
+                              "--quantity", "kww/tau", expect=BAD_INPUT).stdout
+        self.assertIn("make the analysis or the fit first", refused)
 
     def test_several_files_are_each_given_their_tables(self):
         for name in ("a", "b"):

@@ -9,7 +9,7 @@ namespace {
 std::vector<std::uint64_t> log_taps(LogarithmicTaps grid) {
   SnapshotChoice snapshots;
   snapshots.taps = std::move(grid);
-  return snapshot_taps(snapshots);
+  return chosen_taps(snapshots.taps);
 }
 
 }  // namespace

@@ -84,6 +84,11 @@ const std::vector<std::string> cross_field_messages{
     "the lowest frequency comes first",
     "but the protocol has",
     "that are analysed",
+    "and a lag follows",
+    "a lag is at least 1 tap",
+    "needs a sweep",
+    "is not swept (swept:",
+    "is not made by this scene",
 };
 
 bool is_beyond_schema(const Fault& fault) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "ensemble/table.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// Quantities against the swept value, sweep/<observable>/<quantity> with '_' for '/': over the
+/// points of all files together, each file with its own sweep or none. A strength of taps is drawn
+/// as its control parameter, eps^(1/2) for a dilation. Where other values are swept too, one table
+/// for every combination of them, numbered. Fits and analyses are taken from `made`, tables of the
+/// first file, else from what the files keep. What is not possible gives a table with the note
+/// "refused" alone. Throws BadInput for an observable that there is not, ResultsError.
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files,
+                                std::span<const Table> made,
+                                const std::vector<AnalysisRequest<SweepSettings>>& requests);
+
+}  // namespace jostle
