@@ -69,6 +69,10 @@ void print_size(const LoadedScene& loaded, const Study& study) {
   for (const auto& point : study.points) {
     if (!point.label.empty()) fmt::print("  {}\n", point.label);
   }
+  if (!loaded.scene.until.targets.empty()) {
+    fmt::print("  at first: realizations are added until they are enough, at most {}\n",
+               loaded.scene.until.at_most);
+  }
   fmt::print("  disk: at most {}, parts and results together\n",
              format_bytes(static_cast<double>(disk_estimate(study, Shard{}))));
 }

@@ -13,6 +13,7 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
+#include "cli/enough_run.hpp"
 #include "cli/fit_run.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
@@ -24,6 +25,7 @@
 #include "results/error.hpp"
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
+#include "results/tables.hpp"
 
 namespace jostle {
 namespace {
@@ -118,6 +120,8 @@ OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int
   const Provenance provenance = provenance_of_this_run(fmt::to_string(threads));
   if (exists && (arguments.resume || arguments.retry_failed)) {
     require_same_scene(run.output, loaded, arguments.shard);
+    run.study.realizations =
+        std::max(run.study.realizations, ResultsFile(run.output).study().realizations);
     run.store =
         RunStore::resume(run.output, run.study, arguments.shard, provenance, arguments.force);
     run.taps_recorded = recorded_taps(run.output, run.store->pending(arguments.retry_failed));
@@ -174,36 +178,75 @@ int exit_code_of(const ResultsFile& file) {
   return exit_ok;
 }
 
-/// Runs what is pending and folds it into the file. Returns whether it was stopped before the end.
-bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run,
-             int threads) {
-  const auto pending = run.store->pending(arguments.retry_failed);
-  const auto began = std::chrono::steady_clock::now();
-  const StopRequest stop(arguments.time_limit);
+/// What a process does from opening its file to its last realization.
+struct Work {
+  explicit Work(const RunArguments& arguments) : stop(arguments.time_limit) {}
+
+  StopRequest stop;
   Progress progress;
+  int rounds = 0;
+  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
+};
+
+/// Runs what is pending and folds it into the file. Returns whether it was stopped before the end.
+bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run, int threads,
+             Work& work) {
+  // Those that failed are tried once, before others are added.
+  const bool retry_failed = arguments.retry_failed && work.rounds++ == 0;
+  const auto pending = run.store->pending(retry_failed);
   RunSummary summary;
   spdlog::info("{}: {} realizations of {} to do on {} threads", run.output, pending.size(),
-               loaded.plans.size() * loaded.scene.realizations, threads);
+               loaded.plans.size() * run.study.realizations, threads);
   {
-    const ProgressDisplay display(progress, work_ahead(run, pending), progress_style(arguments));
-    summary = run_ensemble(
-        loaded.plans, pending,
-        {.threads = threads, .checkpoint_every = arguments.checkpoint_every, .stop = &stop.flag()},
-        *run.store, progress);
+    WorkAhead ahead = work_ahead(run, pending);
+    ahead.realizations += work.progress.realizations_done;
+    ahead.taps += work.progress.taps_done;
+    const ProgressDisplay display(work.progress, ahead, progress_style(arguments));
+    summary = run_ensemble(loaded.plans, pending,
+                           {.threads = threads,
+                            .checkpoint_every = arguments.checkpoint_every,
+                            .stop = &work.stop.flag()},
+                           *run.store, work.progress);
   }
   run.store->finish();
-  if (!arguments.quiet) {
-    const std::string text =
-        report(ResultsFile(run.output)) +
-        process_line(progress, std::chrono::steady_clock::now() - began, threads);
-    std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
+  return summary.done + summary.failed < pending.size();
+}
+
+/// Runs realizations, and more of them until the scene says that they are enough. Returns whether
+/// it was stopped before the end.
+bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run,
+                    int threads, Work& work) {
+  const Enough& until = loaded.scene.until;
+  while (!compute(arguments, loaded, run, threads, work)) {
+    if (until.targets.empty()) return false;
+    const EnoughStatus status = enough_status(ResultsFile(run.output), until);
+    if (!arguments.quiet) std::fputs(enough_line(status).c_str(), stdout);
+    if (status.next == status.realizations) return false;
+    run.study.realizations = status.next;
+    run.taps_recorded = 0;
+    run.store->extend(status.next);
   }
-  const bool stopped = summary.done + summary.failed < pending.size();
-  if (stopped) {
-    print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
-                                        resume_command(arguments)));
+  return true;
+}
+
+void print_results(const OpenedRun& run, const Work& work, int threads) {
+  const std::string text =
+      report(ResultsFile(run.output)) +
+      process_line(work.progress, std::chrono::steady_clock::now() - work.began, threads);
+  std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
+}
+
+/// What a complete run ends with.
+void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
+                 const std::string& output, int threads) {
+  if (arguments.shard.count > 1) return;
+  if (!loaded.scene.until.targets.empty()) {
+    const Table table = enough_status(ResultsFile(output), loaded.scene.until).table;
+    store_tables(output, "analysis", std::span(&table, 1),
+                 provenance_of_this_run(fmt::to_string(threads)));
   }
-  return stopped;
+  make_scene_fits(output, threads, arguments.quiet);
+  make_scene_analyses(output, threads, arguments.quiet);
 }
 
 int run(const RunArguments& arguments) {
@@ -212,15 +255,25 @@ int run(const RunArguments& arguments) {
     spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
   }
   const LoadedScene loaded = load_scene(arguments.scene);
+  if (!loaded.scene.until.targets.empty() && arguments.shard.count > 1) {
+    throw BadInput(
+        "--shard: this scene runs until its realizations are enough (\"until\"), which a share of "
+        "them cannot tell. Run it whole, or take \"until\" out, run shares, merge them and resume "
+        "the merged file with \"until\".");
+  }
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   OpenedRun run = open_run(arguments, loaded, threads);
   try {
-    if (compute(arguments, loaded, run, threads)) return exit_stopped;
-    run.store.reset();  // gives the lock back
-    if (arguments.shard.count == 1) {
-      make_scene_fits(run.output, threads, arguments.quiet);
-      make_scene_analyses(run.output, threads, arguments.quiet);
+    Work work(arguments);
+    const bool stopped = compute_enough(arguments, loaded, run, threads, work);
+    if (!arguments.quiet) print_results(run, work, threads);
+    if (stopped) {
+      print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n",
+                                          work.stop.reason(), resume_command(arguments)));
+      return exit_stopped;
     }
+    run.store.reset();  // gives the lock back
+    make_tables(arguments, loaded, run.output, threads);
   } catch (const ResultsError& error) {
     print_to_standard_error(
         fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "

@@ -195,6 +195,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check.observables_have_names();
   check.snapshots_are_reached();
   check.fits_have_curves();
+  check_until(scene, faults);
   check_analyses(scene, faults);
 }
 

@@ -26,6 +26,7 @@ TapChoice read_taps(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
+Enough read_until(const Reader& in);
 Analyses read_analyses(const Reader& in);
 
 Json written(const Container& container);
@@ -38,6 +39,7 @@ Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
 Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
+Json written(const Enough& enough);
 Json written(const Analyses& analyses);
 
 /// A number as a person writes it: 16, not 16.0.
@@ -56,6 +58,8 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the number of realizations.
+void check_until(const Scene& scene, std::vector<Fault>& faults);
 /// Notes analyses over the points of a sweep that does not have what they need.
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults);
 

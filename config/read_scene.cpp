@@ -91,7 +91,7 @@ Scene read_scene(const Reader& in) {
   scene.observables = default_observables();
   if (!in.is_object_of({"$schema", "name", "description", "seed", "realizations", "streams",
                         "container", "spheres", "start", "protocol", "relax", "observe",
-                        "snapshots", "sweep", "fits", "analyse"})) {
+                        "snapshots", "sweep", "until", "fits", "analyse"})) {
     return scene;
   }
   read_identity(in, scene);
@@ -99,6 +99,7 @@ Scene read_scene(const Reader& in) {
   if (const auto observe = in.find("observe")) scene.observables = read_observables(*observe);
   if (const auto snapshots = in.find("snapshots")) scene.snapshots = read_snapshots(*snapshots);
   if (const auto sweep = in.find("sweep")) scene.sweep = read_sweep(*sweep);
+  if (const auto until = in.find("until")) scene.until = read_until(*until);
   if (const auto fits = in.find("fits")) scene.fits = read_fits(*fits);
   if (const auto analyse = in.find("analyse")) scene.analyse = read_analyses(*analyse);
   return scene;

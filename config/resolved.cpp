@@ -27,6 +27,7 @@ Json resolved(const Scene& scene) {
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);
   out["sweep"] = written(scene.sweep);
+  if (!scene.until.targets.empty()) out["until"] = written(scene.until);
   out["fits"] = written(scene.fits);
   out["analyse"] = written(scene.analyse);
   return out;

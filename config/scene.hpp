@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ensemble/analyses.hpp"
+#include "ensemble/enough.hpp"
 #include "ensemble/plan.hpp"
 
 // A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
@@ -120,7 +121,7 @@ struct Analyses {
 struct Scene {
   std::string name = "scene", description;
   std::uint64_t seed = 0;
-  std::uint32_t realizations = 1;  // of every sweep point
+  std::uint32_t realizations = 1;  // of every sweep point, at first if there is `until`
   Streams streams = Streams::independent;
 
   Container container;
@@ -134,6 +135,7 @@ struct Scene {
   std::vector<Observable> observables;
   SnapshotChoice snapshots;
   std::vector<SweepAxis> sweep;
+  Enough until;
   std::vector<FitRequest> fits;
   Analyses analyse;
   bool operator==(const Scene&) const = default;
@@ -168,7 +170,7 @@ std::string_view scene_schema();
 
 /// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, other fits and analyses, and another name or description.
+/// those, more realizations, other limits of `until`, fits and analyses, and another name or description.
 std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
                                  const nlohmann::ordered_json& new_resolved);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <cassert>
 #include <map>
 #include <mutex>
 
@@ -194,6 +195,16 @@ std::vector<RealizationId> RunStore::pending(bool retry_failed) const {
     return last.status == RealizationStatus::done && last.rows > impl.study.points[id.point].taps;
   });
   return ids;
+}
+
+void RunStore::extend(std::uint32_t realizations) {
+  assert(realizations >= impl_->study.realizations);
+  const std::lock_guard guard(impl_->mutex);
+  impl_->study.realizations = realizations;
+  const std::uint64_t needed = disk_estimate(impl_->study, impl_->shard),
+                      have = file_bytes(impl_->path);
+  if (needed > have) require_free_space(impl_->path, needed - have);
+  impl_->fold();
 }
 
 std::optional<RealizationState> RunStore::begin(RealizationId id) {

@@ -35,6 +35,9 @@ class RunStore : public Sink {
   /// begin anew.
   std::vector<RealizationId> pending(bool retry_failed = false) const;
 
+  /// Makes room for more realizations of every point: `realizations` in all. After finish().
+  void extend(std::uint32_t realizations);
+
   std::optional<RealizationState> begin(RealizationId id) override;
   void append(RealizationId id, const TapRow& row) override;
   void snapshot(RealizationId id, const SnapshotRecord& record) override;

@@ -87,6 +87,7 @@ const std::vector<std::string> cross_field_messages{
     "and a lag follows",
     "a lag is at least 1 tap",
     "needs a sweep",
+    "realizations to begin with",
     "is not swept (swept:",
     "is not made by this scene",
 };

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ensemble/enough.hpp"
+#include "ensemble/table.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// How far a file is from what a scene calls enough realizations.
+struct EnoughStatus {
+  std::uint32_t realizations = 0, next = 0;  // `next` is the same where no more are to be made
+  bool met = false;
+  /// One row a sweep point and target: the largest spread over its taps. /analysis/enough.
+  Table table;
+};
+
+/// `until` has targets, all of observables in the file. Throws ResultsError.
+EnoughStatus enough_status(const ResultsFile& file, const Enough& until);
+
+/// One line for people: whether it is enough, and the target that is farthest from being met.
+std::string enough_line(const EnoughStatus& status);
+
+}  // namespace jostle
