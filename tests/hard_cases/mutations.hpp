@@ -1,0 +1,128 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/random.hpp"
+
+// Damage as it happens to files: to their bytes, and to the structure of JSON. The same random
+// stream does the same damage on every machine.
+namespace jostle {
+
+inline RandomStream mutation_stream(std::uint64_t seed) {
+  return RandomStream(stream_key(seed, 2, 0, Purpose::resampling));
+}
+
+/// One to four changes of bytes: a bit flipped, a piece lost, doubled or overwritten, the end lost.
+inline std::string mutated_bytes(std::string text, RandomStream& random) {
+  const auto piece = [&](std::size_t most) {
+    return random.below(std::min(most, text.size()) + 1);
+  };
+  for (std::uint64_t change = 0, n = 1 + random.below(4); change < n && !text.empty(); ++change) {
+    const std::uint64_t at = random.below(text.size());
+    switch (random.below(6)) {
+      case 0:
+        text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
+        break;
+      case 1:
+        text.erase(at, piece(40));
+        break;
+      case 2:
+        text.insert(random.below(text.size()), text.substr(at, piece(40)));
+        break;
+      case 3:
+        text.insert(at, 1, static_cast<char>(random.below(256)));
+        break;
+      case 4:
+        text.replace(at, 1, 1 + piece(30), static_cast<char>(text[random.below(text.size())]));
+        break;
+      default:
+        if (random.below(4) == 0) text.resize(at);
+    }
+  }
+  return text;
+}
+
+/// Values that a parser meets where it expects others.
+inline nlohmann::ordered_json surprising_value(RandomStream& random) {
+  static const char* const texts[] = {"null",
+                                      "true",
+                                      "0",
+                                      "-1",
+                                      "1",
+                                      "2",
+                                      "0.5",
+                                      "1e308",
+                                      "-1e308",
+                                      "5e-324",
+                                      "1e-9",
+                                      "0.1",
+                                      "4294967295",
+                                      "4294967296",
+                                      "9223372036854775807",
+                                      "18446744073709551615",
+                                      "\"\"",
+                                      "\"\\u0000\"",
+                                      "\"infinity\"",
+                                      "\"all\"",
+                                      "[]",
+                                      "{}",
+                                      "[[]]",
+                                      "[0, 1]",
+                                      "[1, 0]",
+                                      "{\"\": {}}",
+                                      "{\"from\": 1, \"to\": 1e6, \"per_decade\": 10}",
+                                      "{\"file\": \"a.h5\"}"};
+  return nlohmann::ordered_json::parse(texts[random.below(std::size(texts))]);
+}
+
+/// Every value within `value`, itself included.
+inline void collect(nlohmann::ordered_json& value, std::vector<nlohmann::ordered_json*>& all) {
+  all.push_back(&value);
+  if (!value.is_structured()) return;
+  for (auto& member : value) collect(member, all);
+}
+
+/// One to three changes of structure: a value replaced by a surprising one or by another of the
+/// scene, made larger or smaller, removed, doubled, or given another key.
+inline nlohmann::ordered_json mutated_structure(nlohmann::ordered_json scene,
+                                                RandomStream& random) {
+  using Json = nlohmann::ordered_json;
+  static constexpr std::array factors = {-1.0, 0.0, 0.5, 2.0, 1e-3, 1e3, 1e12};
+  for (std::uint64_t change = 0, n = 1 + random.below(3); change < n; ++change) {
+    std::vector<Json*> all;
+    collect(scene, all);
+    Json& value = *all[random.below(all.size())];
+    const Json other = *all[random.below(all.size())];
+    switch (random.below(6)) {
+      case 0:
+        value = surprising_value(random);
+        break;
+      case 1:
+        value = other;
+        break;
+      case 2:
+      case 3:
+        if (value.is_number()) {
+          value = value.get<double>() * factors[random.below(factors.size())];
+        }
+        break;
+      case 4:
+        if (value.is_structured() && !value.empty()) {
+          auto place = value.begin();
+          std::advance(place, random.below(value.size()));
+          value.erase(place);
+        }
+        break;
+      default:
+        if (value.is_array()) value.push_back(other);
+        if (value.is_object()) value[random.below(2) ? "tap" : "no_such_key"] = other;
+    }
+  }
+  return scene;
+}
+
+}  // namespace jostle
