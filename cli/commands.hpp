@@ -14,6 +14,7 @@ void add_schema(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
 void add_merge(CLI::App& app, int& code);
 void add_bench(CLI::App& app, int& code);
+void add_selftest(CLI::App& app, int& code);
 void add_fit(CLI::App& app, int& code);
 void add_analyse(CLI::App& app, int& code);
 

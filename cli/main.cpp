@@ -39,6 +39,7 @@ int parse_and_run(int argc, char** argv) {
   add_info(app, code);
   add_merge(app, code);
   add_bench(app, code);
+  add_selftest(app, code);
   add_fit(app, code);
   add_analyse(app, code);
   try {

@@ -10,7 +10,8 @@ from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY
 
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
-        for command in ("run", "check", "schema", "info", "merge", "fit", "bench"):
+        for command in ("run", "check", "schema", "info", "merge", "fit", "bench",
+                        "selftest"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
                 self.assertIn("Example", text)
@@ -45,6 +46,19 @@ class Bench(Case):
         self.assertTrue(0.25 < case["acceptance"] < 0.4)
         lines = self.jostle("bench", "fluid_0.45").stdout.splitlines()
         self.assertRegex(lines[-1], r"^fluid_0\.45 +4096 spheres .* million trials/s")
+
+
+class SelfTest(Case):
+    def test_every_check_passes_here_and_leaves_nothing(self):
+        lines = self.jostle("selftest", "--folder", ".").stdout.splitlines()
+        self.assertGreaterEqual(len(lines), 5)
+        for line in lines:
+            self.assertRegex(line, r"^ok      [a-z, 0-9]+: ")
+        self.assertEqual(self.files(), [])
+
+    def test_a_folder_that_cannot_be_written_is_named(self):
+        result = self.jostle("selftest", "--folder", "missing", expect=BAD_INPUT)
+        self.assertIn("missing: cannot make a folder there (No such file", result.stderr)
 
 
 class Scenes(Case):

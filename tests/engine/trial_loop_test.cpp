@@ -2,12 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <memory>
 
-#include "engine/elementary.hpp"
-#include "engine/geometry.hpp"
-#include "engine/proposals.hpp"
-#include "engine/theta_table.hpp"
+#include "engine/plain_loop.hpp"
 #include "sample_packings.hpp"
 
 using namespace jostle;
@@ -16,65 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const StreamKey key = stream_key(2026, 0, 0, Purpose::trials);
-
-// One trial at a time against all spheres: no lists, no cells. It shares the proposals with the
-// trial loop and nothing else.
-class PlainLoop {
- public:
-  PlainLoop(Packing packing, const Move& move) : packing_(std::move(packing)), move_(move) {
-    if (const auto* polar = std::get_if<PolarMove>(&move_)) table_ = make_theta_table(*polar);
-    step_ = std::visit([](const auto& m) { return m.max_step; }, move_);
-  }
-
-  void trial(std::uint64_t number) {
-    const auto n = static_cast<std::uint32_t>(packing_.centres.size());
-    const std::uint64_t first = number - number % ProposalBatch::size;
-    const BatchOrigin origin{static_cast<std::uint64_t>(key), first, n};
-    const auto t = number - first;
-    if (t == 0 || !started_) {
-      if (std::holds_alternative<PolarMove>(move_)) {
-        baseline::proposal_kernels().polar(origin, table_.data(), step_, *batch_);
-      } else {
-        baseline::proposal_kernels().metropolis(origin, *batch_);
-      }
-      started_ = true;
-    }
-    Vec3 step{batch_->dx[t], batch_->dy[t], batch_->dz[t]};
-    if (!std::holds_alternative<PolarMove>(move_)) step = step_ * step;
-    accepted += passes(number, batch_->sphere[t], step);
-  }
-
-  const Packing& packing() const { return packing_; }
-  std::uint64_t accepted = 0;
-
- private:
-  bool passes(std::uint64_t number, std::uint32_t i, Vec3 step) {
-    return std::visit(
-        [&](const auto& box) {
-          const Vec3 target = wrapped(box, packing_.centres[i] + step);
-          if (!clear_of_boundaries(box, target)) return false;
-          for (std::size_t j = 0; j < packing_.centres.size(); ++j) {
-            if (j != i && overlaps(box, target, packing_.centres[j])) return false;
-          }
-          const auto* metropolis = std::get_if<MetropolisMove>(&move_);
-          if (metropolis && has_gravity(packing_.container) && step.z > 0) {
-            if (metropolis->beta == infinity) return false;
-            const double u = (philox_block(key, number, 1)[0] + 0.5) * 0x1p-32;
-            if (!(u < exponential(-(metropolis->beta * step.z)))) return false;
-          }
-          packing_.centres[i] = target;
-          return true;
-        },
-        packing_.container);
-  }
-
-  Packing packing_;
-  Move move_;
-  double step_;
-  std::vector<double> table_;
-  std::unique_ptr<ProposalBatch> batch_ = std::make_unique<ProposalBatch>();
-  bool started_ = false;
-};
 
 std::vector<Move> moves() {
   return {PolarMove{},
@@ -85,26 +22,23 @@ std::vector<Move> moves() {
           MetropolisMove{2.0, 0.0}};
 }
 
-}  // namespace
-
-namespace {
-
 // The trials cut into pieces; returns how many were compared.
 std::uint64_t compare_with_plain_loop(const Packing& start, const Move& move,
                                       const std::vector<std::uint64_t>& pieces) {
-  PlainLoop plain(start, move);
+  PlainLoop plain(start, move, key);
   const auto loop = make_trial_loop(start.container, move, key);
   loop->load(start);
   Packing fast = start;
   std::uint64_t done = 0;
   for (const std::uint64_t piece : pieces) {
     loop->run(piece);
-    for (std::uint64_t k = 0; k < piece; ++k) plain.trial(done++);
+    plain.run(piece);
+    done += piece;
     loop->store(fast);
     REQUIRE(fast.centres == plain.packing().centres);
   }
-  CHECK(plain.accepted > 100);
-  CHECK(loop->tally().accepted == plain.accepted);
+  CHECK(plain.accepted() > 100);
+  CHECK(loop->tally().accepted == plain.accepted());
   CHECK(loop->tally().trials == done);
   CHECK(loop->state().next_trial == done);
   CHECK(deepest_overlap_brute_force(fast).depth == 0);

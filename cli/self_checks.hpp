@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace jostle {
+
+/// Something that must hold on every machine does not; what() says what and why.
+class SelfCheckFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct SelfCheck {
+  std::string name;
+  std::function<std::string()> run;  // what was checked, in numbers; any exception is a failure
+  std::string remedy;                // what to do where it fails
+};
+
+/// Fixed hard cases of the engine, the fits and the results files, of seconds. `folder` exists and
+/// is empty: files are written there.
+std::vector<SelfCheck> self_checks(const std::string& folder);
+
+}  // namespace jostle
