@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "cli/observable_series.hpp"
 #include "cli/scene_file.hpp"
 #include "ensemble/moments.hpp"
 #include "results/results_file.hpp"
@@ -36,35 +37,20 @@ bool has_value(const StudyPoint& point, const std::string& wanted) {
                      [&](const auto& value) { return value.first + "=" + value.second == wanted; });
 }
 
-// The number of rows that every realization with any value has.
-std::uint64_t common_rows(const Series& series, const std::vector<std::uint32_t>& used) {
-  for (std::uint64_t tap = 0; tap < series.n_taps; ++tap) {
-    for (const std::uint32_t r : used) {
-      if (!std::isfinite(series.at(tap, r))) return tap;
-    }
-  }
-  return series.n_taps;
-}
-
-RealizationCurves collect(const ResultsFile& file, std::uint32_t point, const Series& series,
-                          const FitRange& range) {
-  std::vector<std::uint32_t> used;
-  for (const RealizationSummary& summary : file.realizations()) {
-    const bool usable =
-        summary.status == RealizationStatus::done || summary.status == RealizationStatus::running;
-    if (summary.id.point == point && usable && summary.rows > 0) {
-      used.push_back(summary.id.realization);
-    }
-  }
+// Taps of the range that all realizations have reached, up to the first without a finite value.
+RealizationCurves collect(const ObservableSeries& series, const FitRange& range) {
   RealizationCurves curves;
-  curves.realizations = static_cast<std::uint32_t>(used.size());
-  const std::uint64_t rows = used.empty() ? 0 : common_rows(series, used);
-  for (std::uint64_t tap = 0; tap < rows; ++tap) {
-    const auto t = static_cast<double>(tap);
-    if (t < range.first || t > range.last) continue;
-    curves.t.push_back(t);
-    for (const std::uint32_t r : used) curves.values.push_back(series.at(tap, r));
-  }
+  curves.realizations = series.n_realizations();
+  const double rows = static_cast<double>(series.n_rows());
+  const auto first = static_cast<std::uint64_t>(std::clamp(std::ceil(range.first), 0.0, rows));
+  const auto end = static_cast<std::uint64_t>(std::clamp(std::floor(range.last) + 1, 0.0, rows));
+  if (first >= end) return curves;
+  curves.values = series.values({first, end});
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const auto broken = std::ranges::find_if_not(curves.values, finite) - curves.values.begin();
+  const std::uint64_t taps = static_cast<std::uint64_t>(broken) / curves.realizations;
+  curves.values.resize(taps * curves.realizations);
+  for (std::uint64_t i = 0; i < taps; ++i) curves.t.push_back(static_cast<double>(first + i));
   return curves;
 }
 
@@ -84,23 +70,14 @@ std::vector<double> standard_errors(const RealizationCurves& curves) {
 
 FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::string& observable,
                       const FitRange& range) {
-  const std::vector<Series> all = file.series(point);
-  const auto series = std::find_if(all.begin(), all.end(), [&](const Series& column) {
-    return column.label.name == observable;
-  });
-  if (series == all.end()) {
-    std::string names;
-    for (const Series& column : all) names += (names.empty() ? "" : ", ") + column.label.name;
-    throw BadInput(
-        fmt::format("--observable {}: there is none; {} has {}", observable, file.path(), names));
-  }
+  const ObservableSeries series(file, point, observable);
   FitSource source;
   source.point = point;
   source.observable = observable;
   source.label = file.study().points[point].label;
   source.title = fmt::format("{} {}sweep point {}", observable,
                              source.label.empty() ? "" : source.label + ", ", point);
-  RealizationCurves curves = collect(file, point, *series, range);
+  RealizationCurves curves = collect(series, range);
   if (curves.realizations == 0 || curves.t.empty()) return source;
   curves.sigma = standard_errors(curves);
   source.title += fmt::format(", {} realizations", curves.realizations);

@@ -76,15 +76,29 @@ std::vector<double> ObservableSeries::means(const TapRange& taps) const {
   return means;
 }
 
-std::vector<double> ObservableSeries::rows(std::span<const std::uint64_t> taps) const {
+std::vector<double> ObservableSeries::values(const TapRange& taps) const {
+  const std::uint32_t width = file_.study().realizations;
+  const std::uint64_t at_once = std::max<std::uint64_t>(1, piece_values / width);
   std::vector<double> values;
-  values.reserve(taps.size() * used_.size());
-  for (const std::uint64_t tap : taps) {
-    const std::vector<double> row =
-        file_.block(point_, label_.name, {tap, tap + 1}, {0, file_.study().realizations});
-    for (const std::uint32_t r : used_) values.push_back(row[r]);
+  values.reserve((taps.end - taps.first) * used_.size());
+  for (std::uint64_t first = taps.first; first < taps.end; first += at_once) {
+    const TapRange piece{first, std::min(first + at_once, taps.end)};
+    const std::vector<double> block = file_.block(point_, label_.name, piece, {0, width});
+    for (std::uint64_t row = 0; row < piece.end - piece.first; ++row) {
+      for (const std::uint32_t r : used_) values.push_back(block[row * width + r]);
+    }
   }
   return values;
+}
+
+std::vector<double> ObservableSeries::rows(std::span<const std::uint64_t> taps) const {
+  std::vector<double> rows;
+  rows.reserve(taps.size() * used_.size());
+  for (const std::uint64_t tap : taps) {
+    const std::vector<double> row = values({tap, tap + 1});
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
 }
 
 }  // namespace jostle

@@ -32,6 +32,8 @@ class ObservableSeries {
   /// Mean of each realization over these taps, [n_realizations]; NaN where they are beyond the last
   /// that all have reached. Throws BadInput as for_each().
   std::vector<double> means(const TapRange& taps) const;
+  /// All values at these taps, [n_taps, n_realizations].
+  std::vector<double> values(const TapRange& taps) const;
   /// Values at chosen taps, each below n_rows(): [n_taps, n_realizations].
   std::vector<double> rows(std::span<const std::uint64_t> taps) const;
 

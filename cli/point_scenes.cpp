@@ -1,5 +1,6 @@
 #include "cli/point_scenes.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "cli/scene_file.hpp"
@@ -10,7 +11,18 @@ PointScenes::PointScenes(const ResultsFile& file) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);
   if (!parsed.scene) throw BadInput(file.path() + ": its scene is not one that this version reads");
   resolved_ = resolved(*parsed.scene);
-  points_ = sweep_points(parsed.scene->sweep);
+  axes_ = parsed.scene->sweep;
+  points_ = sweep_points(axes_);
+}
+
+bool PointScenes::vary_together(const std::string& a, const std::string& b) const {
+  return std::ranges::any_of(axes_, [&](const SweepAxis& axis) {
+    const auto holds = [&](const std::string& pointer) {
+      return std::ranges::any_of(axis.columns,
+                                 [&](const auto& column) { return column.first == pointer; });
+    };
+    return holds(a) && holds(b);
+  });
 }
 
 Scene PointScenes::at(std::uint32_t point) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "config/sweep.hpp"
@@ -16,9 +17,12 @@ class PointScenes {
 
   /// Without a sweep.
   Scene at(std::uint32_t point) const;
+  /// Whether two pointers are swept together, zipped: where one is known, so is the other.
+  bool vary_together(const std::string& a, const std::string& b) const;
 
  private:
   Json resolved_;
+  std::vector<SweepAxis> axes_;
   std::vector<SweepPoint> points_;
 };
 

@@ -26,7 +26,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 struct Member {
   double x = not_a_number;
   SweptValue swept;
-  std::string others;                // values of the sweep that are not x, for people
+  std::string others;                // values of the sweep that do not vary with x
   std::vector<double> realizations;  // of the value, by number; empty for other quantities
   double y = not_a_number, y_error = not_a_number;
   ObservableLabel label;
@@ -41,12 +41,14 @@ std::optional<std::size_t> tap_line(const std::string& pointer) {
   return std::stoul(match[1]);
 }
 
-void set_x(Member& member, const StudyPoint& swept, const Scene& scene, std::string against) {
+/// What is swept, and the values of the sweep that do not vary with it.
+void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, const Scene& scene,
+           std::string against) {
   if (against.empty()) {
     against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
   }
   for (const auto& [pointer, value] : swept.sweep_values) {
-    if (pointer == against) continue;
+    if (pointer == against || scenes.vary_together(pointer, against)) continue;
     member.others.append(member.others.empty() ? "" : ", ")
         .append(pointer)
         .append(" = ")
@@ -188,7 +190,7 @@ std::vector<Member> members_of(std::span<const ResultsFile* const> files,
       member.label = series.label();
       const StudyPoint& studied = file->study().points[point];
       const Scene scene = scenes.at(point);
-      set_x(member, studied, scene, settings.against);
+      set_x(member, studied, scenes, scene, settings.against);
       if (settings.quantity == "value") {
         set_value(member, series, settings.last, file->study().realizations);
       } else {

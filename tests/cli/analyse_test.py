@@ -161,6 +161,20 @@ class Analysed(Case):
             names = [name.decode() for name in fit["parameter"][:]]
             self.assertEqual(fitted[0], fit["value"][names.index("X_inf")])
 
+        # What is zipped with the swept value is no sweep of its own, what is crossed is.
+        crossed = changed(scene, name="crossed", analyse={}, fits=[], realizations=2, sweep={
+            "zip": {"/protocol/0/tap/dilate": [0.01, 0.04], "/protocol/0/count": [20, 24]},
+            "/spheres": [48, 40]})
+        self.write(crossed)
+        self.run_scene()
+        tables = self.analyse("crossed.h5", "sweep", "--observable", "bottom_fraction",
+                              "--against", "/protocol/0/tap/dilate")["tables"]
+        self.assertEqual([table["notes"]["at"] for table in tables],
+                         ["/spheres = 48", "/spheres = 40"])
+        self.assertEqual(tables[0]["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2])
+        self.assertEqual(self.tables("crossed.h5"), ["analysis/sweep/bottom_fraction/value_0000",
+                                                     "analysis/sweep/bottom_fraction/value_0001"])
+
         # Over several files without a sweep of their own, the same curve.
         for index, dilate in enumerate((0.01, 0.04, 0.09)):
             single = changed(scene, name=f"single{index}", analyse={}, fits=[],
