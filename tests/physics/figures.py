@@ -39,13 +39,23 @@ class Run:
         """The swept number of each point."""
         return [float(re.search(r"([0-9.e-]+)}?$", label).group(1)) for label in self.labels]
 
-    def fit(self, observable, model, point):
-        """A fit of `jostle fit`, or nothing."""
-        done = subprocess.run([self.jostle, "fit", self.path, "--observable", observable, "--model",
-                               model, "--sweep-point", str(point), "--json"],
-                              capture_output=True, text=True)
-        fits = json.loads(done.stdout)["curves"][0]["fits"] if done.stdout else []
-        return fits[0] if fits and "parameters" in fits[0] else None
+    def table(self, name):
+        """An analysis that the scene asks for."""
+        return self.file["analysis/" + name]
+
+    def parameters(self, observable, law, point, names):
+        """What the data say of the parameters of a law that the scene fits."""
+        fit = self.file[f"fits/point_{point:04}/{observable}/{law}"]
+        if "statement" not in fit:
+            return ["no fit"] * len(names)
+        statements = dict(zip((name.decode() for name in fit["parameter"][:]),
+                              (text.decode() for text in fit["statement"][:])))
+        return [re.sub(r"^\S+ (is|was) ", "", statements[name]) for name in names]
+
+
+def of(found, name, digits=4):
+    """A single value of an analysis with its error."""
+    return quoted(found[name][()], found[name + "_error"][()], digits)
 
 
 def mean_and_error(values):
@@ -74,71 +84,97 @@ def last_taps(curve, n):
 def compaction(run):
     rows = []
     for point, (value, curve) in enumerate(zip(run.values(), run.curves("bottom_fraction"))):
-        fit = run.fit("bottom_fraction", "inverse_log", point)
-        found = fit["parameters"] if fit else {}
-        rows.append([f"{value:g}"] + [at(curve, tap) for tap in (0, 10, 100, 500)] +
-                    [found[name]["statement"] if fit else "no fit" for name in ("X_inf", "tau")])
-    return table(["eps", "Phi_b, tap 0", "10", "100", "500", "X_inf of the inverse log", "its tau"],
+        rows.append([f"{value:g}"] + [at(curve, tap) for tap in (0, 10, 100, 1000)] +
+                    run.parameters("bottom_fraction", "inverse_log", point, ("X_inf", "tau")))
+    return table(["eps", "Phi_b, tap 0", "10", "100", "1000", "X_inf of the inverse log", "its tau"],
                  rows)
 
 
 def fluctuations(run):
-    n, rows, points = 500, [], []
-    for value, curve in zip(run.values(), run.curves("mean_height")):
-        sigma = mean_and_error(curve[-n:].std(axis=0))
-        drift = mean_and_error(curve[-n // 2:].mean(axis=0) - curve[-n:-n // 2].mean(axis=0))
-        points.append((np.sqrt(value), sigma[0]))
-        rows.append([f"{np.sqrt(value):.3f}", quoted(*sigma), quoted(*drift)])
-    slope, offset = np.polyfit(*zip(*points), 1)
-    return (table(["eps^(1/2)", f"sigma_Z over the last {n} taps",
-                   "drift of <Z> between its halves"], rows) +
-            f"\n\nStraight line through sigma_Z: {slope:.3f} eps^(1/2) {offset:+.4f}.")
+    rows = []
+    for point, value in enumerate(run.values()):
+        steady, spectrum = (run.table(f"point_{point:04}/{kind}/mean_height")
+                            for kind in ("steady", "spectrum"))
+        rows.append([f"{np.sqrt(value):.3f}", of(steady, "sigma"),
+                     of(steady, "autocorrelation_time", 1), of(spectrum, "slope", 2),
+                     steady.attrs["note_verdict"]])
+    line = run.table("sweep/mean_height/steady_sigma")
+    return (table(["eps^(1/2)", "sigma_Z", "autocorrelation time, taps", "slope of the spectrum",
+                   "steady state"], rows) +
+            f"\n\nStraight line through sigma_Z: slope {of(line, 'line_slope')}, at eps = 0 "
+            f"{of(line, 'line_intercept')}; reduced chi2 {line['line_reduced_chi2'][()]:.1f}.")
+
+
+def maximum(curve, symbol, text):
+    return (f"\n\nMaximum: {curve.attrs['note_maximum']}; at {symbol} = "
+            f"{of(curve, 'maximum_at', 3)}, {text} = {of(curve, 'maximum')}.")
 
 
 def bell(run):
-    n, rows = 100, []
+    rows = []
     for value, curve in zip(run.values(), run.curves("corrected_fraction")):
-        earlier = mean_and_error(curve[-2 * n:-n].mean(axis=0))
-        rows.append([f"{np.sqrt(value):.3f}", at(curve, 1), quoted(*earlier),
-                     quoted(*last_taps(curve, n))])
-    return table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps 201 to 300", "301 to 400"], rows)
+        means = [quoted(*mean_and_error(curve[last - 99:last + 1].mean(axis=0)))
+                 for last in (400, 700, 1000)]
+        rows.append([f"{np.sqrt(value):.3f}", at(curve, 1)] + means)
+    return (table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps 301 to 400", "601 to 700",
+                   "901 to 1000"], rows) +
+            maximum(run.table("sweep/corrected_fraction/value"), "eps^(1/2)", "Phi_c"))
 
 
 def hysteresis(run):
-    count, n = 130, 40
-    up = [0.05 * k for k in range(1, 9)]
-    strengths = up + up[-2::-1] + up[1:]
-    curve = run.curves("corrected_fraction")[0]
-    found = {}
-    for k, strength in enumerate(strengths):
-        branch = "up" if k < 8 else "down" if k < 15 else "up again"
-        last = curve[1 + k * count:1 + (k + 1) * count][-n:]
-        found[branch, round(strength, 3)] = mean_and_error(last.mean(axis=0))
-    rows = []
-    for strength in up:
-        key = round(strength, 3)
-        rows.append([f"{strength:.2f}"] + [quoted(*found[branch, key]) if (branch, key) in found
-                                           else "" for branch in ("up", "down", "up again")])
-    return table(["eps^(1/2)", "Phi_c, up", "down", "up again"], rows)
+    found = run.table("point_0000/hysteresis/corrected_fraction")
+    names = ("up", "down", "up again")
+    values = {(round(strength, 3), names[branch]): quoted(value, error)
+              for strength, branch, value, error in
+              zip(found["sqrt_epsilon"][:], found["branch"][:], found["corrected_fraction"][:],
+                  found["corrected_fraction_error"][:])}
+    rows = [[f"{strength:.2f}"] + [values.get((strength, name), "") for name in names]
+            for strength in sorted({key[0] for key in values})]
+    areas = [f"{names[later]} less {names[earlier]} {1e3 * area:.2f} ± {1e3 * error:.2f}"
+             for earlier, later, area, error in
+             zip(found["earlier_branch"][:], found["later_branch"][:], found["area"][:],
+                 found["area_error"][:])]
+    return (table(["eps^(1/2)"] + [f"Phi_c, {name}" for name in names], rows) +
+            "\n\nAreas between branches, 10^-3: " + "; ".join(areas) + ".")
 
 
 def ageing(run):
-    height = run.curves("mean_height")[0]
-    lags, rows = (1, 10, 30, 100, 200), []
-    for age in (3, 10, 30, 100):
+    found = run.table("point_0000/ageing/mean_height")
+    ages, lags = found["waiting_time"][:], found["lag"][:]
+    shown = [1, 10, 31, 96, 306]
+    rows = []
+    for i, age in enumerate(ages):
         row = [str(age)]
-        for lag in lags:
-            value, error = mean_and_error((height[age + lag] - height[age]) ** 2)
-            row.append(f"{1e4 * value:.2f} ± {1e4 * error:.2f}")
-        rows.append(row)
-    return table(["t_W"] + [f"10^4 A, lag {lag}" for lag in lags], rows)
+        for lag in shown:
+            j = int(np.argmin(np.abs(lags - lag)))
+            row.append(f"{1e4 * found['a'][i, j]:.2f} ± {1e4 * found['a_error'][i, j]:.2f}")
+        rows.append(row + [f"{1e4 * found['shared_a_inf'][i]:.3g} ± "
+                           f"{1e4 * found['shared_a_inf_error'][i]:.2g}",
+                           f"{found['shared_tau'][i]:.3g} ± {found['shared_tau_error'][i]:.2g}",
+                           f"{found['misfit'][i]:.2f}"])
+    header = ["t_W"] + [f"10^4 A, lag {lags[int(np.argmin(np.abs(lags - lag)))]}" for lag in shown]
+    return (table(header + ["10^4 A_inf, common B", "tau", "misfit of its own fit"], rows) +
+            f"\n\nDifference between ages over its error: {found['unscaled_collapse'][()]:.1f} as "
+            f"measured, {found['collapse'][()]:.1f} for A/A_inf against t/tau (relative "
+            f"{found['unscaled_collapse_relative'][()]:.2f} and "
+            f"{found['collapse_relative'][()]:.2f}).")
 
 
-def against_taps(taps):
+def against_taps(taps, law=None):
+    """Phi at some taps; with a law its parameters, and the maximum over the sweep."""
     def write(run):
         rows = [[label.replace("|", "")] + [at(curve, tap) for tap in taps]
                 for label, curve in zip(run.labels, run.curves("bulk_fraction"))]
-        return table(["point"] + [f"Phi, tap {taps[0]}"] + [str(tap) for tap in taps[1:]], rows)
+        header = ["point", f"Phi, tap {taps[0]}"] + [str(tap) for tap in taps[1:]]
+        if law:
+            names = ("rho_inf", "tau", "beta")
+            header += [f"{law}: {name}" for name in names]
+            for point, row in enumerate(rows):
+                row += run.parameters("bulk_fraction", law, point, names)
+        text = table(header, rows)
+        if "analysis/sweep/bulk_fraction/value" in run.file:
+            text += maximum(run.table("sweep/bulk_fraction/value"), "lift", "Phi")
+        return text
     return write
 
 
@@ -147,7 +183,9 @@ FIGURES = {
     "pb2": (f"{PB}/fig2", compaction,
             "Phi_b grows as the inverse log, slower for smaller eps; at small eps tau rises "
             "spectacularly and X_inf may exceed 0.64."),
-    "pb3": (f"{PB}/fig3", fluctuations, "sigma_Z of the steady state is linear in eps^(1/2)."),
+    "pb3": (f"{PB}/fig3", fluctuations,
+            "The spectrum of <Z> falls as f^-s with s between 1 and 1.5; sigma_Z of the steady "
+            "state is linear in eps^(1/2)."),
     "pb4-bell": (f"{PB}/fig4-bell", bell,
                  "A bell with its maximum at eps^(1/2) between 0.1 and 0.2."),
     "pb4-hysteresis": (f"{PB}/fig4-hysteresis", hysteresis,
@@ -157,7 +195,7 @@ FIGURES = {
     "dr2": (f"{DR}/fig2", against_taps((0, 1, 10, 30, 100, 200, 350)),
             "The lift of 0.25 densifies much faster than the held dilation by 1.025, which gives "
             "little or nothing."),
-    "dr4": (f"{DR}/fig4", against_taps((0, 1, 10, 50, 100, 250, 400)),
+    "dr4": (f"{DR}/fig4", against_taps((0, 1, 10, 50, 100, 250, 400), "kww"),
             "Phi grows as KWW, and most at an intermediate lift, near 0.25 to 0.3."),
     "dr5": (f"{DR}/fig5", against_taps((0, 10, 60, 200, 500)),
             "From a crystal Phi falls within 60 taps and flattens; its final value is largest at "
