@@ -39,22 +39,22 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   Packing packing = make_start(plan.start, plan.container, estimate.n_spheres, start_stream);
   const Seconds start_time = Clock::now() - began;
 
-  const auto loop = make_trial_loop(plan.container, plan.move, key(Purpose::trials),
-                                    best_instruction_set(), plan.sampler);
+  const auto loop = make_trial_loop(plan.container, plan.relax.move, key(Purpose::trials),
+                                    best_instruction_set(), plan.relax.sampler);
   const auto relax_began = Clock::now();
   RelaxationProgress before;
   if (relaxes_before_recording(plan.start)) {
     loop->load(packing);
     loop->begin_tap();
-    relax(*loop, plan.stop, pilot_window(plan.stop, packing), before, budget / 2);
+    relax(*loop, plan.relax.stop, pilot_window(plan.relax.stop, packing), before, budget / 2);
     loop->store(packing);
   }
   RelaxationProgress tap;
-  const HeightWindow window = pilot_window(plan.stop, packing);
+  const HeightWindow window = pilot_window(plan.relax.stop, packing);
   if (total_taps(plan) > 0) excite(packing, tap_number(plan, 1), tap_stream);
   loop->load(packing);
   loop->begin_tap();
-  relax(*loop, plan.stop, window, tap, budget - std::min(budget / 2, before.trials));
+  relax(*loop, plan.relax.stop, window, tap, budget - std::min(budget / 2, before.trials));
   const Seconds relax_time = Clock::now() - relax_began;
 
   estimate.trials = loop->tally().trials;

@@ -48,10 +48,10 @@ class Check {
   void fluid_has_no_gravity() {
     if (!is<FullyPeriodicBox>(scene_.container) || !all_sound({"/container"})) return;
     if (all_sound({"/relax"})) {
-      if (is<PolarMove>(scene_.move)) {
+      if (is<PolarMove>(scene_.relax.move)) {
         note("/relax", "polar moves fall: without gravity (fully_periodic) use \"metropolis\"");
       }
-      if (!is<SweepsStop>(scene_.stop.rule)) {
+      if (!is<SweepsStop>(scene_.relax.stop.rule)) {
         note("/relax/stop",
              "without gravity (fully_periodic) nothing settles: end a relaxation "
              "after a number of \"sweeps\"");
@@ -65,38 +65,17 @@ class Check {
     if (all_sound({"/protocol"})) taps_are_idle();
   }
 
-  void sampler_suits_the_move() {
-    if (scene_.sampler == Sampler::exhaustive || !all_sound({"/relax", "/container"})) return;
-    const std::string instead = ": use \"exhaustive\"";
-    if (is<FullyPeriodicBox>(scene_.container)) {
-      note("/relax/sampler",
-           "skipping needs trials that only fall, and without gravity "
-           "(fully_periodic) none does" +
-               instead);
-    }
-    const auto* move = std::get_if<MetropolisMove>(&scene_.move);
-    if (!move) return;
-    if (!std::isinf(move->beta)) {
-      note("/relax/sampler",
-           "skipping needs trials that only fall, and a finite beta lets "
-           "some rise" +
-               instead);
-    }
-    if (move->adaptation && move->adaptation->base == AcceptanceBase::not_upward) {
-      note("/relax/sampler",
-           "skipping does not see the upward trials that the adaptation of the "
-           "step leaves out (\"of\": \"not_upward\")" +
-               instead);
-    }
-  }
-
-  void relaxation_can_end() {
-    if (!all_sound({"/relax"})) return;
-    const auto* fixed = std::get_if<SweepsStop>(&scene_.stop.rule);
-    if (fixed && fixed->sweeps > scene_.stop.max_sweeps) {
-      note("/relax/stop/sweeps", fmt::format("{} sweeps are more than the cap max_sweeps of {}: "
-                                             "every relaxation would end capped",
-                                             fixed->sweeps, scene_.stop.max_sweeps));
+  void relaxations_can_be() {
+    sampler_suits_the_move(scene_.relax, "/relax");
+    relaxation_can_end(scene_.relax, "/relax");
+    if (!scene_.relax_start) return;
+    sampler_suits_the_move(*scene_.relax_start, "/relax_start");
+    relaxation_can_end(*scene_.relax_start, "/relax_start");
+    const bool settles = is<RandomSettle>(scene_.start) || is<FittedPour>(scene_.start);
+    if (all_sound({"/start"}) && !settles) {
+      note("/relax_start",
+           "this start is at rest from the beginning: only random_settle and a fitted pour relax "
+           "before tap 0");
     }
   }
 
@@ -180,6 +159,41 @@ class Check {
     }
   }
 
+  void sampler_suits_the_move(const Relaxation& relax, const std::string& place) {
+    if (relax.sampler == Sampler::exhaustive || !all_sound({place, "/container"})) return;
+    const std::string instead = ": use \"exhaustive\"";
+    if (is<FullyPeriodicBox>(scene_.container)) {
+      note(place + "/sampler",
+           "skipping needs trials that only fall, and without gravity "
+           "(fully_periodic) none does" +
+               instead);
+    }
+    const auto* move = std::get_if<MetropolisMove>(&relax.move);
+    if (!move) return;
+    if (!std::isinf(move->beta)) {
+      note(place + "/sampler",
+           "skipping needs trials that only fall, and a finite beta lets "
+           "some rise" +
+               instead);
+    }
+    if (move->adaptation && move->adaptation->base == AcceptanceBase::not_upward) {
+      note(place + "/sampler",
+           "skipping does not see the upward trials that the adaptation of the "
+           "step leaves out (\"of\": \"not_upward\")" +
+               instead);
+    }
+  }
+
+  void relaxation_can_end(const Relaxation& relax, const std::string& place) {
+    if (!all_sound({place})) return;
+    const auto* fixed = std::get_if<SweepsStop>(&relax.stop.rule);
+    if (fixed && fixed->sweeps > relax.stop.max_sweeps) {
+      note(place + "/stop/sweeps", fmt::format("{} sweeps are more than the cap max_sweeps of {}: "
+                                               "every relaxation would end capped",
+                                               fixed->sweeps, relax.stop.max_sweeps));
+    }
+  }
+
   const Scene& scene_;
   std::vector<Fault>& faults_;
 };
@@ -190,8 +204,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   Check check(scene, faults);
   check.start_suits_container();
   check.fluid_has_no_gravity();
-  check.sampler_suits_the_move();
-  check.relaxation_can_end();
+  check.relaxations_can_be();
   check.observables_have_names();
   check.snapshots_are_reached();
   check.fits_have_curves();

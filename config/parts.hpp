@@ -9,13 +9,6 @@
 // it noted a fault, the part is a default that stands in for it.
 namespace jostle {
 
-/// "relax": the moves, how they are found and when they end.
-struct Relaxation {
-  Move move;
-  Stop stop;
-  Sampler sampler = Sampler::exhaustive;
-};
-
 Container read_container(const Reader& in);
 StartChoice read_start(const Reader& in);
 std::vector<ProtocolLine> read_protocol(const Reader& in);

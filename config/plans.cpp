@@ -75,9 +75,8 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
     plan.n_spheres = here.n_spheres;
     plan.start = make_start_of(here.start, here.n_spheres);
     plan.protocol = stages(here.protocol);
-    plan.move = here.move;
-    plan.stop = here.stop;
-    plan.sampler = here.sampler;
+    plan.relax = here.relax;
+    plan.relax_start = here.relax_start;
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots);
     plans.push_back(std::move(plan));

@@ -76,12 +76,8 @@ void read_simulation(const Reader& in, Scene& scene) {
   } else {
     in.missing("protocol", "a list of stages; [] makes the starting packings only");
   }
-  if (const auto relax = in.find("relax")) {
-    const Relaxation relaxation = read_relaxation(*relax);
-    scene.move = relaxation.move;
-    scene.stop = relaxation.stop;
-    scene.sampler = relaxation.sampler;
-  }
+  if (const auto relax = in.find("relax")) scene.relax = read_relaxation(*relax);
+  if (const auto relax = in.find("relax_start")) scene.relax_start = read_relaxation(*relax);
 }
 
 }  // namespace
@@ -90,8 +86,8 @@ Scene read_scene(const Reader& in) {
   Scene scene;
   scene.observables = default_observables();
   if (!in.is_object_of({"$schema", "name", "description", "seed", "realizations", "streams",
-                        "container", "spheres", "start", "protocol", "relax", "observe",
-                        "snapshots", "sweep", "until", "fits", "analyse"})) {
+                        "container", "spheres", "start", "protocol", "relax", "relax_start",
+                        "observe", "snapshots", "sweep", "until", "fits", "analyse"})) {
     return scene;
   }
   read_identity(in, scene);

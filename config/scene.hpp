@@ -128,9 +128,8 @@ struct Scene {
   std::uint32_t n_spheres = 0;
   StartChoice start;
   std::vector<ProtocolLine> protocol;
-  Move move;
-  Stop stop;
-  Sampler sampler = Sampler::exhaustive;
+  Relaxation relax;
+  std::optional<Relaxation> relax_start;  // absent: as `relax`
 
   std::vector<Observable> observables;
   SnapshotChoice snapshots;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t most_points = 100'000;
 
 /// What a sweep may set: what is simulated and measured. The rest belongs to the study as a whole.
-const std::vector<std::string> swept_parts{"container", "spheres", "start",    "protocol",
-                                           "relax",     "observe", "snapshots"};
+const std::vector<std::string> swept_parts{"container", "spheres",     "start",   "protocol",
+                                           "relax",     "relax_start", "observe", "snapshots"};
 
 /// Every pointer that leads somewhere in a value.
 void collect_pointers(const Json& value, const std::string& pointer,
@@ -60,7 +60,9 @@ class SweepCheck {
         base_faults_(faults),
         resolved_(resolved(scene)) {
     may_be_swept_ = Json::object();
-    for (const std::string& part : swept_parts) may_be_swept_[part] = resolved_.at(part);
+    for (const std::string& part : swept_parts) {
+      if (resolved_.contains(part)) may_be_swept_[part] = resolved_.at(part);
+    }
   }
 
   void operator()() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,14 @@ struct Snapshots {
 /// after taps always draw the point's own.
 enum class Streams { independent, matched };
 
+/// How a bed comes to rest: the moves, how they are found and when they end.
+struct Relaxation {
+  Move move;
+  Stop stop;
+  Sampler sampler = Sampler::exhaustive;
+  bool operator==(const Relaxation&) const = default;
+};
+
 /// All that one sweep point of a study needs: what is simulated, what is measured, which numbers
 /// are drawn. Realizations differ only in their index.
 struct Plan {
@@ -51,9 +60,8 @@ struct Plan {
   std::uint32_t n_spheres = 0;
   Start start;
   std::vector<Stage> protocol;
-  Move move;
-  Stop stop;
-  Sampler sampler = Sampler::exhaustive;
+  Relaxation relax;                                      // after every tap
+  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself; absent: the same
 
   std::vector<Observable> observables;
   Snapshots snapshots;

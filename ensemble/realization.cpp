@@ -70,7 +70,7 @@ void Realization::start() {
   RandomStream random(key_of(plan_, index_, Purpose::start));
   packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random);
   if (!relaxes_before_recording(plan_.start)) return;
-  state_.stop_window = start_stop_window(plan_.stop, packing_);
+  state_.stop_window = start_stop_window(relaxation().stop, packing_);
   begin_relaxation();
 }
 
@@ -90,7 +90,7 @@ void Realization::begin_relaxation() {
 void Realization::relax_for(std::uint64_t trials, Slice& slice) {
   const TrialTally before = loop().tally();
   const auto began = std::chrono::steady_clock::now();
-  relax(loop(), plan_.stop, state_.stop_window, state_.relaxation, trials);
+  relax(loop(), relaxation().stop, state_.stop_window, state_.relaxation, trials);
   slice.relaxing = std::chrono::steady_clock::now() - began;
   slice.trials = loop().tally().trials - before.trials;
   slice.distance_tests = loop().tally().distance_tests - before.distance_tests;
@@ -108,8 +108,8 @@ void Realization::record(Slice& slice) {
   ++state_.rows;
   state_.dropped_offsets = 0;
   if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
-    state_.move = loop_->state();
-    state_.sampler = loop_->sampler_state();
+    state_.move = plan_.relax_start ? MoveState{} : loop_->state();
+    state_.sampler = plan_.relax_start ? SamplerState{} : loop_->sampler_state();
     loop_.reset();
   }
 }
@@ -118,7 +118,7 @@ void Realization::record(Slice& slice) {
 void Realization::resolve_windows() {
   observer_.emplace(plan_.observables, packing_);
   state_.observable_windows = observer_->windows();
-  state_.stop_window = stop_window(plan_.stop, packing_);
+  state_.stop_window = stop_window(plan_.relax.stop, packing_);
 }
 
 RelaxationRecord Realization::relaxation_record() const {
@@ -156,12 +156,16 @@ RealizationState Realization::state() const {
   return state;
 }
 
+const Relaxation& Realization::relaxation() const {
+  return state_.rows == 0 && plan_.relax_start ? *plan_.relax_start : plan_.relax;
+}
+
 // A new loop is a resumed one: it takes over the centres and where the trials stand.
 TrialLoop& Realization::loop() {
   if (loop_) return *loop_;
   const Purpose purpose = state_.rows == 0 ? Purpose::start_trials : Purpose::trials;
-  loop_ = make_trial_loop(plan_.container, plan_.move, key_of(plan_, index_, purpose),
-                          best_instruction_set(), plan_.sampler);
+  loop_ = make_trial_loop(plan_.container, relaxation().move, key_of(plan_, index_, purpose),
+                          best_instruction_set(), relaxation().sampler);
   loop_->load(packing_);
   if (state_.move.next_trial > 0) loop_->restore(state_.move, state_.sampler);
   return *loop_;

@@ -52,6 +52,7 @@ class Realization {
   void resolve_windows();
   RelaxationRecord relaxation_record() const;
   SnapshotRecord snapshot_of_row() const;
+  const Relaxation& relaxation() const;  // the one that is on, or comes next
   TrialLoop& loop();
 
   const Plan& plan_;

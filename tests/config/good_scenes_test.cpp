@@ -25,9 +25,9 @@ TEST_CASE("The shortest scene takes its defaults from the aggregates") {
   CHECK(scene.streams == Streams::independent);
   CHECK(scene.container == Container{PeriodicBox{8, 8}});
   CHECK(scene.start == StartChoice{SteepestDescentPour{}});
-  CHECK(scene.move == Move{PolarMove{}});
-  CHECK(scene.stop == Stop{});
-  CHECK(scene.sampler == Sampler::exhaustive);
+  CHECK(scene.relax.move == Move{PolarMove{}});
+  CHECK(scene.relax.stop == Stop{});
+  CHECK(scene.relax.sampler == Sampler::exhaustive);
   CHECK(scene.observables == std::vector<Observable>{MeanHeight{}, BottomFraction{},
                                                      CorrectedFraction{}, BulkFraction{}});
   CHECK(scene.snapshots == SnapshotChoice{});
@@ -49,11 +49,11 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(scene.protocol[3] == ProtocolLine{Shake{0.02, 0.1, 3}, std::nullopt, 0});
   CHECK(scene.protocol[4] ==
         ProtocolLine{Dilate{0}, Ramp{0.025, 0.4, 0.025, RampScale::square_root}, 2});
-  CHECK(scene.move == Move{PolarMove{0.05, 1.5, ThetaLaw::linear}});
-  CHECK(scene.stop.rule ==
+  CHECK(scene.relax.move == Move{PolarMove{0.05, 1.5, ThetaLaw::linear}});
+  CHECK(scene.relax.stop.rule ==
         StopRule{BulkFractionStop{0.002, 500'000, 3, false, HeightWindow{4, 8.5}}});
-  CHECK(scene.stop.max_sweeps == 20'000);
-  CHECK(scene.sampler == Sampler::skipping);
+  CHECK(scene.relax.stop.max_sweeps == 20'000);
+  CHECK(scene.relax.sampler == Sampler::skipping);
   REQUIRE(scene.observables.size() == 6);
   CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
   CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});
@@ -70,13 +70,13 @@ TEST_CASE("Every key of a scene is read") {
 TEST_CASE("Metropolis moves, their adaptation and beta are read") {
   const Scene scene = scene_of(text_of(good_scenes / "metropolis.json"));
   CHECK(scene.start == StartChoice{Crystal{Lattice::hcp, true}});
-  const auto& move = std::get<MetropolisMove>(scene.move);
+  const auto& move = std::get<MetropolisMove>(scene.relax.move);
   CHECK(move.max_step == 0.2);
   CHECK(std::isinf(move.beta));
   CHECK(move.adaptation == StepAdaptation{0.99, 20'000, 0.4, AcceptanceBase::not_upward, false});
   const Scene warm = scene_of(text_of(good_scenes / "finite_beta.json"));
-  CHECK(warm.move == Move{MetropolisMove{.max_step = 0.1, .beta = 2.5, .adaptation = {}}});
-  CHECK(warm.stop.rule == StopRule{SweepsStop{100}});
+  CHECK(warm.relax.move == Move{MetropolisMove{.max_step = 0.1, .beta = 2.5, .adaptation = {}}});
+  CHECK(warm.relax.stop.rule == StopRule{SweepsStop{100}});
 }
 
 TEST_CASE("The defaults of the schema are those of the aggregates") {

@@ -66,6 +66,7 @@ const std::vector<std::string> cross_field_messages{
     "a crystal needs a rectangular footprint",
     "polar moves fall",
     "nothing settles",
+    "this start is at rest",
     "skipping needs trials that only fall",
     "skipping does not see the upward trials",
     "these are measured from a floor",

@@ -48,7 +48,7 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
     const RecordedRealization undisturbed = straight(plan);
     REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
     const bool skipped = undisturbed.state->sampler.candidate > 0;
-    CHECK(skipped == (plan.sampler == Sampler::skipping));
+    CHECK(skipped == (plan.relax.sampler == Sampler::skipping));
     for (int repeat = 0; repeat < 3; ++repeat) {
       CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
     }
@@ -57,9 +57,9 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
 
 TEST_CASE("The sampler of the plan is the one that relaxes, and its state is kept") {
   Plan plan = small_plan();
-  plan.stop = {.rule = SweepsStop{.sweeps = 2000}};
+  plan.relax.stop = {.rule = SweepsStop{.sweeps = 2000}};
   CHECK(straight(plan).state->sampler == SamplerState{});
-  plan.sampler = Sampler::skipping;
+  plan.relax.sampler = Sampler::skipping;
   Realization realization(plan, 0);
   while (realization.state().rows == 0) realization.advance(1'000);
   realization.advance(1500 * plan.n_spheres);
@@ -106,7 +106,7 @@ TEST_CASE("A start that settles is recorded once it has") {
   Plan plan = small_plan();
   plan.protocol.clear();
   plan.start = RandomSettle{};
-  plan.stop = {.rule = SweepsStop{.sweeps = 37}};
+  plan.relax.stop = {.rule = SweepsStop{.sweeps = 37}};
   const RecordedRealization record = straight(plan);
   REQUIRE(record.rows.size() == 1);
   CHECK(record.rows[0].relaxation.sweeps == 37);
@@ -114,10 +114,34 @@ TEST_CASE("A start that settles is recorded once it has") {
   CHECK(record.state->move.next_trial == 37 * 60);
 }
 
+TEST_CASE("A start can settle in a way of its own, and taps then begin as after any other start") {
+  Plan plan = small_plan();
+  plan.start = RandomSettle{};
+  plan.streams = Streams::matched;
+  plan.relax_start = Relaxation{.move = MetropolisMove{.max_step = 0.2},
+                                .stop = {.rule = SweepsStop{.sweeps = 300}}};
+  plan.snapshots.taps = {0, 1};
+  const RecordedRealization record = straight(plan);
+  CHECK(record.rows[0].relaxation.sweeps == 300);
+  Plan slower = plan;
+  slower.point_id = 5;
+  slower.relax.stop = {.rule = SweepsStop{.sweeps = 11}};
+  const RecordedRealization other = straight(slower);
+  CHECK(other.snapshots[0].centres == record.snapshots[0].centres);
+  CHECK(other.rows[1].relaxation.sweeps == 11);
+
+  // The same taps from the bed that it left.
+  Plan given = plan;
+  given.start =
+      GivenPacking{std::make_shared<const std::vector<Vec3>>(record.snapshots[0].centres)};
+  given.relax_start.reset();
+  CHECK(straight(given).snapshots[1].centres == record.snapshots[1].centres);
+}
+
 TEST_CASE("While a start settles, quantiles are those of the bed to come, then those of the bed") {
   Plan plan = small_plan();
   plan.start = RandomSettle{};
-  plan.stop.rule = BulkFractionStop{.every_trials = 600};
+  plan.relax.stop.rule = BulkFractionStop{.every_trials = 600};
   Realization realization(plan, 0);
   realization.advance(60);
   REQUIRE(realization.state().rows == 0);
@@ -139,13 +163,13 @@ TEST_CASE("While a start settles, quantiles are those of the bed to come, then t
 TEST_CASE("A relaxation that meets no rule is capped, and recorded as capped") {
   Plan plan = small_plan();
   plan.protocol = {{Dilate{}, 2}};
-  plan.stop = {.rule = MeanHeightStop{.eta = 0}, .max_sweeps = 250};
+  plan.relax.stop = {.rule = MeanHeightStop{.eta = 0}, .max_sweeps = 250};
   const RecordedRealization record = straight(plan);
   for (std::size_t t = 1; t <= 2; ++t) {
     CHECK(record.rows[t].relaxation.capped == 1);
     CHECK(record.rows[t].relaxation.sweeps == 250);
   }
-  plan.stop.rule = SweepsStop{.sweeps = 30};
+  plan.relax.stop.rule = SweepsStop{.sweeps = 30};
   CHECK(straight(plan).rows[2].relaxation.capped == 0);
 }
 
@@ -184,7 +208,7 @@ TEST_CASE(
   CHECK(straight(plan).snapshots[1].centres != straight(other_point).snapshots[1].centres);
 
   // Without trials the taps alone are seen: they are the same at matched points.
-  plan.stop = other_point.stop = {.rule = SweepsStop{.sweeps = 0}};
+  plan.relax.stop = other_point.relax.stop = {.rule = SweepsStop{.sweeps = 0}};
   CHECK(straight(plan).snapshots[1].centres == straight(other_point).snapshots[1].centres);
   other_point.streams = Streams::independent;
   CHECK(straight(plan).snapshots[1].centres != straight(other_point).snapshots[1].centres);
@@ -227,12 +251,12 @@ TEST_CASE("A start that cannot be made says why") {
 TEST_CASE("The Metropolis step begins anew at each tap where the move asks for it, else goes on") {
   Plan plan = small_plan();
   plan.protocol = {{Dilate{}, 3}};
-  plan.stop = {.rule = SweepsStop{.sweeps = 10}};
+  plan.relax.stop = {.rule = SweepsStop{.sweeps = 10}};
   // Halved twice in the 600 trials of a tap, whatever is accepted.
   StepAdaptation adaptation{.factor = 0.5, .every_trials = 300, .threshold = 1};
-  plan.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  plan.relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
   CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25));
   adaptation.reset_each_tap = false;
-  plan.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  plan.relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
   CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25 * 0.25 * 0.25));
 }

@@ -148,7 +148,7 @@ TEST_CASE("A realization that fails is recorded with its reason and the rest go 
   plans.push_back(small_plan());
   plans[3].container = FullyPeriodicBox{5, 5, 6};
   plans[3].start = Grow{};
-  plans[3].move = PolarMove{};
+  plans[3].relax.move = PolarMove{};
   MemorySink sink;
   Progress progress;
   const RunSummary summary =

@@ -31,13 +31,13 @@ std::vector<std::vector<double>> last_taps(const Plan& plan) {
 void check_samplers(Plan plan) {
   plan.n_spheres = 80;
   plan.start = SteepestDescentPour{};
-  plan.stop = {.rule = MeanHeightStop{.eta = 3e-5, .every_sweeps = 100}};
+  plan.relax.stop = {.rule = MeanHeightStop{.eta = 3e-5, .every_sweeps = 100}};
   plan.observables = {MeanHeight{}, BottomFraction{}, CorrectedFraction{},
                       BulkFraction{.window = HeightWindow{1.5, 3}}};
   plan.seed = 81;
   const auto exhaustive = last_taps(plan);
   plan.seed = 82;
-  plan.sampler = Sampler::skipping;
+  plan.relax.sampler = Sampler::skipping;
   const auto skipping = last_taps(plan);
   const char* const names[] = {"sweeps", "acceptance", "<Z>", "Phi_b", "<Phi_c>", "bulk"};
   for (std::size_t k = 0; k < exhaustive.size(); ++k) {
@@ -58,7 +58,7 @@ TEST_CASE("realizations of both samplers have one law: Metropolis, walls", "[sta
   Plan plan;
   plan.container = WalledBox{4.5, 4.5};
   plan.protocol = {{Lift{.gamma = 0.25}, 2}};
-  plan.move = MetropolisMove{};
+  plan.relax.move = MetropolisMove{};
   check_samplers(plan);
 }
 

@@ -15,8 +15,8 @@ inline Plan small_plan() {
   plan.n_spheres = 60;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{Dilate{.epsilon = 0.05}, 3}, {Lift{.gamma = 0.2}, 2}};
-  plan.move = PolarMove{};
-  plan.stop = {.rule = MeanHeightStop{.eta = 1e-3, .every_sweeps = 10}, .max_sweeps = 500};
+  plan.relax.move = PolarMove{};
+  plan.relax.stop = {.rule = MeanHeightStop{.eta = 1e-3, .every_sweeps = 10}, .max_sweeps = 500};
   plan.observables = {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
   plan.snapshots.taps = {0, 2, 5};
   return plan;
@@ -40,46 +40,55 @@ inline std::vector<NamedPlan> various_plans() {
   Plan& walled = add("walls, fitted pour, Metropolis that keeps its step, bulk fraction");
   walled.container = WalledBox{4.5, 4.2};
   walled.start = FittedPour{};
-  walled.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
-  std::get<MetropolisMove>(walled.move).adaptation->reset_each_tap = false;
-  walled.stop = {.rule = BulkFractionStop{.change = 0.01, .every_trials = 1234}, .max_sweeps = 300};
+  walled.relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  std::get<MetropolisMove>(walled.relax.move).adaptation->reset_each_tap = false;
+  walled.relax.stop = {.rule = BulkFractionStop{.change = 0.01, .every_trials = 1234},
+                       .max_sweeps = 300};
 
   Plan& tube = add("cylinder, random settle, exponential polar, bulk fraction by heights");
   tube.container = Cylinder{4.3};
   tube.start = RandomSettle{};
-  tube.move = PolarMove{.max_step = 0.3, .theta0 = 0.5, .law = ThetaLaw::exponential};
-  tube.stop = {.rule = BulkFractionStop{.change = 0.005,
-                                        .every_trials = 1500,
-                                        .times = 3,
-                                        .measure_start = false,
-                                        .window = HeightWindow{0.5, 2.5}},
-               .max_sweeps = 300};
+  tube.relax.move = PolarMove{.max_step = 0.3, .theta0 = 0.5, .law = ThetaLaw::exponential};
+  tube.relax.stop = {.rule = BulkFractionStop{.change = 0.005,
+                                              .every_trials = 1500,
+                                              .times = 3,
+                                              .measure_start = false,
+                                              .window = HeightWindow{0.5, 2.5}},
+                     .max_sweeps = 300};
 
   Plan& shaken = add("periodic, shake, warm Metropolis that resets its step, sweeps");
   shaken.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.1}, 2}, {DilateFloorHeld{}, 3}};
-  shaken.move = MetropolisMove{.max_step = 0.15, .beta = 5, .adaptation = adaptation};
-  shaken.stop = {.rule = SweepsStop{.sweeps = 60}};
+  shaken.relax.move = MetropolisMove{.max_step = 0.15, .beta = 5, .adaptation = adaptation};
+  shaken.relax.stop = {.rule = SweepsStop{.sweeps = 60}};
 
   Plan& fluid = add("fully periodic, Metropolis, sweeps, capped");
   fluid.container = FullyPeriodicBox{4, 4.5, 5};
   fluid.start = Grow{};
   fluid.protocol = {{Lift{.gamma = 0}, 5}};
-  fluid.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
-  fluid.stop = {.rule = SweepsStop{.sweeps = 60}, .max_sweeps = 40};
+  fluid.relax.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
+  fluid.relax.stop = {.rule = SweepsStop{.sweeps = 60}, .max_sweeps = 40};
   fluid.observables = {MeanHeight{}, BulkFraction{.window = HeightWindow{1, 4}}};
 
   Plan& skipped = add("periodic, random settle, polar, skipping");
   skipped.start = RandomSettle{};
-  skipped.stop = {.rule = MeanHeightStop{.eta = 1e-5, .every_sweeps = 30}, .max_sweeps = 2000};
-  skipped.sampler = Sampler::skipping;
+  skipped.relax.stop = {.rule = MeanHeightStop{.eta = 1e-5, .every_sweeps = 30},
+                        .max_sweeps = 2000};
+  skipped.relax.sampler = Sampler::skipping;
 
   Plan& skipped_walls = add("walls, Metropolis that keeps its step, sweeps, skipping");
   skipped_walls.container = WalledBox{4.5, 4.2};
-  skipped_walls.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
-  std::get<MetropolisMove>(skipped_walls.move).adaptation->factor = 0.999;
-  std::get<MetropolisMove>(skipped_walls.move).adaptation->reset_each_tap = false;
-  skipped_walls.stop = {.rule = SweepsStop{.sweeps = 400}};
-  skipped_walls.sampler = Sampler::skipping;
+  skipped_walls.relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
+  std::get<MetropolisMove>(skipped_walls.relax.move).adaptation->factor = 0.999;
+  std::get<MetropolisMove>(skipped_walls.relax.move).adaptation->reset_each_tap = false;
+  skipped_walls.relax.stop = {.rule = SweepsStop{.sweeps = 400}};
+  skipped_walls.relax.sampler = Sampler::skipping;
+
+  Plan& settled = add("periodic, random settle by Metropolis that skips, then polar");
+  settled.start = RandomSettle{};
+  settled.relax_start =
+      Relaxation{.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation},
+                 .stop = {.rule = SweepsStop{.sweeps = 300}},
+                 .sampler = Sampler::skipping};
   return plans;
 }
 
