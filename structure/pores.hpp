@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/random.hpp"
+#include "structure/region.hpp"
 #include "structure/voronoi.hpp"
 
 // The void of a packing: the largest spheres that fit between its spheres, and the chance that a
@@ -16,15 +17,6 @@ struct Pore {
   Vec3 centre;                        // wrapped
   double radius = 0;                  // diameters; xi = radius / sphere_radius
   std::vector<std::uint32_t> owners;  // the spheres it touches, ascending: 4, more if degenerate
-};
-
-/// Part of a container: between two heights, at least `from_sides` away from the walls (counted
-/// from the walls themselves; without effect where sides are periodic).
-struct Region {
-  double low = 0, high = 0, from_sides = 0;
-  bool contains(const Container& container, Vec3 r) const;
-  /// Diameters cubed.
-  double volume(const Container& container) const;
 };
 
 /// [PB]'s region: heights of 2 R to 20 R, 2 R away from walls.

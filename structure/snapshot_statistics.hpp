@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/packing.hpp"
+#include "structure/region.hpp"
 
 // What is measured of a packing at snapshots only.
 namespace jostle {
@@ -14,6 +18,21 @@ double coordination(const Packing& packing, double cut = 1.05);
 
 /// The number of centres within `cut` of each centre, [n_spheres].
 std::vector<unsigned> coordination_numbers(const Packing& packing, double cut = 1.05);
+
+/// N_c against the cut.
+struct CoordinationCurve {
+  std::vector<double> cuts;          // [n_cuts], diameters
+  std::vector<double> coordination;  // [n_cuts]; NaN where no sphere is in the region
+  std::uint64_t n_spheres = 0;       // the spheres averaged over
+};
+
+/// At ascending cuts (at least one), in one pass, averaged over the spheres of the region or over
+/// all. Their neighbours count wherever they are.
+CoordinationCurve coordination_curve(const Packing& packing, std::span<const double> cuts,
+                                     const std::optional<Region>& region = std::nullopt);
+
+/// How many spheres have k neighbours, k = 0 .. up to the greatest number.
+std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers);
 
 /// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
 /// highest centre. Sums to 1. Requires a sphere. Rosato et al. 2010, fig. 6.

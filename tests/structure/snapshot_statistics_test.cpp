@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/geometry.hpp"
-#include "engine/random.hpp"
+#include "random_points.hpp"
 #include "reference_deposit.hpp"
 
 using namespace jostle;
@@ -38,23 +37,6 @@ std::vector<unsigned> by_brute_force(const Packing& packing, double cut) {
   return numbers;
 }
 
-// Points, overlapping or not, within the container and up to the given height.
-Packing random_points(const Container& container, double height, unsigned n) {
-  RandomStream random(stream_key(20, 0, 0, Purpose::start));
-  Packing packing{container, {}};
-  while (packing.centres.size() < n) {
-    const Vec3 point{width_x(container) * random.uniform(), width_y(container) * random.uniform(),
-                     height * random.uniform()};
-    const bool inside = std::visit(
-        [&](const auto& box) {
-          return clear_of_boundaries(box, {point.x, point.y, 1});
-        },
-        container);
-    if (inside) packing.centres.push_back(point);
-  }
-  return packing;
-}
-
 }  // namespace
 
 TEST_CASE("Coordination by cells is coordination over all pairs and images") {
@@ -78,6 +60,34 @@ TEST_CASE("Spheres astride the seam are neighbours, and an image beyond the cut 
   const Packing packing{PeriodicBox{5, 5}, {{0, 2, 1}, {4.0, 2, 1}, {3.9, 2, 3}}};
   CHECK(coordination_numbers(packing, 1.05) == std::vector<unsigned>{1, 1, 0});
   CHECK(coordination(packing, 1.05) == Approx(2.0 / 3));
+}
+
+TEST_CASE("Coordination against the cut is that at each cut, over all or in a region") {
+  const Packing packing = random_points(WalledBox{8, 6}, 9, 400);
+  const std::vector<double> cuts{0.5, 1.05, 1.2, 2.5};
+  const CoordinationCurve all = coordination_curve(packing, cuts);
+  CHECK(all.n_spheres == 400);
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    CHECK(all.coordination[k] == coordination(packing, cuts[k]));
+  }
+  const Region region{2, 7, 1.5};
+  const CoordinationCurve inside = coordination_curve(packing, cuts, region);
+  const std::vector<unsigned> numbers = coordination_numbers(packing, 1.2);
+  unsigned spheres = 0, neighbours = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!region.contains(packing.container, packing.centres[i])) continue;
+    ++spheres;
+    neighbours += numbers[i];
+  }
+  CHECK(inside.n_spheres == spheres);
+  CHECK(inside.coordination[2] == static_cast<double>(neighbours) / spheres);
+  CHECK(std::isnan(coordination_curve(packing, cuts, Region{20, 30}).coordination[0]));
+}
+
+TEST_CASE("The neighbour histogram counts spheres by their number of neighbours") {
+  const std::vector<unsigned> numbers{6, 0, 2, 6, 6};
+  CHECK(neighbour_histogram(numbers) == std::vector<std::uint64_t>{1, 0, 1, 0, 0, 0, 3});
+  CHECK(neighbour_histogram({}).empty());
 }
 
 TEST_CASE("The reference deposit has the neighbours that its maker counted") {

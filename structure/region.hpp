@@ -1,0 +1,17 @@
+#pragma once
+
+#include "engine/container.hpp"
+#include "engine/vec3.hpp"
+
+namespace jostle {
+
+/// Part of a container: between two heights, at least `from_sides` away from the walls (counted
+/// from the walls themselves; without effect where sides are periodic).
+struct Region {
+  double low = 0, high = 0, from_sides = 0;
+  bool contains(const Container& container, Vec3 r) const;
+  /// Diameters cubed.
+  double volume(const Container& container) const;
+};
+
+}  // namespace jostle
