@@ -142,7 +142,7 @@ TEST_CASE("Bond order does not depend on how a packing is turned") {
   for (std::size_t i = 0; i < before.size(); ++i) check(after[i], before[i]);
 }
 
-TEST_CASE("A single bond has q 1, and two opposite ones the w of the symbols (l l l; 0 0 0)") {
+TEST_CASE("A single bond has q 1, and as w the 3j symbol of three zeros") {
   // Along z only q_l0 is there: w_l = (l l l; 0 0 0), whose squares are 18 / 1001 and 400 / 46189.
   const BondOrder one = order_of({{0.6, 0, 0.8}}), two = order_of({{0, 0, 1}, {0, 0, -1}});
   const BondOrder expected{1, 1, std::sqrt(18.0 / 1001), -std::sqrt(400.0 / 46189)};
