@@ -42,15 +42,15 @@ std::vector<Plan> small_plans() {
   plan.n_spheres = 60;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{Dilate{0.05}, 10}, {Lift{0.2}, 5}};
-  plan.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 20}, .max_sweeps = 2000};
+  plan.relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 20}, .max_sweeps = 2000};
   plan.observables = {MeanHeight{}, BottomFraction{}, BulkFraction{}};
   plan.snapshots.taps = {0, 15};
   std::vector<Plan> plans = {plan};
-  plan.sampler = Sampler::skipping;
+  plan.relax.sampler = Sampler::skipping;
   plans.push_back(plan);
   plan.container = WalledBox{4.5, 4};
   plan.start = RandomSettle{};
-  plan.move = MetropolisMove{0.2};
+  plan.relax.move = MetropolisMove{0.2};
   plan.protocol = {{Shake{0.05, 0.2, 5}, 15}};
   plans.push_back(plan);
   plan.container = Cylinder{1.4};  // a single file
@@ -60,8 +60,8 @@ std::vector<Plan> small_plans() {
   plan.container = PeriodicBox{4, 3.4641016151377544};
   plan.start = Crystal{};  // without any gap
   plan.n_spheres = 80;
-  plan.move = MetropolisMove{0.1, 1e3};
-  plan.sampler = Sampler::exhaustive;
+  plan.relax.move = MetropolisMove{0.1, 1e3};
+  plan.relax.sampler = Sampler::exhaustive;
   plan.protocol = {{Dilate{0}, 5}, {Dilate{1e-16}, 5}, {Dilate{10}, 5}};
   plans.push_back(plan);
   for (std::size_t k = 0; k < plans.size(); ++k) plans[k].point_id = k;
