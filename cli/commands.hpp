@@ -10,6 +10,7 @@ namespace jostle {
 
 void add_run(CLI::App& app, int& code);
 void add_check(CLI::App& app, int& code);
+void add_cost(CLI::App& app, int& code);
 void add_schema(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
 void add_merge(CLI::App& app, int& code);

@@ -35,6 +35,7 @@ int parse_and_run(int argc, char** argv) {
   int code = exit_ok;
   add_run(app, code);
   add_check(app, code);
+  add_cost(app, code);
   add_schema(app, code);
   add_info(app, code);
   add_merge(app, code);

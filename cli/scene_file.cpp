@@ -35,20 +35,9 @@ std::vector<Vec3> load_packing(const fs::path& folder, const PackingFile& file) 
   return read_packing(folder / file.path, selector).centres;
 }
 
-}  // namespace
-
-std::string fault_lines(const std::vector<Fault>& faults) {
-  std::string lines;
-  for (const auto& [pointer, message] : faults) {
-    lines += fmt::format("{}: {}\n", pointer.empty() ? "(scene)" : pointer, message);
-  }
-  if (!lines.empty()) lines.pop_back();
-  return lines;
-}
-
-LoadedScene load_scene(const std::string& path) {
+LoadedScene load_text(std::string text, const std::string& path) {
   LoadedScene loaded;
-  loaded.text = read_text(path);
+  loaded.text = std::move(text);
   ParsedScene parsed = parse_scene(loaded.text);
   if (!parsed.scene) {
     const std::size_t n = parsed.faults.size();
@@ -67,6 +56,25 @@ LoadedScene load_scene(const std::string& path) {
     throw BadInput(fmt::format("{}: /start/file: {}", path, error.what()));
   }
   return loaded;
+}
+
+}  // namespace
+
+std::string fault_lines(const std::vector<Fault>& faults) {
+  std::string lines;
+  for (const auto& [pointer, message] : faults) {
+    lines += fmt::format("{}: {}\n", pointer.empty() ? "(scene)" : pointer, message);
+  }
+  if (!lines.empty()) lines.pop_back();
+  return lines;
+}
+
+LoadedScene load_scene(const std::string& path) {
+  return load_text(read_text(path), path);
+}
+
+LoadedScene load_derived(const Scene& scene, const std::string& path) {
+  return load_text(resolved(scene).dump(2), path);
 }
 
 Study study_of(const LoadedScene& loaded) {

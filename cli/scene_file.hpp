@@ -26,6 +26,9 @@ struct LoadedScene {
 /// Reads a scene and the packings it starts from. Throws BadInput listing every fault.
 LoadedScene load_scene(const std::string& path);
 
+/// A scene made of that in `path`: it starts from the same packings. Throws BadInput likewise.
+LoadedScene load_derived(const Scene& scene, const std::string& path);
+
 Study study_of(const LoadedScene& loaded);
 
 /// "pointer: message", one fault a line.

@@ -1,0 +1,106 @@
+#include "cli/cost_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/durations.hpp"
+#include "cli/text_table.hpp"
+
+namespace jostle {
+
+namespace {
+
+std::string with_error(double value, double error) {
+  if (!(error > 0)) return fmt::format("{:+.4g}", value);
+  const int decimals = decimals_for(error);
+  return fmt::format("{:+.{}f} +- {:.{}f}", value, decimals, error, decimals);
+}
+
+std::string core_time(double seconds) {
+  if (seconds < 3600) return format_duration(Seconds(seconds)) + " of core time";
+  return fmt::format("{:.3g} core-hours", seconds / 3600);
+}
+
+std::string rows(const CostStudy& study, const CostOfObservable& cost) {
+  TextTable table({"setting", "bias", "pairing gains", "sweeps/tap", "s/tap", "realization", ""});
+  const auto front = pareto_front(cost.settings);
+  for (std::size_t p = 0; p < study.rungs().size(); ++p) {
+    const PairedBias& bias = cost.biases[p];
+    const bool reference = p == study.reference().last;
+    const double gain = bias.variance_reduction;
+    table.add(
+        {study.rungs()[p].name, reference ? "0, the reference" : with_error(bias.bias, bias.error),
+         reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
+         fmt::format("{:.0f}", study.times()[p].sweeps),
+         fmt::format("{:.3g}", study.times()[p].tap_seconds),
+         format_duration(Seconds(study.realization_seconds(p))), front[p] != 0 ? "front" : ""});
+  }
+  return table.text();
+}
+
+std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
+  const auto choice = cheapest(cost.settings, target);
+  const std::string& name = cost.label.name;
+  if (!choice) {
+    return fmt::format(
+        "For an error of {:g} in {} no setting will do: the least |bias| with its error is above "
+        "it.\nMore rounds make errors of biases smaller.\n",
+        target, name);
+  }
+  return fmt::format("For an error of {:g} in {} at tap {}: {}, {} realizations, about {}.\n",
+                     target, name, study.taps(), study.rungs()[choice->setting].name,
+                     choice->realizations, core_time(choice->core_seconds));
+}
+
+}  // namespace
+
+std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
+                      std::uint32_t scene_realizations, std::optional<double> target) {
+  const Setting& own = cost.settings.front();
+  std::string text =
+      fmt::format("{}: after {} tap{}, {} rounds, against {}\n{}", cost.label.name,
+                  study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.rounds(),
+                  study.rungs()[study.reference().last].name, rows(study, cost));
+  text += fmt::format(
+      "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
+      "{} taps.\n",
+      with_error(own.bias, own.bias_error),
+      own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
+      scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
+      study.taps());
+  text += fmt::format("The most complete setting may itself be short by {:.2g} (extrapolated).\n",
+                      cost.remainder);
+  if (study.pilot_taps() < study.taps()) {
+    text += fmt::format("Biases are those after tap {} of {}: they may grow with further taps.\n",
+                        study.pilot_taps(), study.taps());
+  }
+  if (target) text += advice(study, cost, *target);
+  return text;
+}
+
+std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
+                        std::uint32_t scene_realizations, const std::string& image) {
+  std::string data;
+  for (std::size_t p = 0; p < study.rungs().size(); ++p) {
+    if (p == study.reference().last) continue;
+    const Setting& setting = cost.settings[p];
+    data += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} \"{}\"\n", setting.realization_seconds,
+                        std::abs(setting.bias), setting.bias_error,
+                        total_error(setting, scene_realizations), study.rungs()[p].name);
+  }
+  return fmt::format(
+      "# |bias| of {0} after tap {1}, against {2}, and the total error with {3} realizations.\n"
+      "$rungs << END\n{4}END\n"
+      "set terminal svg size 800,600\nset output '{5}'\nset logscale xy\n"
+      "set xlabel 'core time of a realization, s'\nset ylabel 'error of {0}' noenhanced\n"
+      "set key outside bottom\n"
+      "plot $rungs using 1:2:3 with yerrorbars pointtype 7 title '|bias|', \\\n"
+      "     $rungs using 1:4 with points pointtype 4 title 'with the statistical error of {3} "
+      "realizations', \\\n"
+      "     $rungs using 1:2:5 with labels offset 0,1 font ',9' noenhanced notitle\n",
+      cost.label.name, study.pilot_taps(), study.rungs()[study.reference().last].name,
+      scene_realizations, data, image);
+}
+
+}  // namespace jostle

@@ -1,0 +1,171 @@
+#include "cli/cost_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ensemble/moments.hpp"
+
+namespace jostle {
+
+namespace {
+
+double deviation(std::span<const double> values) {
+  Moments moments;
+  for (const double value : values) moments.add(value);
+  return moments.standard_error() * std::sqrt(static_cast<double>(moments.count()));
+}
+
+std::string part_name(Rung::Part part) {
+  switch (part) {
+    case Rung::Part::scene:
+      return "scene";
+    case Rung::Part::stop:
+      return "stop";
+    case Rung::Part::interval:
+      return "interval";
+    case Rung::Part::step:
+      return "step";
+    case Rung::Part::adaptation:
+      return "adaptation";
+    case Rung::Part::spheres:
+      return "spheres";
+  }
+  return "";
+}
+
+}  // namespace
+
+CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint64_t taps)
+    : rungs_(std::move(rungs)),
+      taps_(taps),
+      pilot_taps_(file.study().points.front().taps),
+      rounds_(file.study().realizations) {
+  read_times(file);
+  for (const ObservableLabel& label : file.study().points.front().observables) {
+    observables_.push_back(read_observable(file, label));
+  }
+}
+
+void CostStudy::read_times(const ResultsFile& file) {
+  std::vector<double> seconds(rungs_.size()), trials(rungs_.size());
+  for (const RealizationSummary& one : file.realizations()) {
+    seconds[one.id.point] += one.seconds;
+    trials[one.id.point] += static_cast<double>(one.trials);
+  }
+  const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
+  for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
+    const std::vector<double> sweeps =
+        file.block(p, "sweeps", {1, pilot_taps_ + 1}, {0, file.study().realizations});
+    Moments all, late;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+      all.add(sweeps[i]);
+      if (1 + i / rounds_ >= first) late.add(sweeps[i]);
+    }
+    // A start's seconds are what the trials of the taps leave of all.
+    const double n_spheres = rungs_[p].n_spheres;
+    const double of_taps =
+        all.mean() * n_spheres * static_cast<double>(pilot_taps_ * rounds_) / trials[p];
+    const double per_sweep = seconds[p] / trials[p] * n_spheres;
+    times_.push_back({.start_seconds = seconds[p] * (1 - of_taps) / rounds_,
+                      .tap_seconds = per_sweep * late.mean(),
+                      .sweeps = late.mean()});
+  }
+}
+
+double CostStudy::realization_seconds(std::size_t rung) const {
+  return times_[rung].start_seconds + times_[rung].tap_seconds * static_cast<double>(taps_);
+}
+
+CostOfObservable CostStudy::read_observable(const ResultsFile& file,
+                                            const ObservableLabel& label) const {
+  CostOfObservable cost;
+  cost.label = label;
+  std::vector<std::vector<double>> values;  // [n_rungs][n_taps, n_rounds]
+  for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
+    values.push_back(file.block(p, label.name, {1, pilot_taps_ + 1}, {0, rounds_}));
+  }
+  const auto at = [&](std::size_t rung, std::uint64_t tap) {
+    return std::span(values[rung]).subspan((tap - 1) * rounds_, rounds_);
+  };
+  const MostComplete best = most_complete(rungs_);
+  std::vector<double> means;
+  for (std::size_t p = 0; p < rungs_.size(); ++p) {
+    for (std::uint64_t tap = 1; tap <= pilot_taps_; ++tap) {
+      const PairedBias bias = paired_bias(at(p, tap), at(best.last, tap));
+      cost.bias_by_tap.push_back(bias.bias);
+      cost.bias_error_by_tap.push_back(bias.error);
+      if (tap == pilot_taps_) cost.biases.push_back(bias);
+    }
+    Moments moments;
+    for (const double value : at(p, pilot_taps_)) moments.add(value);
+    means.push_back(moments.mean());
+    cost.settings.push_back({.bias = cost.biases.back().bias,
+                             .bias_error = cost.biases.back().error,
+                             .sigma = deviation(at(p, pilot_taps_)),
+                             .realization_seconds = realization_seconds(p)});
+  }
+  cost.remainder = remainder(means[best.two_before], means[best.before], means[best.last]);
+  return cost;
+}
+
+std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
+  std::vector<std::string> names, parts;
+  std::vector<std::uint64_t> taps(pilot_taps_);
+  for (std::uint64_t t = 0; t < pilot_taps_; ++t) taps[t] = t + 1;
+  std::vector<double> tap_seconds, start_seconds, sweeps, core_hours;
+  for (std::size_t p = 0; p < rungs_.size(); ++p) {
+    names.push_back(rungs_[p].name);
+    parts.push_back(part_name(rungs_[p].part));
+    tap_seconds.push_back(times_[p].tap_seconds);
+    start_seconds.push_back(times_[p].start_seconds);
+    sweeps.push_back(times_[p].sweeps);
+    core_hours.push_back(realization_seconds(p) * scene_realizations / 3600);
+  }
+  std::vector<Table> tables;
+  const std::vector<std::string> rung = {"rung"}, by_tap = {"rung", "tap"};
+  for (const CostOfObservable& cost : observables_) {
+    std::vector<double> bias, error, reduction, sigma, statistical;
+    for (std::size_t p = 0; p < rungs_.size(); ++p) {
+      bias.push_back(cost.biases[p].bias);
+      error.push_back(cost.biases[p].error);
+      reduction.push_back(cost.biases[p].variance_reduction);
+      sigma.push_back(cost.settings[p].sigma);
+      statistical.push_back(sigma.back() / std::sqrt(static_cast<double>(scene_realizations)));
+    }
+    const std::string& units = cost.label.units;
+    Table table{.name = "cost/" + cost.label.name};
+    table.axes = {{"rung", rung, names, "1", "setting", ""},
+                  {"tap", {"tap"}, taps, "taps", "tap of the pilot", ""}};
+    table.quantities = {
+        {"part", rung, parts, "1", "what differs from the scene", ""},
+        {"bias", rung, bias, units, "less the most complete rung, paired", ""},
+        {"bias_error", rung, error, units, "standard error over rounds", ""},
+        {"variance_reduction", rung, reduction, "1", "by pairing, of the difference", ""},
+        {"sigma", rung, sigma, units, "deviation between realizations", ""},
+        {"statistical_error", rung, statistical, units, "with the scene's realizations", ""},
+        {"sweeps_per_tap", rung, sweeps, "1", "sweeps of a late tap of the pilot", ""},
+        {"tap_seconds", rung, tap_seconds, "s", "core time of such a tap", ""},
+        {"start_seconds", rung, start_seconds, "s", "core time of a start", ""},
+        {"core_hours", rung, core_hours, "h", "of the scene's realizations, all taps", ""},
+        {"pareto", rung, pareto_front(cost.settings), "1", "1: no rung is better and faster", ""},
+        {"bias_by_tap", by_tap, cost.bias_by_tap, units, "likewise, after each tap", ""},
+        {"bias_by_tap_error", by_tap, cost.bias_error_by_tap, units, "standard error", ""},
+        {"remainder",
+         {},
+         std::vector{cost.remainder},
+         units,
+         "that the most complete rung still lacks, extrapolated",
+         ""}};
+    table.notes = {{"observable", cost.label.name},
+                   {"reference", rungs_[most_complete(rungs_).last].name},
+                   {"rounds", fmt::to_string(rounds_)},
+                   {"scene_realizations", fmt::to_string(scene_realizations)},
+                   {"scene_taps", fmt::to_string(taps_)}};
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace jostle

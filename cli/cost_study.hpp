@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/ladder.hpp"
+#include "ensemble/accuracy.hpp"
+#include "ensemble/table.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+
+/// What a rung takes, on one core.
+struct RungTime {
+  double start_seconds = 0,
+         tap_seconds = 0;  // of one realization; a tap of the pilot's second half
+  double sweeps = 0;       // of such a tap
+};
+
+/// What the pilot found of one observable, after its last tap.
+struct CostOfObservable {
+  ObservableLabel label;
+  std::vector<PairedBias> biases;  // [n_rungs]
+  std::vector<Setting> settings;   // [n_rungs], for the whole run of the scene
+  double remainder = 0;            // that the most complete rung still lacks, extrapolated
+  std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_rungs, n_taps], taps 1 .. n_taps
+};
+
+/// A pilot over the rungs of a ladder, as far as its rounds (realizations) are complete.
+class CostStudy {
+ public:
+  /// `taps` is the number of taps of the whole scene, for which times are estimated.
+  CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint64_t taps);
+
+  const std::vector<Rung>& rungs() const { return rungs_; }
+  std::uint32_t rounds() const { return rounds_; }
+  std::uint64_t pilot_taps() const { return pilot_taps_; }
+  std::uint64_t taps() const { return taps_; }
+  const std::vector<RungTime>& times() const { return times_; }
+  const std::vector<CostOfObservable>& observables() const { return observables_; }
+  MostComplete reference() const { return most_complete(rungs_); }
+  /// Core seconds of a whole realization.
+  double realization_seconds(std::size_t rung) const;
+
+  /// cost/<observable>: one row a rung, and the bias by tap.
+  std::vector<Table> tables(std::uint32_t scene_realizations) const;
+
+ private:
+  void read_times(const ResultsFile& file);
+  CostOfObservable read_observable(const ResultsFile& file, const ObservableLabel& label) const;
+
+  std::vector<Rung> rungs_;
+  std::uint64_t taps_ = 0, pilot_taps_ = 0;
+  std::uint32_t rounds_ = 0;
+  std::vector<RungTime> times_;
+  std::vector<CostOfObservable> observables_;
+};
+
+}  // namespace jostle

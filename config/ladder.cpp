@@ -1,0 +1,188 @@
+#include "config/ladder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/grids.hpp"
+#include "config/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::uint64_t most_sweeps = 1'000'000'000;
+constexpr std::uint64_t complete_interval = 100;
+constexpr double narrowest_half = 4;  // diameters
+
+/// The double nearest to the value's first 15 digits: 1e-7, not 1.0000000000000001e-07.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.15g}", value));
+}
+
+std::uint64_t raised(std::uint64_t sweeps, double factor) {
+  const double product = static_cast<double>(sweeps) * factor;
+  return product < static_cast<double>(most_sweeps) ? static_cast<std::uint64_t>(product)
+                                                    : most_sweeps;
+}
+
+class LadderMaker {
+ public:
+  explicit LadderMaker(const Scene& scene) : scene_(scene) {
+    add(Rung::Part::scene, "as the scene", scene.relax);
+  }
+
+  std::vector<Rung> make() {
+    std::visit([&](const auto& rule) { stops(rule); }, scene_.relax.stop.rule);
+    std::visit([&](const auto& move) { steps(move); }, scene_.relax.move);
+    half_the_spheres();
+    return std::move(rungs_);
+  }
+
+ private:
+  void stops(const MeanHeightStop& rule) {
+    for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
+      MeanHeightStop other = rule;
+      other.eta = rounded(rule.eta * factor);
+      if (other.eta < 1) stop(other, factor, fmt::format("eta = {:.3g}", other.eta));
+    }
+    for (const std::uint64_t interval : {rule.every_sweeps / 10, rule.every_sweeps * 10}) {
+      if (interval < 1) continue;
+      MeanHeightStop other = rule;
+      other.every_sweeps = interval;
+      Relaxation relax = scene_.relax;
+      relax.stop.rule = other;
+      add(Rung::Part::interval, fmt::format("test every {} sweeps", interval), relax);
+    }
+  }
+
+  void stops(const BulkFractionStop& rule) {
+    for (const double factor : {10.0, 0.1}) {
+      BulkFractionStop other = rule;
+      other.change = rounded(rule.change * factor);
+      stop(other, factor, fmt::format("change = {:.3g}", other.change));
+    }
+    for (const double eta : {1e-5, 1e-6}) {
+      stop(MeanHeightStop{.eta = eta, .every_sweeps = complete_interval}, 0.01,
+           fmt::format("mean height, eta = {:.3g}", eta));
+    }
+  }
+
+  void stops(const SweepsStop& rule) {
+    for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
+      const SweepsStop other{raised(rule.sweeps, 1 / factor)};
+      if (other.sweeps > 0) stop(other, factor, fmt::format("{} sweeps", other.sweeps));
+    }
+  }
+
+  void stop(const StopRule& rule, double factor, std::string name) {
+    Relaxation relax = scene_.relax;
+    relax.stop.rule = rule;
+    relax.stop.max_sweeps = raised(relax.stop.max_sweeps, std::max(1.0, 1 / factor));
+    add(Rung::Part::stop, std::move(name), relax);
+  }
+
+  template <class AnyMove>
+  void largest_steps(const AnyMove& move, const char* name) {
+    for (const double factor : {0.5, 2.0}) {
+      AnyMove other = move;
+      other.max_step = rounded(move.max_step * factor);
+      if (other.max_step > 2) continue;
+      Relaxation relax = scene_.relax;
+      relax.move = other;
+      add(Rung::Part::step, fmt::format("{} = {:.3g}", name, other.max_step), relax);
+    }
+  }
+
+  void steps(const PolarMove& move) { largest_steps(move, "d_max"); }
+
+  void steps(const MetropolisMove& move) {
+    largest_steps(move, "delta");
+    const auto adapted = [&](const char* name, std::optional<StepAdaptation> adaptation) {
+      const bool skips = scene_.relax.sampler == Sampler::skipping;
+      if (skips && adaptation && adaptation->base == AcceptanceBase::not_upward) return;
+      MetropolisMove other = move;
+      other.adaptation = adaptation;
+      Relaxation relax = scene_.relax;
+      relax.move = other;
+      add(Rung::Part::adaptation, name, relax);
+    };
+    adapted("published delta rule", StepAdaptation{});
+    adapted("delta of falling trials, 2 %",
+            StepAdaptation{.threshold = 0.02, .base = AcceptanceBase::not_upward});
+    adapted("fixed delta", std::nullopt);
+  }
+
+  void half_the_spheres() {
+    const bool fills = std::holds_alternative<SteepestDescentPour>(scene_.start) ||
+                       std::holds_alternative<FittedPour>(scene_.start) ||
+                       std::holds_alternative<RandomSettle>(scene_.start);
+    Container half = scene_.container;
+    auto* periodic = std::get_if<PeriodicBox>(&half);
+    auto* walled = std::get_if<WalledBox>(&half);
+    if (!fills || (!periodic && !walled) || scene_.n_spheres < 2) return;
+    double& width = periodic ? periodic->width_x : walled->width_x;
+    width *= 0.5;
+    if (width < narrowest_half) return;
+    add(Rung::Part::spheres, "half the footprint", scene_.relax);
+    rungs_.back().n_spheres /= 2;
+    rungs_.back().container = half;
+  }
+
+  void add(Rung::Part part, std::string name, const Relaxation& relax) {
+    const bool known =
+        part != Rung::Part::spheres &&
+        std::ranges::any_of(rungs_, [&](const Rung& rung) { return rung.relax == relax; });
+    if (known) return;
+    rungs_.push_back({part, std::move(name), relax, scene_.n_spheres, scene_.container});
+  }
+
+  const Scene& scene_;
+  std::vector<Rung> rungs_;
+};
+
+}  // namespace
+
+std::vector<Rung> ladder(const Scene& scene) {
+  return LadderMaker(scene).make();
+}
+
+MostComplete most_complete(const std::vector<Rung>& rungs) {
+  MostComplete found;  // the scene's own comes before the more complete ones
+  for (std::size_t i = 0; i < rungs.size(); ++i) {
+    if (rungs[i].part == Rung::Part::stop) found = {0, found.last, i};
+  }
+  return found;
+}
+
+Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps) {
+  Scene out = scene;
+  out.name = scene.name + "-cost";
+  out.streams = Streams::matched;
+  out.realizations = 1;
+  out.until = {};
+  out.fits.clear();
+  out.analyse = {};
+  out.snapshots = SnapshotChoice{};
+  out.protocol.clear();
+  for (const Stage& stage : stages(scene.protocol)) {
+    const std::uint64_t count = std::min(stage.count, taps);
+    if (count > 0) out.protocol.push_back({stage.tap, std::nullopt, count});
+    taps -= count;
+  }
+  const bool relaxes = std::holds_alternative<RandomSettle>(scene.start) ||
+                       std::holds_alternative<FittedPour>(scene.start);
+  if (relaxes && !out.relax_start) out.relax_start = scene.relax;
+  SweepAxis axis;
+  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};
+  for (const Rung& rung : rungs) {
+    axis.columns[0].second.push_back(written(rung.relax));
+    axis.columns[1].second.push_back(rung.n_spheres);
+    axis.columns[2].second.push_back(written(rung.container));
+  }
+  out.sweep = {axis};
+  return out;
+}
+
+}  // namespace jostle

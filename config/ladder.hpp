@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace jostle {
+
+/// One setting of a scene's accuracy, everything else as the scene has it.
+struct Rung {
+  enum class Part { scene, stop, interval, step, adaptation, spheres };
+  Part part = Part::scene;
+  std::string name;  // "eta = 1e-06"
+  Relaxation relax;
+  std::uint32_t n_spheres = 0;
+  Container container;
+};
+
+/// The scene's own setting first, then the others; within a part from rough to complete. Stops:
+/// eta, change or sweeps, tenfold and a hundredfold (a published bulk-fraction rule ends with a
+/// complete one by mean height); test intervals; the largest step halved and doubled; of
+/// Metropolis moves the published adaptation, this project's, and none; half the spheres on half
+/// the footprint, where the start fills any. Caps on sweeps are raised with the stops.
+std::vector<Rung> ladder(const Scene& scene);
+
+/// The rungs whose stops are most complete, the last three: two before, before, last. The last is
+/// what the others are compared with.
+struct MostComplete {
+  std::size_t two_before = 0, before = 0, last = 0;
+};
+MostComplete most_complete(const std::vector<Rung>& rungs);
+
+/// The scene without its sweep, cut to `taps` taps, as a sweep over the rungs in their order, with
+/// matched streams, and with starts relaxed as the scene has it: so that realization m begins at
+/// every rung from the same bed. Keeps no snapshots.
+Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps);
+
+}  // namespace jostle

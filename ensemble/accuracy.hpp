@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+// What accuracy costs: settings of a relaxation compared in pairs, realization by realization, each
+// pair from one starting packing.
+namespace jostle {
+
+/// A setting against the reference: the mean of the pairs' differences.
+struct PairedBias {
+  std::size_t pairs = 0;  // realizations that both have
+  double bias = 0;        // NaN without pairs
+  double error = 0;       // standard error; NaN below two pairs
+  /// By how much pairing shrinks the variance of the difference: (s^2 + s_ref^2) / s_difference^2.
+  /// NaN below two pairs; infinite where all differences are the same.
+  double variance_reduction = 0;
+};
+
+/// values and reference: one a realization, NaN where it is missing.
+PairedBias paired_bias(std::span<const double> values, std::span<const double> reference);
+
+/// What a ladder's last rung still lacks, from the last three, each more complete than the one
+/// before: if steps go on to shrink as the last two did, X_inf - X_last = d r / (1 - r) with
+/// d = X_last - X_before and r the ratio of the two steps. Where they do not shrink (r outside
+/// 0 .. 0.9) the last step itself, which bounds nothing.
+double remainder(double two_before, double before, double last);
+
+/// A setting as a choice.
+struct Setting {
+  double bias = 0, bias_error = 0;  // of the observable
+  double sigma = 0;                 // deviation between realizations, 1/(M - 1)
+  double realization_seconds = 0;   // of a whole one, on one core
+};
+
+/// |bias| + its error, and sigma / M^(1/2), in quadrature.
+double total_error(const Setting& setting, std::uint64_t realizations);
+
+struct Choice {
+  std::size_t setting = 0;
+  std::uint64_t realizations = 0;  // at least 2
+  double core_seconds = 0;
+};
+
+/// The setting and number of realizations that reach a total error of at most `target` (above 0)
+/// for the least core time; nothing where every bias is too large. Settings without a known bias
+/// are passed over.
+std::optional<Choice> cheapest(std::span<const Setting> settings, double target);
+
+/// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
+std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings);
+
+}  // namespace jostle

@@ -1,0 +1,88 @@
+"""jostle cost: what accuracy costs, in pairs from the same packings."""
+
+import csv
+import unittest
+
+import h5py
+
+from support import BAD_INPUT, OK, TINY, Case, changed
+
+SCENE = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
+                relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}})
+del SCENE["sweep"]
+
+
+class Cost(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(SCENE)
+
+    def cost(self, *arguments, expect=OK):
+        return self.jostle("cost", "scene.json", "--no-progress", *arguments, expect=expect)
+
+    def rows(self, name):
+        """The rungs of bottom_fraction from a CSV, without times."""
+        lines = (self.folder / name).read_text().splitlines()
+        start = lines.index("# cost/bottom_fraction")
+        header = next(i for i in range(start, len(lines)) if lines[i].startswith("rung,part"))
+        end = next((i for i in range(header, len(lines)) if not lines[i]), len(lines))
+        rows = list(csv.DictReader(lines[header:end]))
+        timed = ("tap_seconds", "start_seconds", "core_hours", "pareto")
+        return [{key: row[key] for key in row if key not in timed} for row in rows]
+
+    def test_biases_are_means_of_paired_differences(self):
+        done = self.cost("--rounds", "3", "--taps", "5", "--target", "0.5", "--figure", "c.gp",
+                         "--csv", "c.csv")
+        self.assertIn("against eta = 1e-06", done.stdout)
+        self.assertRegex(done.stdout, "For an error of 0.5 in bottom_fraction at tap 40: .+, 2 real")
+        with h5py.File(self.folder / "tiny-cost.h5") as stored:
+            table = stored["analysis/cost/bottom_fraction"]
+            names = [name.decode() for name in table["rung"][:]]
+            last = [stored[f"observables/point_{p:04}/bottom_fraction"][5]
+                    for p in range(len(names))]
+            reference = last[names.index("eta = 1e-06")]
+            for p, values in enumerate(last):
+                difference = values - reference
+                self.assertAlmostEqual(table["bias"][p], difference.mean(), places=14)
+                self.assertAlmostEqual(table["bias_error"][p],
+                                       difference.std(ddof=1) / 3 ** 0.5, places=14)
+                self.assertAlmostEqual(table["bias_by_tap"][p, 4], difference.mean(), places=14)
+            # Pairs begin from the same bed, but for half the spheres.
+            starts = [stored[f"observables/point_{p:04}/mean_height"][0] for p in range(len(names))]
+            for name, start in zip(names, starts):
+                if name != "half the footprint":
+                    self.assertTrue((start == starts[0]).all(), name)
+            sweeps = table["sweeps_per_tap"][:]
+            self.assertGreater(sweeps[names.index("eta = 1e-06")], sweeps[0])
+        self.assertIn("set output 'c.svg'", (self.folder / "c.gp").read_text())
+        self.assertEqual([row["rung"] for row in self.rows("c.csv")], names)
+
+    def test_the_same_rounds_give_the_same_numbers(self):
+        self.cost("--rounds", "4", "--taps", "3", "--csv", "a.csv", "--threads", "1")
+        self.cost("--rounds", "2", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5")
+        kept = self.cost("--rounds", "4", "--taps", "3", "-o", "b.h5", expect=BAD_INPUT)
+        self.assertIn("b.h5 exists and is kept", kept.stderr)
+        self.cost("--rounds", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
+                  "--resume")
+        self.assertEqual(self.rows("a.csv"), self.rows("b.csv"))
+        self.assertEqual(self.digest("tiny-cost.h5"), self.digest("b.h5"))
+        other = self.cost("--rounds", "4", "--taps", "4", "-o", "b.h5", "--resume", "--observable",
+                          "mean_height")
+        self.assertIn("mean_height: after 4 taps, 4 rounds", other.stdout)
+
+    def test_a_budget_decides_whole_rounds(self):
+        done = self.cost("--budget", "0s", "--taps", "2")
+        self.assertIn("after 2 taps, 2 rounds", done.stdout)
+        done = self.cost("--budget", "1s", "--taps", "2", "--resume")
+        self.assertNotIn(" 2 rounds", done.stdout)
+
+    def test_what_cannot_be_costed_is_refused(self):
+        refused = self.cost("--observable", "bulk_fraction", expect=BAD_INPUT)
+        self.assertIn("the scene observes mean_height, bottom_fraction", refused.stderr)
+        self.write(changed(SCENE, protocol=[], snapshots={}))
+        self.assertIn("there is no tap", self.cost(expect=BAD_INPUT).stderr)
+        self.assertEqual(self.files(), ["scene.json"])
+
+
+if __name__ == "__main__":
+    unittest.main()

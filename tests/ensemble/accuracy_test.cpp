@@ -1,0 +1,74 @@
+#include "ensemble/accuracy.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+namespace jostle {
+
+TEST_CASE("A bias is the mean of the pairs' differences") {
+  const std::vector<double> values = {1, 2, 4, std::nan("")}, reference = {0.5, 1.5, 2.5, 7};
+  const PairedBias found = paired_bias(values, reference);
+  CHECK(found.pairs == 3);
+  CHECK(found.bias == Approx(2.5 / 3));
+  // Differences 0.5, 0.5, 1.5: variance 1/3.
+  CHECK(found.error == Approx(std::sqrt(1.0 / 3 / 3)));
+  // Variances of 1, 2, 4 and of 0.5, 1.5, 2.5.
+  CHECK(found.variance_reduction == Approx((7.0 / 3 + 1) / (1.0 / 3)));
+}
+
+TEST_CASE("Without two pairs there is no error, and equal differences need no others") {
+  const std::vector<double> one = {1}, other = {3};
+  CHECK(paired_bias(one, other).bias == -2);
+  CHECK(std::isnan(paired_bias(one, other).error));
+  const std::vector<double> a = {1, 2}, b = {2, 3};
+  CHECK(std::isinf(paired_bias(a, b).variance_reduction));
+}
+
+TEST_CASE("What a geometric ladder lacks is the rest of the series") {
+  // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
+  CHECK(remainder(0.5, 0.75, 0.875) == Approx(0.125));
+  CHECK(remainder(0, 1, 2) == 1);       // steps that do not shrink
+  CHECK(remainder(0, 1, 0.5) == -0.5);  // steps of changing sign
+}
+
+TEST_CASE("The cheapest setting trades bias against realizations") {
+  const std::vector<Setting> settings = {
+      {.bias = 0.003, .bias_error = 0, .sigma = 0.01, .realization_seconds = 1},
+      {.bias = 0, .bias_error = 0, .sigma = 0.01, .realization_seconds = 3},
+      {.bias = 0.02, .bias_error = 0, .sigma = 0.01, .realization_seconds = 0.1}};
+  // 0.005: 1e-4 / (25e-6 - 9e-6) = 6.25 -> 7 realizations of a second, or 4 of three.
+  const auto rough = cheapest(settings, 0.005);
+  REQUIRE(rough);
+  CHECK(rough->setting == 0);
+  CHECK(rough->realizations == 7);
+  CHECK(rough->core_seconds == 7);
+  CHECK(total_error(settings[0], 7) <= 0.005);
+  CHECK(total_error(settings[0], 6) > 0.005);
+  // Close to the bias only the complete one is left.
+  const auto fine = cheapest(settings, 0.0031);
+  REQUIRE(fine);
+  CHECK(fine->setting == 1);
+  CHECK(fine->realizations == 11);
+  CHECK_FALSE(cheapest(std::vector<Setting>{settings[2]}, 0.02));
+}
+
+TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Setting> settings = {
+      {.bias = 0.001, .bias_error = unknown, .sigma = 0.01, .realization_seconds = 1},
+      {.bias = 0.001, .bias_error = 0.002, .sigma = 0, .realization_seconds = 1}};
+  CHECK_FALSE(cheapest(settings, 0.003));
+  CHECK(cheapest(settings, 0.0031)->setting == 1);
+  CHECK(pareto_front(settings) == std::vector<std::uint64_t>{0, 1});
+}
+
+TEST_CASE("The front holds what is neither slower nor worse") {
+  const std::vector<Setting> settings = {{.bias = 0.01, .realization_seconds = 1},
+                                         {.bias = -0.02, .realization_seconds = 2},
+                                         {.bias = 0.001, .realization_seconds = 5},
+                                         {.bias = 0, .realization_seconds = 9}};
+  CHECK(pareto_front(settings) == std::vector<std::uint64_t>{1, 0, 1, 1});
+}
+
+}  // namespace jostle
