@@ -9,14 +9,13 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
+#include "cli/effects.hpp"
 #include "cli/pilot.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/text_table.hpp"
 
 namespace jostle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
 constexpr double process_bytes = 40e6;               // libraries and bookkeeping
@@ -31,33 +30,6 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
   std::vector<std::size_t> points{0, n_points / 2, n_points - 1};
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
-}
-
-/// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
-std::string in_words(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_structured()) return value.dump();
-  std::string words;
-  for (const auto& [key, member] : value.items()) {
-    const std::string text = in_words(member);
-    if (!words.empty()) words += value.is_array() ? "; " : ", ";
-    if (value.is_array()) {
-      words += text;
-    } else if (member.is_object()) {
-      words += member.empty() ? key : fmt::format("{} ({})", key, text);
-    } else {
-      words += fmt::format("{} {}", key, text);
-    }
-  }
-  return words;
-}
-
-void print_effects(const LoadedScene& loaded) {
-  const auto scene = Json::parse(loaded.resolved);
-  fmt::print("effects\n");
-  for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots"}) {
-    if (scene.contains(part)) fmt::print("  {:<11}{}\n", part, in_words(scene[part]));
-  }
 }
 
 void print_size(const LoadedScene& loaded, const Study& study) {
@@ -116,7 +88,7 @@ void print_pilot(const LoadedScene& loaded) {
 void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
   fmt::print("{}\n\n", loaded.resolved);
-  print_effects(loaded);
+  fmt::print("{}", effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
   print_size(loaded, study_of(loaded));
   std::fflush(stdout);
   if (arguments.no_pilot) return;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/effects.hpp"
 #include "cli/report.hpp"
 #include "cli/text_table.hpp"
 #include "results/live_run.hpp"
@@ -126,7 +127,7 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
          fmt::format("jostle {} ({}) on {}, {}, {} threads", process.version, process.git_revision,
                      process.host, process.started, process.threads));
   }
-  return text + "\n" + report(file);
+  return text + effects_text(scene) + "\n" + report(file);
 }
 
 struct InfoArguments {
