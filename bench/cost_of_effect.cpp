@@ -1,12 +1,16 @@
-// Makes COUNT trials of a scene with one effect, or COUNT calls of an observable, to be counted by
-// callgrind (which has no AVX-512: the loops take AVX2).
+// Makes COUNT trials of a scene with one effect, COUNT taps of a realization, or COUNT
+// measurements, to be counted by callgrind (which has no AVX-512: the loops take AVX2).
 #include <cstdlib>
 #include <map>
 #include <string>
 
 #include "bench/cost_state.hpp"
 #include "engine/trial_loop.hpp"
+#include "ensemble/realization.hpp"
 #include "structure/observables.hpp"
+#include "structure/pores.hpp"
+#include "structure/snapshot_statistics.hpp"
+#include "structure/voronoi.hpp"
 
 namespace jostle::bench {
 namespace {
@@ -31,6 +35,25 @@ const std::map<std::string, Observable> observables = {
     {"bulk_fraction", BulkFraction{}},
 };
 
+double any_height(const Packing& bed) {
+  return static_cast<double>(height_histogram(bed, 0.1).size());
+}
+double contacts(const Packing& bed) {
+  return coordination(bed, 1.05);
+}
+double cells(const Packing& bed) {
+  return voronoi_cells(bed).volumes[0];
+}
+double cells_and_pores(const Packing& bed) {
+  return static_cast<double>(pores(bed, voronoi_cells(bed)).size());
+}
+
+using Measurement = double (*)(const Packing&);
+const std::map<std::string, Measurement> measurements = {{"height_histogram", any_height},
+                                                         {"coordination", contacts},
+                                                         {"voronoi_cells", cells},
+                                                         {"cells_and_pores", cells_and_pores}};
+
 bool make_trials(const Scene& scene, std::uint64_t count) {
   const auto loop = make_trial_loop(scene.container, scene.move, cost_trials, InstructionSet::avx2);
   loop->load(cost_bed(scene.container));
@@ -38,12 +61,32 @@ bool make_trials(const Scene& scene, std::uint64_t count) {
   return loop->tally().accepted > 0;
 }
 
+template <class Measure>
+bool measure(const Measure& measurement, const Packing& bed, std::uint64_t count) {
+  double sum = 0;
+  for (std::uint64_t k = 0; k < count; ++k) sum += measurement(bed);
+  return sum > 0;
+}
+
 bool observe(const Observable& observable, std::uint64_t count) {
   const Packing bed = cost_bed(PeriodicBox{8, 8});
   const Observer observer({observable}, bed);
-  double sum = 0;
-  for (std::uint64_t k = 0; k < count; ++k) sum += observer(bed)[0];
-  return sum > 0;
+  return measure([&](const Packing& packing) { return observer(packing)[0]; }, bed, count);
+}
+
+// Taps of a realization that observes nothing and keeps no snapshot.
+bool make_taps(std::uint64_t count) {
+  Plan plan;
+  plan.seed = cost_seed;
+  plan.container = PeriodicBox{8, 8};
+  plan.n_spheres = cost_spheres;
+  plan.start = SteepestDescentPour{};
+  plan.protocol = {{cost_tap, count}};
+  plan.stop = {.rule = SweepsStop{cost_sweeps}};
+  Realization realization(plan, 0);
+  std::uint64_t rows = 0;
+  while (!realization.finished()) rows += realization.advance(100'000'000).row.has_value();
+  return rows == count + 1;
 }
 
 }  // namespace
@@ -60,5 +103,9 @@ int main(int argc, char** argv) {
   if (const auto found = observables.find(effect); found != observables.end()) {
     return observe(found->second, count) ? 0 : 1;
   }
+  if (const auto found = measurements.find(effect); found != measurements.end()) {
+    return measure(found->second, cost_bed(jostle::PeriodicBox{8, 8}), count) ? 0 : 1;
+  }
+  if (effect == "taps") return make_taps(count) ? 0 : 1;
   return 2;
 }

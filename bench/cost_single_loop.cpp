@@ -1,5 +1,5 @@
-// Makes TRIALS trials with the one loop that this program knows: periodic sides, polar move. What
-// `cost_of_effect periodic` takes more than this is the price of what is there and not used.
+// "periodic COUNT" makes trials with the one loop that this program knows: periodic sides, polar
+// move. What `cost_of_effect` takes more than this is the price of what is there and not used.
 #include <cstdlib>
 #include <memory>
 
@@ -8,11 +8,11 @@
 
 int main(int argc, char** argv) {
   using namespace jostle;
-  if (argc != 2) return 2;
+  if (argc != 3) return 2;
   const PeriodicBox box{8, 8};
   const auto loop = std::make_unique<TypedTrialLoop<PeriodicBox, Rise::impossible>>(
       box, PolarMove{}, bench::cost_trials, avx2::proposal_kernels());
   loop->load(bench::cost_bed(box));
-  loop->run(std::strtoull(argv[1], nullptr, 10));
+  loop->run(std::strtoull(argv[2], nullptr, 10));
   return loop->tally().accepted > 0 ? 0 : 1;
 }

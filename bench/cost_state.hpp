@@ -7,14 +7,23 @@
 
 namespace jostle::bench {
 
-inline const StreamKey cost_trials = stream_key(20010222, 0, 0, Purpose::trials);
+inline constexpr std::uint64_t cost_seed = 20010222;
+inline constexpr std::uint32_t cost_spheres = 512;
+inline constexpr Dilate cost_tap{0.02};
+inline constexpr std::uint64_t cost_sweeps = 100;  // after a tap
+inline const StreamKey cost_trials = stream_key(cost_seed, 0, 0, Purpose::trials);
 
-/// A bed small enough to be poured under valgrind, dilated by 0.02: 512 spheres.
+/// A bed small enough to be poured under valgrind.
+inline Packing poured_cost_bed(const Container& container) {
+  RandomStream random(stream_key(cost_seed, 0, 0, Purpose::start));
+  return make_start(SteepestDescentPour{}, container, cost_spheres, random);
+}
+
+/// The same, tapped once.
 inline Packing cost_bed(const Container& container) {
-  RandomStream start_random(stream_key(20010222, 0, 0, Purpose::start));
-  RandomStream tap_random(stream_key(20010222, 0, 0, Purpose::tap));
-  Packing bed = make_start(SteepestDescentPour{}, container, 512, start_random);
-  excite(bed, Dilate{0.02}, tap_random);
+  RandomStream random(stream_key(cost_seed, 0, 0, Purpose::tap));
+  Packing bed = poured_cost_bed(container);
+  excite(bed, cost_tap, random);
   return bed;
 }
 
