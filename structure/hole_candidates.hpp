@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "structure/bernal_holes.hpp"
+#include "structure/delaunay.hpp"
+
+// Sets of spheres that are bonded as the corners of Bernal's holes are.
+namespace jostle {
+
+struct Edge {
+  std::uint32_t i, j;  // i < j
+  double length;       // diameters
+};
+
+/// The edges of Delaunay tetrahedra, each once, ascending. Hard spheres closer than 2^(1/2) always
+/// share one: no third comes into the sphere over their distance.
+std::vector<Edge> edges_of(const Packing& packing,
+                           const std::vector<DelaunayTetrahedron>& tetrahedra);
+
+/// Which spheres are bonded: closer than a length.
+class BondGraph {
+ public:
+  BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, double bond);
+
+  /// Ascending.
+  const std::vector<std::uint32_t>& bonded_to(std::uint32_t i) const { return bonded_[i]; }
+  bool bonded(std::uint32_t i, std::uint32_t j) const;
+  /// Number of bonded pairs of some spheres.
+  std::size_t count_within(std::span<const std::uint32_t> spheres) const;
+  /// Spheres bonded to both, ascending.
+  std::vector<std::uint32_t> bonded_to_both(std::uint32_t i, std::uint32_t j) const;
+
+ private:
+  std::vector<std::vector<std::uint32_t>> bonded_;
+};
+
+struct HoleCandidate {
+  HoleKind kind = HoleKind::unclassified;
+  std::vector<std::uint32_t> spheres;  // ascending
+  double gap = 0;  // longest bond less shortest other distance between them, diameters, < 0
+};
+
+/// All candidates but single tetrahedra that have a diagonal among the edges of `tetrahedra`, each
+/// once, in the order in which holes are taken.
+std::vector<HoleCandidate> hole_candidates(const Packing& packing,
+                                           const std::vector<DelaunayTetrahedron>& tetrahedra,
+                                           const BondGraph& bonds);
+
+}  // namespace jostle
