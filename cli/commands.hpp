@@ -18,5 +18,6 @@ void add_bench(CLI::App& app, int& code);
 void add_selftest(CLI::App& app, int& code);
 void add_fit(CLI::App& app, int& code);
 void add_analyse(CLI::App& app, int& code);
+void add_export(CLI::App& app, int& code);
 
 }  // namespace jostle

@@ -43,6 +43,7 @@ int parse_and_run(int argc, char** argv) {
   add_selftest(app, code);
   add_fit(app, code);
   add_analyse(app, code);
+  add_export(app, code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,8 +12,6 @@
 
 #include "results/container_text.hpp"
 #include "results/error.hpp"
-#include "results/packing_file.hpp"
-#include "results/publish.hpp"
 
 namespace jostle {
 namespace {
@@ -164,17 +162,12 @@ Packing read_extended_xyz(const std::string& path, std::optional<std::uint64_t> 
   return packing;
 }
 
-void write_extended_xyz(const std::string& path, const Packing& packing) {
-  const auto [kind, widths] = container_text(packing.container);
-  const double height = widths[2] > 0 ? widths[2] : top_height(packing) + sphere_radius;
-  const char* sides = kind == "fully_periodic" ? "T T T" : kind == "periodic" ? "T T F" : "F F F";
-  std::string text = fmt::format(
-      "{}\nLattice=\"{:.17g} 0 0 0 {:.17g} 0 0 0 {:.17g}\" Properties=species:S:1:pos:R:3 "
-      "pbc=\"{}\" container={}\n",
-      packing.centres.size(), widths[0], widths[1], height, sides, kind);
-  for (const Vec3 r : packing.centres)
-    text += fmt::format("X {:.17g} {:.17g} {:.17g}\n", r.x, r.y, r.z);
-  publish(path, std::as_bytes(std::span(text)));
+std::vector<Packing> read_extended_xyz_frames(const std::string& path) {
+  FrameReader reader(path);
+  std::vector<Packing> frames;
+  for (Packing packing; reader.next(packing);) frames.push_back(packing);
+  if (frames.empty()) throw ResultsError(path, "is empty");
+  return frames;
 }
 
 }  // namespace jostle

@@ -1,0 +1,149 @@
+"""jostle export: stored packings for OVITO, ParaView, and back."""
+
+import base64
+import struct
+import unittest
+import xml.etree.ElementTree
+
+import h5py
+
+from support import BAD_INPUT, TINY, Case, changed
+
+N = TINY["spheres"]
+
+
+def bits(numbers):
+    return [struct.pack("<d", number) for number in numbers]
+
+
+class Export(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(TINY)
+        self.run_scene()
+
+    def centres(self, point=0, realization=0, frame=-1):
+        """Of the results file, as h5py reads them."""
+        with h5py.File(self.folder / "tiny.h5") as file:
+            group = f"particles/point_{point:04}_realization_{realization:05}"
+            return file[group + "/position/value"][frame].tolist()
+
+    def lines(self, name):
+        return (self.folder / name).read_text().splitlines()
+
+    def test_extended_xyz_has_the_stored_bits_and_is_a_start(self):
+        out = self.jostle("export", "tiny.h5", "--format", "extxyz", "--sweep-point", 1,
+                          "--realization", 2).stdout
+        self.assertEqual(out, f"tiny.xyz: sweep point 1, realization 2, tap 4, {N} spheres\n")
+        lines = self.lines("tiny.xyz")
+        self.assertEqual(len(lines), N + 2)
+        for line, centre in zip(lines[2:], self.centres(1, 2)):
+            words = line.split()
+            self.assertEqual(bits(map(float, words[1:4])), bits(centre))
+            self.assertEqual(float(words[4]), 0.5)
+            self.assertTrue(0 < int(words[5]) <= 12)
+            self.assertTrue(0.7 < float(words[6]) < 4)
+        scene = changed(TINY, name="again", start={"file": {"path": "tiny.xyz"}})
+        del scene["sweep"]
+        self.write(scene, "again.json")
+        self.run_scene(scene="again.json")
+        with h5py.File(self.folder / "again.h5") as file:
+            start = file["particles/point_0000_realization_00000/position/value"][0].tolist()
+        self.assertEqual([bits(r) for r in start], [bits(r) for r in self.centres(1, 2)])
+
+    def test_lammps_dump_has_a_frame_a_tap(self):
+        self.jostle("export", "tiny.h5", "--format", "lammps", "--tap", "all")
+        lines = self.lines("tiny.dump")
+        self.assertEqual(len(lines), 2 * (N + 9))
+        for frame, tap in enumerate((0, 4)):
+            part = lines[frame * (N + 9):][:N + 9]
+            self.assertEqual(part[:5], ["ITEM: TIMESTEP", str(tap), "ITEM: NUMBER OF ATOMS", str(N),
+                                        "ITEM: BOX BOUNDS pp pp ff"])
+            self.assertEqual(part[8], "ITEM: ATOMS id type x y z radius coordination "
+                             "voronoi_volume q6 structure_type")
+            for line, centre in zip(part[9:], self.centres(frame=frame)):
+                self.assertEqual(bits(map(float, line.split()[2:5])), bits(centre))
+
+    def arrays(self, name):
+        """Every DataArray of a .vtp file."""
+        root = xml.etree.ElementTree.parse(self.folder / name).getroot()
+        self.assertEqual((root.get("type"), root.get("byte_order"), root.get("header_type")),
+                         ("PolyData", "LittleEndian", "UInt64"))
+        piece = root.find("PolyData/Piece")
+        self.assertEqual((piece.get("NumberOfPoints"), piece.get("NumberOfVerts")),
+                         (str(N), str(N)))
+        found = {}
+        for array in piece.iter("DataArray"):
+            raw = base64.b64decode(array.text.strip(), validate=True)
+            (size,) = struct.unpack("<Q", raw[:8])
+            self.assertEqual(size, len(raw) - 8)
+            code = {"Float64": "d", "Int64": "q", "UInt32": "I"}[array.get("type")]
+            found[array.get("Name")] = [value for (value,) in struct.iter_unpack("<" + code, raw[8:])]
+        return found, float(root.find("PolyData/FieldData/DataArray").text)
+
+    def test_vtk_points_have_the_stored_bits(self):
+        self.jostle("export", "tiny.h5", "--format", "vtp", "-o", "a.vtp")
+        arrays, tap = self.arrays("a.vtp")
+        self.assertEqual(tap, 4)
+        self.assertEqual(bits(arrays["Points"]),
+                         bits(x for centre in self.centres() for x in centre))
+        self.assertEqual(arrays["connectivity"], list(range(N)))
+        self.assertEqual(arrays["offsets"], list(range(1, N + 1)))
+        self.assertEqual(arrays["radius"], [0.5] * N)
+        self.assertEqual(len(arrays["coordination"]), N)
+        # Cells fill the box up to the top of the highest sphere.
+        top = max(z for _, _, z in self.centres()) + 0.5
+        self.assertAlmostEqual(sum(arrays["voronoi_volume"]) / (16 * top), 1, places=10)
+
+    def test_several_taps_in_vtk_are_listed_in_time(self):
+        self.jostle("export", "tiny.h5", "--format", "vtp", "--tap", "0,4")
+        root = xml.etree.ElementTree.parse(self.folder / "tiny.pvd").getroot()
+        listed = {item.get("timestep"): item.get("file") for item in root.iter("DataSet")}
+        self.assertEqual(listed, {"0": "tiny_tap0.vtp", "4": "tiny_tap4.vtp"})
+        for tap, name in listed.items():
+            self.assertEqual(self.arrays(name)[1], float(tap))
+
+    def test_an_extended_xyz_can_be_exported_too(self):
+        self.jostle("export", "tiny.h5", "--format", "extxyz", "--tap", "all", "-o", "all.xyz")
+        self.jostle("export", "all.xyz", "--format", "vtp", "--tap", 0)
+        self.assertEqual(bits(self.arrays("all.vtp")[0]["Points"]),
+                         bits(x for centre in self.centres(frame=0) for x in centre))
+
+    def test_files_that_exist_are_kept_without_force(self):
+        (self.folder / "tiny.pvd").write_text("mine")
+        refused = ["export", "tiny.h5", "--format", "vtp", "--tap", "all"]
+        self.assertIn("tiny.pvd exists and is kept",
+                      self.jostle(*refused, expect=BAD_INPUT).stderr)
+        self.assertEqual((self.folder / "tiny.pvd").read_text(), "mine")
+        self.assertFalse((self.folder / "tiny_tap0.vtp").exists())
+        self.jostle(*refused, "--force")
+        self.assertNotEqual((self.folder / "tiny.pvd").read_text(), "mine")
+        self.assertIn("is the input", self.jostle("export", "tiny.h5", "--format", "lammps", "-o",
+                                                  "tiny.h5", "--force", expect=BAD_INPUT).stderr)
+
+    def test_what_is_not_there_is_answered_with_what_is(self):
+        for arguments, answer in (
+                (["--tap", 3], "no positions of tap 3; kept: 0, 4"),
+                (["--realization", 3], "sweep point 1, realization 2: taps 0, 4"),
+                (["--sweep-point", 2], "the file has"),
+                (["--tap", "x"], "--tap x: neither a number nor"),
+                (["--format", "pdb"], "pdb")):
+            with self.subTest(arguments=arguments):
+                before = self.files()
+                command = ["export", "tiny.h5"]
+                if "--format" not in arguments:
+                    command += ["--format", "extxyz"]
+                self.assertIn(answer, self.jostle(*command, *arguments, expect=BAD_INPUT).stderr)
+                self.assertEqual(self.files(), before)
+        self.assertIn("neither a results file", self.jostle("export", "scene.json", "--format",
+                                                            "vtp", expect=BAD_INPUT).stderr)
+
+    def test_a_file_without_positions_says_so(self):
+        self.write(changed(TINY, name="bare", snapshots={"taps": [0, 4], "positions": False}))
+        self.run_scene()
+        self.assertIn("the file keeps no positions", self.jostle(
+            "export", "bare.h5", "--format", "extxyz", expect=BAD_INPUT).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
