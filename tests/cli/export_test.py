@@ -139,7 +139,7 @@ class Export(Case):
                                                             "vtp", expect=BAD_INPUT).stderr)
 
     def test_a_file_without_positions_says_so(self):
-        self.write(changed(TINY, name="bare", snapshots={"taps": [0, 4], "positions": False}))
+        self.write(changed(TINY, name="bare", snapshots={"taps": [0, 4], "keep": ["coordination"]}))
         self.run_scene()
         self.assertIn("the file keeps no positions", self.jostle(
             "export", "bare.h5", "--format", "extxyz", expect=BAD_INPUT).stderr)

@@ -30,8 +30,8 @@ void require_same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 Packing hard_to_write() {
   using Limits = std::numeric_limits<double>;
   return {FullyPeriodicBox{4, 1 / 0.3, 5.1},
-          {{Limits::denorm_min(), -0.0, 0.0},
-           {123 * Limits::denorm_min(), Limits::min(), 1e-300},
+          {{Limits::denorm_min(), -0.0, Limits::min()},
+           {2.5, 123 * Limits::denorm_min(), 1e-300},
            {1 + Limits::epsilon(), 1 - Limits::epsilon() / 2, 0.1 + 0.2},
            {2.0 / 3, 3.3, 5.0999999999999996}}};
 }
