@@ -148,7 +148,7 @@ void make_scene_analyses(const std::string& results, int threads, bool quiet) {
     }
   }
   for (const Table& table : tables) {
-    if (!quiet) fmt::print("\n{}", table_text(table, Detail::brief));
+    if (!quiet) std::fputs(table_text(table, Detail::brief).insert(0, 1, '\n').c_str(), stdout);
   }
   store_tables(results, "analysis", tables, provenance_of_this_run(fmt::to_string(threads)));
 }

@@ -9,18 +9,20 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/cost_report.hpp"
+#include "cli/failure.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
+#include "cli/output_file.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/table_output.hpp"
 #include "config/grids.hpp"
 #include "config/sweep.hpp"
 #include "ensemble/run.hpp"
-#include "results/error.hpp"
 #include "results/run_store.hpp"
 
 namespace jostle {
@@ -70,6 +72,7 @@ std::string observable_name(const Scene& scene, const std::string& wanted) {
 std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const LoadedScene& pilot,
                                      Study& study, const std::string& output,
                                      const Provenance& by) {
+  require_replaceable(output, pilot.scene.name + ".h5");
   const bool exists = std::filesystem::exists(output);
   if (!exists || (arguments.force && !arguments.resume)) {
     return RunStore::create(output, study, Shard{}, by, arguments.force);
@@ -148,7 +151,7 @@ class Rounds {
   Study study_;
   RunStore& store_;
   std::size_t longest_;
-  StopRequest stop_{std::nullopt};
+  StopRequest stop_;
   Progress progress_;
   std::uint64_t computed_ = 0;  // realizations
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
@@ -161,7 +164,7 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
   });
   const std::optional<double> target =
       arguments.target > 0 ? std::optional(arguments.target) : std::nullopt;
-  fmt::print("{}", cost_text(study, *cost, scene.realizations, target));
+  std::fputs(cost_text(study, *cost, scene.realizations, target).c_str(), stdout);
   const std::vector<Table> tables = study.tables(scene.realizations);
   if (!arguments.csv.empty()) {
     std::string csv;
@@ -172,12 +175,13 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
     const std::string image =
         std::filesystem::path(arguments.figure).replace_extension(".svg").string();
     write_text(arguments.figure, cost_figure(study, *cost, scene.realizations, image));
-    fmt::print("gnuplot {} draws {}\n", arguments.figure, image);
+    std::fputs(fmt::format("gnuplot {} draws {}\n", arguments.figure, image).c_str(), stdout);
   }
   keep_tables(output, "analysis", tables, by);
 }
 
 int run_cost(const CostArguments& arguments) {
+  outlive_readers();
   const LoadedScene loaded = load_scene(arguments.scene);
   const Scene scene = scene_at_point(loaded, arguments.point);
   const std::string observable = observable_name(scene, arguments.observable);
@@ -204,8 +208,13 @@ int run_cost(const CostArguments& arguments) {
     std::optional<CostStudy> found;
     found.emplace(ResultsFile(output), rungs, taps);
     write_reports(arguments, *found, scene, output, observable, by);
-  } catch (const ResultsError& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
+  } catch (const BadInput&) {
+    throw;
+  } catch (const std::exception& error) {
+    print_to_standard_error(
+        fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, "
+                    "--resume goes on with {}\n",
+                    failure_text(error), output));
     return exit_broken_surroundings;
   }
   return exit_ok;

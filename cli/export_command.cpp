@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/fit_source.hpp"
+#include "cli/output_file.hpp"
 #include "cli/scene_file.hpp"
 #include "results/export.hpp"
 #include "results/publish.hpp"
@@ -85,6 +86,9 @@ int export_packings(const ExportArguments& arguments) {
   const RealizationId id = wanted(arguments);
   const auto frames = kept_frames(arguments.input, id, tap_choice(arguments.taps));
   const auto files = exported_files(format, output, frames);
+  for (const ExportedFile& file : files) {
+    require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
+  }
   require_free(files, arguments);
   std::vector<std::uint64_t> taps;
   for (const ExportedFrame& frame : frames) taps.push_back(frame.tap);

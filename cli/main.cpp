@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "cli/commands.hpp"
+#include "cli/failure.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/version.hpp"
 
 namespace jostle {
@@ -55,6 +57,9 @@ int parse_and_run(int argc, char** argv) {
 /// Every error ends here, and says on stderr what is wrong.
 int run_program(int argc, char** argv) {
   try {
+    const auto log = spdlog::stderr_color_mt("jostle");
+    log->set_pattern("%T jostle: %v");
+    spdlog::set_default_logger(log);
     const int code = parse_and_run(argc, argv);
     if (std::fflush(stdout) == 0 || code != exit_ok) return code;
     print_to_standard_error("jostle: cannot write to standard output\n");
@@ -66,7 +71,7 @@ int run_program(int argc, char** argv) {
     print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
     return exit_bad_input;
   } catch (const std::exception& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
+    print_to_standard_error(fmt::format("jostle: {}\n", failure_text(error)));
     return exit_broken_surroundings;
   }
 }
@@ -75,8 +80,6 @@ int run_program(int argc, char** argv) {
 }  // namespace jostle
 
 int main(int argc, char** argv) {
-  const auto log = spdlog::stderr_color_mt("jostle");
-  log->set_pattern("%T jostle: %v");
-  spdlog::set_default_logger(log);
+  jostle::guard_files();
   return jostle::run_program(argc, argv);
 }

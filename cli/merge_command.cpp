@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,7 +9,9 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/fit_run.hpp"
+#include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/standard_streams.hpp"
 #include "results/merge.hpp"
 
 namespace jostle {
@@ -37,9 +40,13 @@ void add_merge(CLI::App& app, int& code) {
       "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
       "different scenes, naming which.");
   command->callback([arguments, &code] {
+    require_replaceable(arguments->output, "merged.h5");
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"),
                 arguments->force);
-    fmt::print("{}: {} files merged\n", arguments->output, arguments->inputs.size());
+    outlive_readers();
+    std::fputs(
+        fmt::format("{}: {} files merged\n", arguments->output, arguments->inputs.size()).c_str(),
+        stdout);
     make_scene_fits(arguments->output, available_cpus(), false);
     make_scene_analyses(arguments->output, available_cpus(), false);
     code = exit_ok;

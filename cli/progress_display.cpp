@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <new>
+
 #include "cli/durations.hpp"
 #include "cli/standard_error.hpp"
 #include "cli/text_table.hpp"
@@ -34,7 +36,12 @@ std::string progress_line(const Progress& progress, const WorkAhead& ahead, doub
 ProgressDisplay::ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style)
     : progress_(progress), ahead_(ahead), style_(style) {
   if (style == ProgressStyle::none) return;
-  clock_ = std::jthread([this](std::stop_token token) { show_until(token); });
+  clock_ = std::jthread([this](std::stop_token token) {
+    try {
+      show_until(token);
+    } catch (const std::bad_alloc&) {  // no more lines; the run is told where it needs memory
+    }
+  });
 }
 
 ProgressDisplay::~ProgressDisplay() {

@@ -14,15 +14,17 @@
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
 #include "cli/enough_run.hpp"
+#include "cli/failure.hpp"
 #include "cli/fit_run.hpp"
+#include "cli/output_file.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/text_table.hpp"
-#include "results/error.hpp"
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
 #include "results/tables.hpp"
@@ -103,11 +105,7 @@ std::uint64_t recorded_taps(const std::string& output, const std::vector<Realiza
 std::string output_path(const RunArguments& arguments, const LoadedScene& loaded) {
   const std::string output =
       arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output;
-  if (std::filesystem::is_directory(output)) {
-    throw BadInput(
-        fmt::format("{} is a folder: name a file in it with -o, as {}", output,
-                    (std::filesystem::path(output) / (loaded.scene.name + ".h5")).string()));
-  }
+  require_replaceable(output, loaded.scene.name + ".h5");
   if (!std::filesystem::is_symlink(output)) return output;
   const std::filesystem::path link(output);
   return (link.parent_path() / std::filesystem::read_symlink(link)).string();
@@ -180,9 +178,9 @@ int exit_code_of(const ResultsFile& file) {
 
 /// What a process does from opening its file to its last realization.
 struct Work {
-  explicit Work(const RunArguments& arguments) : stop(arguments.time_limit) {}
+  explicit Work(StopRequest& request) : stop(request) {}
 
-  StopRequest stop;
+  StopRequest& stop;
   Progress progress;
   int rounds = 0;
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
@@ -250,6 +248,8 @@ void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
 }
 
 int run(const RunArguments& arguments) {
+  StopRequest stop;  // from here on, signals stop and do not kill
+  outlive_readers();
   if (arguments.quiet) spdlog::set_level(spdlog::level::warn);
   if (arguments.force && (arguments.resume || arguments.retry_failed)) {
     spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
@@ -264,7 +264,8 @@ int run(const RunArguments& arguments) {
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   OpenedRun run = open_run(arguments, loaded, threads);
   try {
-    Work work(arguments);
+    if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
+    Work work(stop);
     const bool stopped = compute_enough(arguments, loaded, run, threads, work);
     if (!arguments.quiet) print_results(run, work, threads);
     if (stopped) {
@@ -274,11 +275,13 @@ int run(const RunArguments& arguments) {
     }
     run.store.reset();  // gives the lock back
     make_tables(arguments, loaded, run.output, threads);
-  } catch (const ResultsError& error) {
+  } catch (const BadInput&) {
+    throw;
+  } catch (const std::exception& error) {
     print_to_standard_error(
         fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "
                     "with\n  {}\n",
-                    error.what(), resume_command(arguments)));
+                    failure_text(error), resume_command(arguments)));
     return exit_broken_surroundings;
   }
   return exit_code_of(ResultsFile(run.output));

@@ -21,7 +21,7 @@ void ask(int by) {
 
 }  // namespace
 
-StopRequest::StopRequest(std::optional<Seconds> time_limit) {
+StopRequest::StopRequest() {
   stop_asked = false;
   asked_by = 0;
   for (const int signal : stop_signals) {
@@ -30,8 +30,10 @@ StopRequest::StopRequest(std::optional<Seconds> time_limit) {
     action.sa_flags = SA_RESTART | (signal == SIGINT ? static_cast<int>(SA_RESETHAND) : 0);
     sigaction(signal, &action, nullptr);
   }
-  if (!time_limit) return;
-  clock_ = std::jthread([this, limit = *time_limit](std::stop_token token) {
+}
+
+void StopRequest::stop_after(Seconds limit) {
+  clock_ = std::jthread([this, limit](std::stop_token token) {
     std::unique_lock lock(mutex_);
     ended_.wait_for(lock, token, limit, [] { return false; });
     if (!token.stop_requested()) ask(time_limit_reached);

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -11,15 +10,17 @@
 
 namespace jostle {
 
-/// While it lives, SIGINT, SIGTERM and SIGUSR1 ask for a stop instead of ending the process, and so
-/// does the time limit. A second SIGINT ends the process at once. One at a time.
+/// While it lives, SIGINT, SIGTERM and SIGUSR1 ask for a stop instead of ending the process. A
+/// second SIGINT ends the process at once. One at a time.
 class StopRequest {
  public:
-  explicit StopRequest(std::optional<Seconds> time_limit);
+  StopRequest();
   ~StopRequest();
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
 
+  /// A time limit asks likewise, so long after this; once.
+  void stop_after(Seconds limit);
   /// Set once a stop is asked for.
   const std::atomic<bool>& flag() const;
   /// "SIGTERM" or "the time limit"; empty while nothing asked.

@@ -2,6 +2,8 @@
 
 #include <exception>
 #include <mutex>
+#include <new>
+#include <optional>
 #include <utility>
 
 #include "ensemble/parallel.hpp"
@@ -12,6 +14,22 @@ namespace jostle {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// Whether `act` succeeded; if not, the outcome says why. Memory that ran out is no fault of the
+// realization: that ends the run, and the realization goes on from its last checkpoint.
+template <class Act>
+bool attempt(Outcome& outcome, Act&& act) {
+  try {
+    act();
+    return true;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    outcome.status = RealizationStatus::failed;
+    outcome.reason = error.what();
+    return false;
+  }
+}
 
 // One call of run_ensemble: what its threads share.
 class EnsembleRun {
@@ -33,7 +51,7 @@ class EnsembleRun {
  private:
   void work() noexcept;
   void carry_out(RealizationId id);
-  Outcome carry_on(RealizationId id, Realization& realization);
+  void carry_on(RealizationId id, Realization& realization, Outcome& outcome);
   void hand_over(RealizationId id, const Slice& slice);
   void count(const Outcome& outcome);
   bool stopping() const;
@@ -51,7 +69,8 @@ class EnsembleRun {
   std::exception_ptr sink_failure_;  // the first
 };
 
-// Whatever is thrown here comes from the sink: carry_on keeps what a realization throws.
+// Whatever is thrown here comes from the sink or for want of memory: `attempt` keeps what else a
+// realization throws.
 void EnsembleRun::work() noexcept {
   try {
     while (!stopping()) {
@@ -74,30 +93,27 @@ void EnsembleRun::carry_out(RealizationId id) {
   } running(progress_.realizations_running);
 
   const auto began = Clock::now();
-  Realization realization(plans_[id.point], id.realization, sink_.begin(id));
-  Outcome outcome = carry_on(id, realization);
+  std::optional<RealizationState> resumed = sink_.begin(id);
+  std::optional<Realization> realization;
+  Outcome outcome;
+  const bool begun = attempt(
+      outcome, [&] { realization.emplace(plans_[id.point], id.realization, std::move(resumed)); });
+  if (begun) carry_on(id, *realization, outcome);
   outcome.seconds = std::chrono::duration<double>(Clock::now() - began).count();
   const bool failed = outcome.status == RealizationStatus::failed;
-  sink_.end(id, failed ? RealizationState{} : realization.state(), outcome);
+  sink_.end(id, failed ? RealizationState{} : realization->state(), outcome);
   count(outcome);
 }
 
-Outcome EnsembleRun::carry_on(RealizationId id, Realization& realization) {
-  Outcome outcome;
+void EnsembleRun::carry_on(RealizationId id, Realization& realization, Outcome& outcome) {
   auto checkpointed = Clock::now();
   while (!realization.finished()) {
     if (stopping()) {
       outcome.status = RealizationStatus::running;
-      return outcome;
+      return;
     }
     Slice slice;
-    try {
-      slice = realization.advance(options_.trials_per_slice);
-    } catch (const std::exception& error) {
-      outcome.status = RealizationStatus::failed;
-      outcome.reason = error.what();
-      return outcome;
-    }
+    if (!attempt(outcome, [&] { slice = realization.advance(options_.trials_per_slice); })) return;
     outcome.trials += slice.trials;
     outcome.distance_tests += slice.distance_tests;
     hand_over(id, slice);
@@ -107,7 +123,6 @@ Outcome EnsembleRun::carry_on(RealizationId id, Realization& realization) {
     }
   }
   outcome.status = RealizationStatus::done;
-  return outcome;
 }
 
 void EnsembleRun::hand_over(RealizationId id, const Slice& slice) {

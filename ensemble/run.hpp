@@ -40,8 +40,9 @@ struct RunSummary {
 /// next of the list, and hands their records to the sink. What reaches the sink for a realization
 /// depends only on its plan and index, never on threads or timing; but for when it checkpoints.
 /// At a stop each realization ends with status `running` and its state. One that throws ends as
-/// failed with the reason and an empty state, and the rest go on. An exception of the sink stops
-/// the run like a stop and is rethrown.
+/// failed with the reason and an empty state, and the rest go on. An exception of the sink, or a
+/// std::bad_alloc of a realization, which goes on from its last checkpoint when the run is resumed,
+/// stops the run like a stop and is rethrown.
 RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
                         const RunOptions& options, Sink& sink, Progress& progress);
 

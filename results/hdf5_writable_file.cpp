@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include "results/publish.hpp"
@@ -67,7 +68,13 @@ H5FD_t* open_file(const char* name, unsigned, hid_t properties, haddr_t) {
     return nullptr;
   }
   const auto size = static_cast<haddr_t>(status.st_size);
-  return &(new DriverFile{{}, descriptor, settings->error, 0, size, 0, {}})->hdf5;
+  auto* const file = new (std::nothrow) DriverFile{{}, descriptor, settings->error, 0, size, 0, {}};
+  if (file == nullptr) {
+    *settings->error = ENOMEM;
+    ::close(descriptor);
+    return nullptr;
+  }
+  return &file->hdf5;
 }
 
 herr_t close_file(H5FD_t* base) {
@@ -127,7 +134,11 @@ herr_t write_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t at, std::size_t n
   if (!joins || file.waiting.size() + n > most_waiting) write_waiting(file);
   if (file.waiting.empty()) file.waiting_at = at;
   const auto* from = static_cast<const std::byte*>(bytes);
-  file.waiting.insert(file.waiting.end(), from, from + n);
+  try {
+    file.waiting.insert(file.waiting.end(), from, from + n);
+  } catch (const std::bad_alloc&) {  // which must not pass through HDF5
+    remember(file, ENOMEM);
+  }
   file.size = std::max(file.size, at + n);
   return 0;
 }
@@ -169,10 +180,19 @@ H5FD_class_t driver_class() {
   return driver;
 }
 
+/// HDF5 1.10 may damage its heap and abort where memory runs out while it writes, so that the want
+/// is found out before: throws std::bad_alloc. It takes 1 MB for a dataset, and as much again for
+/// what waits to be written and to be compressed.
+void require_memory() {
+  constexpr std::size_t enough = 16u << 20;
+  ::operator delete(::operator new(enough));
+}
+
 }  // namespace
 
 WritableHdf5File::WritableHdf5File(const std::string& path, Begin begin)
     : path_(path), error_(std::make_unique<int>(0)) {
+  require_memory();
   silence_hdf5();
   const H5FD_class_t driver = driver_class();
   driver_ = Hdf5Handle(H5FDregister(&driver), H5FDunregister);

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 
 #include "results/descriptor.hpp"
 #include "results/error.hpp"
@@ -34,6 +35,28 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
+const char* way_out(std::string_view what, int error) {
+  if (what == "open" || what == "read") return "";
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "; free some space, then resume: nothing up to the last checkpoint is lost";
+    case EFBIG:
+      return "; raise the limit on file sizes (ulimit -f), then resume: nothing up to the last "
+             "checkpoint is lost";
+    case ENOMEM:
+      return "; raise the limit on memory, then resume: nothing up to the last checkpoint is lost";
+    case EROFS:
+    case EACCES:
+    case EPERM:
+      return "; make the folder writable, or write to a file in another one";
+    case ENOENT:
+      return "; is its folder there still?";
+    default:
+      return "";
+  }
+}
+
 void write_temporary(const std::string& path, std::span<const std::byte> bytes) {
   const std::string temporary = temporary_name(path);
   const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
@@ -44,10 +67,8 @@ void write_temporary(const std::string& path, std::span<const std::byte> bytes) 
 }  // namespace
 
 void fail_on_disk(const std::string& path, const char* what, int error) {
-  std::string reason = fmt::format("cannot {}: {}", what, std::strerror(error));
-  if (error == ENOSPC || error == EDQUOT)
-    reason += "; free some space, then resume: nothing up to the last checkpoint is lost";
-  throw ResultsError(path, reason);
+  throw ResultsError(
+      path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(what, error)));
 }
 
 std::string temporary_name(const std::string& path) {

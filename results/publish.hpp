@@ -28,7 +28,7 @@ void sync_folder_of(const std::string& path);
 void require_free_space(const std::string& path, std::uint64_t bytes);
 
 /// Throws ResultsError for a failed system call: "cannot `what`: " and the system's reason, with
-/// the way out of a full disk.
+/// the way out where there is one.
 [[noreturn]] void fail_on_disk(const std::string& path, const char* what, int error);
 
 }  // namespace jostle

@@ -65,6 +65,8 @@ void seal(const std::string& path) {
 }
 
 void verify_seal(const std::string& path) {
+  if (struct stat status; ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw ResultsError(path, "not a file: results cannot be read from a folder, pipe or device");
   const Descriptor file = open_or_fail(path, O_RDONLY);
   if (read_at(path, file, 0, hdf5_signature.size()) != hdf5_signature)
     throw ResultsError(path, "not an HDF5 file");

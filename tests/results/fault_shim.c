@@ -11,6 +11,7 @@
  *   JOSTLE_FAULT_ACTION  kill_before  SIGKILL instead of the call
  *                        kill_after   the call, then SIGKILL
  *                        kill_within  half the bytes of a write, then SIGKILL (else as kill_before)
+ *                        pause        SIGSTOP before the call; SIGCONT goes on with it
  *                        no_space     the call and every later write or ftruncate fail with ENOSPC
  *                        fsync_fails  the call and every later fsync fail with EIO
  *
@@ -94,6 +95,7 @@ static struct verdict judge(enum kind kind) {
   if (number >= at && kind == syncs && !strcmp(action, "fsync_fails")) verdict.error = EIO;
   if (number != at) return verdict;
   if (!strcmp(action, "kill_before")) die();
+  if (!strcmp(action, "pause")) syscall(SYS_kill, getpid(), SIGSTOP);
   if (!strcmp(action, "kill_after")) verdict.kill_after = 1;
   if (!strcmp(action, "kill_within")) {
     if (kind != writes) die();
