@@ -16,7 +16,8 @@ enum class Purpose : std::uint32_t {
   tap = 2,
   trials = 3,
   resampling = 4,
-  start_trials = 5
+  start_trials = 5,
+  void_points = 6
 };
 
 enum class StreamKey : std::uint64_t {};

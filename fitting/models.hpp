@@ -136,6 +136,22 @@ class Normal final : public Model {
   std::vector<std::vector<double>> candidates(const Curve& curve) const override;
 };
 
+/// G(x) = area k^k / Gamma(k) x^(k - 1) / mean^k exp(-k x / mean), the k-gamma distribution of what
+/// cells have above the least that they can, x = t > 0; k > 0, mean > 0. Aste & Di Matteo 2008.
+class KGamma final : public Model {
+ public:
+  std::string name() const override { return "k_gamma"; }
+  std::string formula() const override {
+    return "area k^k / Gamma(k) t^(k - 1) / mean^k exp(-k t / mean)";
+  }
+  std::string source() const override;
+  const std::vector<Parameter>& parameters() const override;
+  double value(double t, const double* p) const override;
+  double value_and_gradient(double t, const double* p, double* gradient) const override;
+  std::string refusal(const Curve& curve) const override;
+  std::vector<std::vector<double>> candidates(const Curve& curve) const override;
+};
+
 /// Every model above, in this order.
 std::vector<std::unique_ptr<Model>> all_models();
 /// The model of that name, or null.

@@ -50,6 +50,7 @@ struct BernalHole {
 /// squares, 2^(1/2), is 1.207; the shortest diagonal, a dodecahedron's, is 1.289.
 struct BondLengths {
   double first = 1.2, last = 1.4, step = 0.05;
+  bool operator==(const BondLengths&) const = default;
 };
 
 /// The holes of a packing, every Delaunay tetrahedron in exactly one. Our rule, as Bernal took his

@@ -12,6 +12,7 @@ struct Region {
   bool contains(const Container& container, Vec3 r) const;
   /// Diameters cubed.
   double volume(const Container& container) const;
+  bool operator==(const Region&) const = default;
 };
 
 }  // namespace jostle

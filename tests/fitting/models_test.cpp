@@ -76,7 +76,15 @@ const std::map<std::string, Example>& examples() {
           return p[0] / (p[2] * std::sqrt(2 * std::acos(Long(-1)))) * std::exp(-u * u / 2);
         },
         {{3456, 7.271, 1.255}},
-        {1, 3, 5, 7, 7.5, 9, 12}}}};
+        {1, 3, 5, 7, 7.5, 9, 12}}},
+      {"k_gamma",
+       {[](Long x, const std::vector<Long>& p) {
+          const Long k = p[2];
+          return p[0] * std::exp(k * std::log(k / p[1]) + (k - 1) * std::log(x) - k * x / p[1] -
+                                 std::lgamma(k));
+        },
+        {{1, 0.25, 12.6}, {3, 2, 0.4}, {1, 0.4, 30}},
+        {0.01, 0.1, 0.2, 0.3, 0.7, 1.5}}}};
   return all;
 }
 

@@ -1,0 +1,128 @@
+#include "structure/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "structure/measure_parts.hpp"
+#include "structure/neighbours.hpp"
+#include "structure/pores.hpp"
+
+namespace jostle {
+
+namespace {
+
+// Voronoi cells of centres that all but coincide are lost in rounding.
+void require_apart(const Packing& packing) {
+  constexpr double least = 0.5;
+  const NeighbourFinder finder(packing, least);
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      throw std::invalid_argument("structure: spheres " + std::to_string(i) + " and " +
+                                  std::to_string(j) + " are " +
+                                  std::to_string(std::sqrt(distance_squared)) +
+                                  " apart, and their diameter is 1: lengths must be in diameters");
+    });
+  }
+}
+
+std::string in_words(const Region& region, const Container& container) {
+  std::string words = "heights " + std::to_string(region.low);
+  words.append(" to ").append(std::to_string(region.high));
+  if (std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container)) {
+    words.append(", ").append(std::to_string(region.from_sides)).append(" from the walls");
+  }
+  return words;
+}
+
+bool is_empty(const Region& region, const Container& container) {
+  return !(region.high > region.low) || !(region.volume(container) > 0);
+}
+
+template <class Settings>
+void add_part(const char* name, MeasuredPacking& in, const std::optional<Settings>& settings,
+              bool needs_region, std::vector<Measurement>& all) {
+  if (!settings) return;
+  Measurement measurement{.part = name};
+  try {
+    if (needs_region && is_empty(in.region, in.packing.container)) {
+      throw std::invalid_argument("nothing lies in the region, " +
+                                  in_words(in.region, in.packing.container));
+    }
+    measurement = measure_part(in, *settings);
+    measurement.part = name;
+  } catch (const std::invalid_argument& refusal) {
+    measurement.refused = refusal.what();
+  }
+  all.push_back(std::move(measurement));
+}
+
+}  // namespace
+
+StructureSettings all_structure() {
+  StructureSettings all;
+  all.profile.emplace();
+  all.sides.emplace();
+  all.layers.emplace();
+  all.coordination.emplace();
+  all.pair_correlation.emplace();
+  all.order.emplace();
+  all.voronoi.emplace();
+  all.pores.emplace();
+  all.void_probability.emplace();
+  all.holes.emplace();
+  return all;
+}
+
+Region bulk_of(const Packing& packing) {
+  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
+    return {0, bulk->height, 0};
+  }
+  Region region = pore_region;
+  region.high = std::min(region.high, 2 * mean_height(packing) - 2 * sphere_radius);
+  return region;
+}
+
+std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
+                                 StreamKey points) {
+  require_apart(packing);
+  MeasuredPacking in{
+      .packing = packing, .region = settings.region.value_or(bulk_of(packing)), .points = points};
+  std::vector<Measurement> all;
+  add_part("profile", in, settings.profile, false, all);
+  add_part("sides", in, settings.sides, false, all);
+  add_part("layers", in, settings.layers, false, all);
+  add_part("coordination", in, settings.coordination, true, all);
+  add_part("pair_correlation", in, settings.pair_correlation, false, all);
+  add_part("order", in, settings.order, true, all);
+  add_part("voronoi", in, settings.voronoi, true, all);
+  add_part("pores", in, settings.pores, true, all);
+  add_part("void_probability", in, settings.void_probability, true, all);
+  add_part("holes", in, settings.holes, true, all);
+  return all;
+}
+
+std::vector<double> middles_of_bins(std::size_t n, double width) {
+  std::vector<double> middles(n);
+  for (std::size_t k = 0; k < n; ++k) middles[k] = (static_cast<double>(k) + 0.5) * width;
+  return middles;
+}
+
+std::vector<double> whole_numbers(std::size_t n) {
+  std::vector<double> numbers(n);
+  for (std::size_t k = 0; k < n; ++k) numbers[k] = static_cast<double>(k);
+  return numbers;
+}
+
+std::vector<double> shares(std::span<const std::uint64_t> counts) {
+  std::uint64_t total = 0;
+  for (const std::uint64_t count : counts) total += count;
+  std::vector<double> parts;
+  for (const std::uint64_t count : counts) {
+    parts.push_back(static_cast<double>(count) / static_cast<double>(total));
+  }
+  return parts;
+}
+
+}  // namespace jostle

@@ -1,0 +1,152 @@
+#include <cmath>
+#include <limits>
+
+#include "structure/bond_order.hpp"
+#include "structure/crystal_order.hpp"
+#include "structure/measure_parts.hpp"
+#include "structure/pair_correlation.hpp"
+#include "structure/snapshot_statistics.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> cuts_up_to(const CoordinationSettings& settings) {
+  std::vector<double> cuts;
+  const auto n = static_cast<std::size_t>((settings.largest_cut - 1) / settings.step + 1e-9);
+  for (std::size_t k = 0; k <= n; ++k) {
+    cuts.push_back(1 + static_cast<double>(k) * settings.step);
+  }
+  return cuts;
+}
+
+/// Means of what some spheres have, bin by bin or over the region.
+class Means {
+ public:
+  explicit Means(std::size_t n_bins) : sums_(n_bins, 0.0), counts_(n_bins, 0.0) {}
+
+  void add(std::size_t bin, double value) {
+    sums_[bin] += value;
+    counts_[bin] += 1;
+  }
+  std::vector<double> values() const {
+    std::vector<double> means(sums_.size());
+    for (std::size_t k = 0; k < means.size(); ++k) means[k] = sums_[k] / counts_[k];
+    return means;
+  }
+
+ private:
+  std::vector<double> sums_, counts_;
+};
+
+struct OrderColumn {
+  const char* name;
+  const char* long_name;
+  const char* source;
+};
+
+constexpr const char* steinhardt = "Steinhardt et al. 1983, doi:10.1103/PhysRevB.28.784";
+constexpr const char* stukowski = "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021";
+constexpr OrderColumn order_columns[] = {
+    {"fcc", "fraction of spheres in fcc surroundings", stukowski},
+    {"hcp", "fraction of spheres in hcp surroundings", stukowski},
+    {"disordered", "fraction of spheres in neither", stukowski},
+    {"q4", "mean bond order of the 12 nearest neighbours", steinhardt},
+    {"q6", "mean bond order of the 12 nearest neighbours", steinhardt},
+    {"w6", "mean bond order of the 12 nearest neighbours", steinhardt}};
+constexpr std::size_t n_order_columns = std::size(order_columns);
+
+}  // namespace
+
+Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings) {
+  const CoordinationCurve curve = coordination_curve(in.packing, cuts_up_to(settings), in.region);
+  const std::vector<unsigned> numbers = coordination_numbers(in.packing, settings.cut);
+  std::vector<unsigned> in_region;
+  double all = 0, mean = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    all += numbers[i];
+    if (in.in_region(i)) in_region.push_back(numbers[i]);
+  }
+  for (const unsigned number : in_region) mean += number;
+  const std::vector<double> histogram = shares(neighbour_histogram(in_region));
+  Measurement out;
+  out.places = {
+      {"cut", curve.cuts, "diameters", "centres at most so far away count"},
+      {"neighbours", whole_numbers(histogram.size()), "1", "other centres within the first cut"}};
+  out.quantities = {{.name = "n_c_of_cut",
+                     .places = "cut",
+                     .values = curve.coordination,
+                     .long_name = "mean number of centres within the cut, over the region"},
+                    {.name = "neighbour_share",
+                     .places = "neighbours",
+                     .values = histogram,
+                     .long_name = "fraction of the region's spheres with so many neighbours",
+                     .source = "Rosato et al. 2010, fig. 8"},
+                    {.name = "n_c",
+                     .values = {mean / static_cast<double>(in_region.size())},
+                     .long_name = "mean number of neighbours, over the region",
+                     .source = "Rosato et al. 2010, fig. 3"},
+                    {.name = "n_c_all",
+                     .values = {all / static_cast<double>(numbers.size())},
+                     .long_name = "the same over all spheres",
+                     .source = "Rosato et al. 2010, fig. 3"},
+                    {.name = "n_spheres",
+                     .values = {static_cast<double>(in_region.size())},
+                     .long_name = "spheres of the region"}};
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
+  const PairCorrelation pairs =
+      pair_correlation(in.packing, {.r_max = settings.r_max, .bin_width = settings.bin_width});
+  Measurement out;
+  out.places = {{"r", pairs.r, "diameters", "distance of centres, middle of a bin"}};
+  out.quantities = {{.name = "g",
+                     .places = "r",
+                     .values = pairs.g(),
+                     .long_name = "pair correlation, floor and surface corrected"}};
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
+  const NeighbourTable nearest = nearest_neighbours(in.packing);
+  const std::vector<CrystalOrder> orders = crystal_order(nearest);
+  const std::vector<BondOrder> bonds = bond_order(nearest);
+  const auto bin = [&](double z) { return static_cast<std::size_t>(z / settings.bin_width); };
+  const std::size_t n_bins = bin(top_height(in.packing)) + 1;
+  std::vector<Means> by_height(n_order_columns, Means(n_bins));
+  std::vector<Means> of_region(n_order_columns, Means(1));
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const double values[n_order_columns] = {orders[i] == CrystalOrder::fcc ? 1.0 : 0.0,
+                                            orders[i] == CrystalOrder::hcp ? 1.0 : 0.0,
+                                            orders[i] == CrystalOrder::disordered ? 1.0 : 0.0,
+                                            bonds[i].q4,
+                                            bonds[i].q6,
+                                            bonds[i].w6};
+    for (std::size_t c = 0; c < n_order_columns; ++c) {
+      by_height[c].add(bin(in.packing.centres[i].z), values[c]);
+      if (in.in_region(i)) of_region[c].add(0, values[c]);
+    }
+  }
+  Measurement out;
+  out.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameters",
+                 "height above the floor, middle of a bin"}};
+  for (std::size_t c = 0; c < n_order_columns; ++c) {
+    const auto& [name, long_name, source] = order_columns[c];
+    out.quantities.push_back({.name = std::string(name).append("_at_height"),
+                              .places = "height",
+                              .values = by_height[c].values(),
+                              .long_name = long_name,
+                              .source = source,
+                              .beyond = nan});
+    out.quantities.push_back({.name = name,
+                              .values = of_region[c].values(),
+                              .long_name = std::string(long_name).append(", over the region"),
+                              .source = source});
+  }
+  return out;
+}
+
+}  // namespace jostle

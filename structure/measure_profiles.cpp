@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/slab.hpp"
+#include "structure/gradient.hpp"
+#include "structure/measure_parts.hpp"
+#include "structure/profile_parts.hpp"
+#include "structure/profiles.hpp"
+#include "structure/snapshot_statistics.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> middles(const Profile& profile) {
+  std::vector<double> places;
+  for (std::size_t k = 0; k < profile.size(); ++k) places.push_back(profile.middle(k));
+  return places;
+}
+
+Places heights(std::vector<double> values) {
+  return {"height", std::move(values), "diameters", "height above the floor, middle of a bin"};
+}
+
+/// A quantity at the middles of a profile's bins.
+void add_profile(const char* places, const Profile& profile, const char* name,
+                 const char* long_name, const char* source, Measurement& into) {
+  into.quantities.push_back({.name = name,
+                             .places = places,
+                             .values = profile.values,
+                             .long_name = long_name,
+                             .source = source});
+}
+
+void add_along(Axis axis, const Packing& packing, HeightWindow window, double bin_width,
+               Measurement& into) {
+  const bool x = axis == Axis::x;
+  const char* const places = x ? "x" : "y";
+  const double width = x ? width_x(packing.container) : width_y(packing.container);
+  const Profile profile =
+      transverse_profile(packing, axis, even_edges(0, width, bin_width), window);
+  into.places.push_back({places, middles(profile), "diameters", "middle of a bin"});
+  add_profile(places, profile, x ? "phi_x" : "phi_y",
+              "packing fraction of slabs parallel to a side", "Philippe & Bideau 2001, fig. 7",
+              into);
+  into.quantities.push_back({.name = x ? "phi_x_cut" : "phi_y_cut",
+                             .places = places,
+                             .values = transverse_cuts(packing, axis, middles(profile), window),
+                             .long_name = "area fraction of plane cuts parallel to a side"});
+}
+
+void add_from_walls(const Packing& packing, HeightWindow window, const SidesSettings& settings,
+                    Measurement& into) {
+  if (std::holds_alternative<WalledBox>(packing.container)) {
+    const double half = 0.5 * std::min(width_x(packing.container), width_y(packing.container));
+    const Profile walls = wall_profile(packing, even_edges(0, half, settings.bin_width), window);
+    into.places.push_back(
+        {"wall_distance", middles(walls), "diameters", "distance to the nearest wall"});
+    add_profile("wall_distance", walls, "phi_wall", "packing fraction against the nearest wall",
+                "Philippe & Bideau 2001, fig. 7", into);
+  } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
+    const Profile rings =
+        radial_profile(packing, even_edges(0, 0.5 * tube->diameter, settings.bin_width), window);
+    into.places.push_back({"radius", middles(rings), "diameters", "distance from the axis"});
+    add_profile("radius", rings, "phi_radial", "packing fraction of rings around the axis", "",
+                into);
+  } else {
+    return;
+  }
+  if (width_x(packing.container) <= 2 * settings.reach ||
+      width_y(packing.container) <= 2 * settings.reach) {
+    into.notes.emplace_back("lateral", "the walls are less than twice the reach apart");
+    return;
+  }
+  const LateralCentral both = lateral_and_central(packing, window, settings.reach);
+  into.quantities.push_back({.name = "lateral",
+                             .values = {both.lateral},
+                             .long_name = "packing fraction within the reach of a wall",
+                             .source = "Philippe & Bideau 2001, fig. 8",
+                             .with_change = true});
+  into.quantities.push_back({.name = "central",
+                             .values = {both.central},
+                             .long_name = "packing fraction beyond the reach of walls",
+                             .source = "Philippe & Bideau 2001, fig. 8",
+                             .with_change = true});
+}
+
+}  // namespace
+
+Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
+  require_floor(in.packing);
+  const Profile vertical =
+      vertical_profile(in.packing, height_edges(in.packing, settings.bin_width));
+  GradientRange range = gradient_range(in.packing.container);
+  if (settings.gradient) {
+    range.low = settings.gradient->low;
+    range.high = settings.gradient->high;
+  }
+  range.smoothing = settings.smoothing;
+  Measurement out;
+  out.places = {heights(middles(vertical))};
+  add_profile("height", vertical, "phi", "packing fraction of slabs",
+              "Philippe & Bideau 2001, sec. IV", out);
+  add_profile("height", settings.smoothing > 0 ? smoothed(vertical, settings.smoothing) : vertical,
+              "phi_smoothed", "the same after a boxcar mean", "Philippe & Bideau 2001, fig. 6",
+              out);
+  out.quantities.push_back({.name = "phi_cut",
+                            .places = "height",
+                            .values = vertical_cuts(in.packing, middles(vertical)),
+                            .long_name = "area fraction of plane cuts at the middles of bins",
+                            .source = "Philippe & Bideau 2001, sec. IV"});
+  const Gradient found = gradient(vertical, range);
+  out.quantities.push_back({.name = "alpha",
+                            .values = {found.alpha},
+                            .units = "1/R",
+                            .long_name = "minus the slope of the smoothed profile",
+                            .source = "Philippe & Bideau 2001, fig. 8"});
+  if (!found.reason.empty()) out.notes.emplace_back("alpha", found.reason);
+  if (in.region.high > in.region.low) {
+    const HeightWindow window{in.region.low, in.region.high};
+    const double edges[] = {window.low, window.high};
+    out.quantities.push_back({.name = "phi_region",
+                              .values = vertical_profile(in.packing, edges).values,
+                              .long_name = "packing fraction between the heights of the region"});
+  }
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
+  require_floor(in.packing);
+  const HeightWindow window = settings.heights.value_or(transverse_window(in.packing));
+  Measurement out;
+  if (!std::holds_alternative<Cylinder>(in.packing.container)) {
+    add_along(Axis::x, in.packing, window, settings.bin_width, out);
+    add_along(Axis::y, in.packing, window, settings.bin_width, out);
+  }
+  add_from_walls(in.packing, window, settings, out);
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
+  const std::vector<Layer> found = layers(in.packing, settings.rule.tolerance);
+  const std::vector<double> n = height_histogram(in.packing, settings.bin_width);
+  std::vector<double> at, filling, share;
+  for (const Layer& layer : found) {
+    at.push_back(layer.height);
+    filling.push_back(layer.filling);
+    share.push_back(layer.share);
+  }
+  Measurement out;
+  out.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
+                {"layer_height", at, "diameters", "hcp layers, 1/2 + k sqrt(2/3)"}};
+  out.quantities = {{.name = "n",
+                     .places = "height",
+                     .values = n,
+                     .long_name = "fraction of all centres per bin",
+                     .source = "Rosato et al. 2010, fig. 6"},
+                    {.name = "filling",
+                     .places = "layer_height",
+                     .values = filling,
+                     .long_name = "centres between mid-planes over those of a full layer"},
+                    {.name = "share",
+                     .places = "layer_height",
+                     .values = share,
+                     .long_name = "part of them within the tolerance of the layer's height",
+                     .beyond = nan},
+                    {.name = "grown_layers",
+                     .values = {static_cast<double>(grown_layers(in.packing, settings.rule))},
+                     .long_name = "ordered layers from the floor up to the first that is not"}};
+  return out;
+}
+
+}  // namespace jostle

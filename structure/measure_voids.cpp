@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "structure/measure_parts.hpp"
+#include "structure/pores.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double deviation_of(std::span<const double> values, double mean) {
+  double sum = 0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// A density over bins of a width that begin at 0; what lies beyond the last is left out.
+std::vector<double> density(std::span<const double> values, double bin_width, std::size_t n_bins) {
+  std::vector<double> bins(n_bins, 0.0);
+  const double weight = 1 / (static_cast<double>(values.size()) * bin_width);
+  for (const double value : values) {
+    const auto k = static_cast<std::size_t>(value / bin_width);
+    if (k < n_bins) bins[k] += weight;
+  }
+  return bins;
+}
+
+double volume_of(const Container& container, double height) {
+  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
+  return footprint_area(container) * (bulk != nullptr ? bulk->height : height);
+}
+
+/// What is measured of the cells of a region that no boundary cuts.
+struct InnerCells {
+  std::vector<std::uint64_t> face_counts;
+  std::vector<double> faces, volumes, free_volumes, fractions;
+};
+
+InnerCells inner_cells(MeasuredPacking& in, double least_area) {
+  const VoronoiCells& cells = in.voronoi();
+  const std::vector<double> fractions = local_fractions(cells), free = free_volumes(cells);
+  InnerCells inner;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    if (cells.cut[i] != 0 || !in.in_region(i)) continue;
+    const std::uint32_t faces = n_faces(cells, i, least_area);
+    if (inner.face_counts.size() <= faces) inner.face_counts.resize(faces + 1, 0);
+    ++inner.face_counts[faces];
+    inner.faces.push_back(faces);
+    inner.volumes.push_back(cells.volumes[i]);
+    inner.free_volumes.push_back(free[i]);
+    inner.fractions.push_back(fractions[i]);
+  }
+  return inner;
+}
+
+void add_single(const char* name, double value, const char* long_name, Measurement& into,
+                const char* source = "", const char* units = "1") {
+  into.quantities.push_back(
+      {.name = name, .values = {value}, .units = units, .long_name = long_name, .source = source});
+}
+
+}  // namespace
+
+Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
+  constexpr double fraction_bin = 0.01, largest_free_volume = 2;
+  const InnerCells inner = inner_cells(in, settings.least_area);
+  if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
+  const std::vector<double> faces = shares(inner.face_counts);
+  const auto n_free = static_cast<std::size_t>(largest_free_volume / settings.bin_width + 0.5);
+  Measurement out;
+  out.places = {{"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},
+                {"free_volume", middles_of_bins(n_free, settings.bin_width), "sphere volumes",
+                 "volume of a cell without its sphere, middle of a bin"},
+                {"local_fraction", middles_of_bins(75, fraction_bin), "1",
+                 "volume of a sphere over that of its cell, middle of a bin"}};
+  out.quantities = {{.name = "face_share",
+                     .places = "faces",
+                     .values = faces,
+                     .long_name = "fraction of cells with so many faces",
+                     .source = "Rosato et al. 2010, fig. 8"},
+                    {.name = "free_volume_density",
+                     .places = "free_volume",
+                     .values = density(inner.free_volumes, settings.bin_width, n_free),
+                     .units = "1/sphere volume",
+                     .long_name = "probability density of free volumes",
+                     .source = "Rosato et al. 2010, fig. 9"},
+                    {.name = "local_fraction_density",
+                     .places = "local_fraction",
+                     .values = density(inner.fractions, fraction_bin, 75),
+                     .long_name = "probability density of local packing fractions"}};
+  const double free_mean = mean_of(inner.free_volumes);
+  const double sigma = deviation_of(inner.free_volumes, free_mean);
+  const double above_least = free_mean - least_free_volume;
+  add_single("mean_faces", mean_of(inner.faces), "faces a cell", out, "Rosato et al. 2010, fig. 8");
+  add_single("mean_volume", mean_of(inner.volumes), "volume of a cell", out, "", "diameters^3");
+  add_single("mean_free_volume", free_mean, "free volume of a cell", out,
+             "Rosato et al. 2010, fig. 9", "sphere volumes");
+  add_single("sigma_free_volume", sigma, "deviation of the free volumes of cells", out, "",
+             "sphere volumes");
+  add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction", out);
+  add_single("k", above_least * above_least / (sigma * sigma),
+             "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
+             "least cell being a regular dodecahedron",
+             out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
+  add_single("n_cells", static_cast<double>(inner.volumes.size()), "whole cells of the region",
+             out);
+  const VoronoiCells& cells = in.voronoi();
+  const double lid = top_height(in.packing) + sphere_radius;
+  double all = 0;
+  for (const double volume : cells.volumes) all += volume;
+  add_single("volume_excess", all / volume_of(in.packing.container, lid) - 1,
+             "volume of all cells over that of the container up to the lid, less 1: above 0 "
+             "beside the curved wall of a cylinder, whose cells end at planes",
+             out);
+  add_single("inconsistent_cells", static_cast<double>(cells.inconsistent),
+             "cells that voro++ could not make out", out);
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
+  const std::vector<Pore> found =
+      pores_in(pores(in.packing, in.voronoi(), settings.merge), in.packing.container, in.region);
+  if (found.empty()) throw std::invalid_argument("no pore lies in the region");
+  const PoreDistribution sizes = pore_distribution(found, settings.bin_width, settings.largest);
+  double tetrahedral = 0, octahedral = 0;
+  for (const Pore& pore : found) {
+    const Site site = site_of(pore, settings.tolerance);
+    tetrahedral += site == Site::tetrahedral ? 1 : 0;
+    octahedral += site == Site::octahedral ? 1 : 0;
+  }
+  const auto number = static_cast<double>(found.size());
+  Measurement out;
+  out.places = {{"xi", sizes.xi, "R", "radius of a pore, middle of a bin"}};
+  out.quantities = {{.name = "rho_xi",
+                     .places = "xi",
+                     .values = sizes.rho_xi,
+                     .long_name = "pores a unit of xi; their number is its integral",
+                     .source = "Philippe & Bideau 2001, sec. V"},
+                    {.name = "rho_v",
+                     .places = "xi",
+                     .values = sizes.rho_v,
+                     .long_name = "pores a unit of v = xi^3",
+                     .source = "Philippe & Bideau 2001, fig. 10"},
+                    {.name = "v_rho_v",
+                     .places = "xi",
+                     .values = sizes.v_rho_v,
+                     .long_name = "pores a unit of ln v",
+                     .source = "Philippe & Bideau 2001, fig. 10"}};
+  add_single("n_pores", number, "pores of the region", out, "Philippe & Bideau 2001, sec. V");
+  add_single("nu", mean_pore_volume(found), "mean of xi^3", out, "Philippe & Bideau 2001, sec. V",
+             "R^3");
+  add_single("tetrahedral", tetrahedral / number,
+             "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", out,
+             "Philippe & Bideau 2001, sec. V");
+  add_single("octahedral", octahedral / number,
+             "fraction of pores at xi = 2^(1/2) - 1, within the tolerance", out,
+             "Philippe & Bideau 2001, sec. V");
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
+  std::vector<double> sigma;
+  const auto n = static_cast<std::size_t>(settings.largest / settings.step + 1e-9);
+  for (std::size_t k = 0; k <= n; ++k) sigma.push_back(static_cast<double>(k) * settings.step);
+  sigma.push_back(1);  // the spheres themselves: 1 - Phi
+  VoidProbability found =
+      void_probability(in.packing, in.region, sigma, settings.points, in.points);
+  const double phi = 1 - found.probability.back();
+  found.probability.pop_back();
+  sigma.pop_back();
+  std::vector<double> theory;
+  for (const double s : sigma) theory.push_back(gotoh_void_probability(phi, s));
+  Measurement out;
+  out.places = {{"sigma", sigma, "R", "radius of the random sphere"}};
+  out.quantities = {{.name = "p0",
+                     .places = "sigma",
+                     .values = found.probability,
+                     .long_name = "chance that a random sphere contains no centre",
+                     .source = "Philippe & Bideau 2001, fig. 9"},
+                    {.name = "p0_gotoh",
+                     .places = "sigma",
+                     .values = theory,
+                     .long_name = "the same of the Percus-Yevick fluid of this packing fraction",
+                     .source = "Philippe & Bideau 2001, eqs. 8, 9, the sign of 2 Phi corrected"}};
+  add_single("phi", phi, "packing fraction of the region", out);
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
+  const std::vector<BernalHole> holes = bernal_holes(in.packing, settings.bonds);
+  const HoleTable table = hole_table(holes, in.packing.container, in.region);
+  std::vector<std::string> names;
+  std::vector<double> number, volume, published_number, published_volume;
+  for (std::size_t k = 0; k < canonical_holes.size(); ++k) {
+    const auto kind = static_cast<HoleKind>(k);
+    names.emplace_back(canonical_holes[k].name);
+    number.push_back(table.number_fraction(kind));
+    volume.push_back(table.volume_fraction(kind));
+    published_number.push_back(canonical_holes[k].number_fraction);
+    published_volume.push_back(canonical_holes[k].volume_fraction);
+  }
+  const auto column = [](const char* name, std::vector<double> values, const char* long_name,
+                         const char* source) {
+    return MeasuredQuantity{.name = name,
+                            .places = "hole",
+                            .values = std::move(values),
+                            .long_name = long_name,
+                            .source = source,
+                            .beyond = nan};
+  };
+  constexpr const char* table_one = "Philippe & Bideau 2001, table I";
+  Measurement out;
+  out.places = {{"hole", names, "1", "Bernal's canonical holes"}};
+  out.quantities = {
+      column("number_fraction", number, "of the classified holes", ""),
+      column("volume_fraction", volume, "of the classified holes' volume", ""),
+      column("number_fraction_published", published_number, "in Bernal's models", table_one),
+      column("volume_fraction_published", published_volume, "in Bernal's models", table_one)};
+  add_single("unclassified", table.unclassified_fraction(),
+             "part of the volume in no canonical hole", out);
+  return out;
+}
+
+}  // namespace jostle
