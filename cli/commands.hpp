@@ -19,5 +19,6 @@ void add_selftest(CLI::App& app, int& code);
 void add_fit(CLI::App& app, int& code);
 void add_analyse(CLI::App& app, int& code);
 void add_export(CLI::App& app, int& code);
+void add_structure(CLI::App& app, int& code);
 
 }  // namespace jostle

@@ -49,7 +49,7 @@ bool is_on(const std::string& part, const Json& value) {
 std::string effects_text(const Json& resolved) {
   std::string on = "effects\n", off;
   for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots",
-                           "sweep", "until", "fits", "analyse"}) {
+                           "sweep", "until", "fits", "analyse", "structure"}) {
     const Json value = without_empty_lists(resolved.value(part, Json::object()));
     if (is_on(part, value)) {
       on += fmt::format("  {:<11}{}\n", part, in_words(value));

@@ -23,6 +23,7 @@ constexpr const char* footer =
     "  jostle info quickstart.h5                    what is in it\n"
     "  jostle fit quickstart.h5 --observable bottom_fraction\n"
     "  jostle analyse quickstart.h5 steady --observable mean_height\n"
+    "  jostle structure quickstart.h5 --part profile,voronoi\n"
     "\n"
     "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
     "failed,\n"
@@ -45,6 +46,7 @@ int parse_and_run(int argc, char** argv) {
   add_selftest(app, code);
   add_fit(app, code);
   add_analyse(app, code);
+  add_structure(app, code);
   add_export(app, code);
   try {
     app.parse(argc, argv);

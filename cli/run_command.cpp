@@ -24,6 +24,7 @@
 #include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
+#include "cli/structure_run.hpp"
 #include "cli/text_table.hpp"
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
@@ -245,6 +246,7 @@ void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
   }
   make_scene_fits(output, threads, arguments.quiet);
   make_scene_analyses(output, threads, arguments.quiet);
+  make_scene_structure(output, threads, arguments.quiet);
 }
 
 int run(const RunArguments& arguments) {

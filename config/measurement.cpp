@@ -28,11 +28,6 @@ std::optional<Bounds> read_bounds(const Reader& in, double most) {
   return std::nullopt;
 }
 
-HeightWindow read_heights(const Reader& in) {
-  const auto bounds = read_bounds(in, highest);
-  return bounds ? HeightWindow{bounds->low, bounds->high} : HeightWindow{};
-}
-
 QuantileWindow read_quantiles(const Reader& in) {
   const auto bounds = read_bounds(in, 1);
   return bounds ? QuantileWindow{bounds->low, bounds->high} : QuantileWindow{};
@@ -136,11 +131,16 @@ Json written_taps(const TapChoice& choice) {
   return std::get<std::vector<std::uint64_t>>(choice);
 }
 
+}  // namespace
+
+HeightWindow read_heights(const Reader& in) {
+  const auto bounds = read_bounds(in, highest);
+  return bounds ? HeightWindow{bounds->low, bounds->high} : HeightWindow{};
+}
+
 Json written_bounds(double low, double high) {
   return Json::array({plain_number(low), plain_number(high)});
 }
-
-}  // namespace
 
 Window read_window(const Reader& in) {
   const auto window = in.choice({"heights", "quantiles"});

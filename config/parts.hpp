@@ -14,6 +14,7 @@ StartChoice read_start(const Reader& in);
 std::vector<ProtocolLine> read_protocol(const Reader& in);
 Relaxation read_relaxation(const Reader& in);
 Window read_window(const Reader& in);
+HeightWindow read_heights(const Reader& in);
 std::vector<Observable> read_observables(const Reader& in);
 TapChoice read_taps(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
@@ -21,6 +22,7 @@ std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
 Enough read_until(const Reader& in);
 Analyses read_analyses(const Reader& in);
+StructureSettings read_structure(const Reader& in);
 
 Json written(const Container& container);
 Json written(const StartChoice& start);
@@ -34,6 +36,9 @@ Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
 Json written(const Enough& enough);
 Json written(const Analyses& analyses);
+Json written(const StructureSettings& settings);
+/// [low, high]
+Json written_bounds(double low, double high);
 
 /// A number as a person writes it: 16, not 16.0.
 Json plain_number(double value);
@@ -51,6 +56,8 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the structure of its packings.
+void check_structure(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns the number of realizations.
 void check_until(const Scene& scene, std::vector<Fault>& faults);
 /// Notes analyses over the points of a sweep that does not have what they need.

@@ -87,7 +87,7 @@ Scene read_scene(const Reader& in) {
   scene.observables = default_observables();
   if (!in.is_object_of({"$schema", "name", "description", "seed", "realizations", "streams",
                         "container", "spheres", "start", "protocol", "relax", "relax_start",
-                        "observe", "snapshots", "sweep", "until", "fits", "analyse"})) {
+                        "observe", "snapshots", "sweep", "until", "fits", "analyse", "structure"})) {
     return scene;
   }
   read_identity(in, scene);
@@ -98,6 +98,7 @@ Scene read_scene(const Reader& in) {
   if (const auto until = in.find("until")) scene.until = read_until(*until);
   if (const auto fits = in.find("fits")) scene.fits = read_fits(*fits);
   if (const auto analyse = in.find("analyse")) scene.analyse = read_analyses(*analyse);
+  if (const auto structure = in.find("structure")) scene.structure = read_structure(*structure);
   return scene;
 }
 

@@ -31,6 +31,7 @@ Json resolved(const Scene& scene) {
   if (!scene.until.targets.empty()) out["until"] = written(scene.until);
   out["fits"] = written(scene.fits);
   out["analyse"] = written(scene.analyse);
+  out["structure"] = written(scene.structure);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "ensemble/analyses.hpp"
 #include "ensemble/enough.hpp"
 #include "ensemble/plan.hpp"
+#include "structure/measure.hpp"
 
 // A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
 namespace jostle {
@@ -137,6 +139,7 @@ struct Scene {
   Enough until;
   std::vector<FitRequest> fits;
   Analyses analyse;
+  StructureSettings structure;
   bool operator==(const Scene&) const = default;
 };
 
@@ -149,6 +152,21 @@ struct ParsedScene {
 /// Reads a scene. Reports every fault: of syntax (with line and column), duplicate and unknown
 /// keys, wrong types, values out of range or at odds with each other, also at single sweep points.
 ParsedScene parse_scene(std::string_view json_text);
+
+/// What is measured of packings, or every fault that keeps the text from being that.
+struct ParsedStructure {
+  std::optional<StructureSettings> settings;
+  std::vector<Fault> faults;  // empty if and only if there are settings
+};
+
+/// Reads an object as the key "structure" of a scene holds it.
+ParsedStructure parse_structure(std::string_view json_text);
+
+/// Names of the parts that are measured: "profile", "pores", ...
+std::vector<std::string> parts_of(const StructureSettings& settings);
+
+/// The settings with exactly the named parts; those that they lack have their defaults.
+StructureSettings with_parts(StructureSettings settings, std::span<const std::string> names);
 
 /// The scene with every default written out, keys in a fixed order: parse_scene(resolved(s).dump())
 /// gives s again.
@@ -169,7 +187,8 @@ std::string_view scene_schema();
 
 /// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, other limits of `until`, fits and analyses, and another name or description.
+/// those, more realizations, other limits of `until`, fits, analyses
+/// and measured structure, and another name or description.
 std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
                                  const nlohmann::ordered_json& new_resolved);
 

@@ -13,9 +13,21 @@
 namespace jostle {
 namespace {
 
-// Voronoi cells and neighbours are sought where centres lie inside the box; a packing of another
-// program may have them a period away.
-Packing inside(const Packing& packing) {
+std::uint32_t type_number(CrystalOrder order) {
+  switch (order) {
+    case CrystalOrder::disordered:
+      return 0;
+    case CrystalOrder::fcc:
+      return 1;
+    case CrystalOrder::hcp:
+      return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Packing wrapped_inside(const Packing& packing) {
   Packing moved = packing;
   for (std::size_t i = 0; i < moved.centres.size(); ++i) {
     Vec3& r = moved.centres[i];
@@ -32,22 +44,8 @@ Packing inside(const Packing& packing) {
   return moved;
 }
 
-std::uint32_t type_number(CrystalOrder order) {
-  switch (order) {
-    case CrystalOrder::disordered:
-      return 0;
-    case CrystalOrder::fcc:
-      return 1;
-    case CrystalOrder::hcp:
-      return 2;
-  }
-  return 0;
-}
-
-}  // namespace
-
 std::vector<ParticleColumn> particle_columns(const Packing& packing) {
-  const Packing moved = inside(packing);
+  const Packing moved = wrapped_inside(packing);
   const NeighbourTable nearest = nearest_neighbours(moved, 12);
   std::vector<double> q6;
   for (const BondOrder& order : bond_order(nearest)) q6.push_back(order.q6);

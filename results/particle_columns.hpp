@@ -22,6 +22,11 @@ struct ExportedFrame {
   std::vector<ParticleColumn> columns;
 };
 
+/// The packing with its centres inside the container, where cells and neighbours are sought; those
+/// of another program may be a period away. Throws std::invalid_argument naming a sphere that no
+/// period brings inside.
+Packing wrapped_inside(const Packing& packing);
+
 /// Of every sphere: `radius` and `voronoi_volume` (diameters and their cubes; cells end at floor,
 /// walls, and half a diameter above the highest centre), `coordination` (centres within 1.05
 /// diameters), `q6` of the 12 nearest neighbours, and `structure_type` (0 disordered, 1 fcc, 2 hcp,

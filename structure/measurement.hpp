@@ -33,6 +33,8 @@ struct MeasuredQuantity {
   double beyond = 0;
   /// Whether its change since the first tap is of interest too.
   bool with_change = false;
+
+  double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
 };
 
 /// One part of the structure of one packing.
@@ -43,6 +45,14 @@ struct Measurement {
   std::vector<std::pair<std::string, std::string>> notes{};
   /// Why there is nothing: the container has no such thing, or the region is empty.
   std::string refused{};
+
+  /// Null where there is none of that name.
+  const MeasuredQuantity* find(const std::string& name) const {
+    for (const MeasuredQuantity& quantity : quantities) {
+      if (quantity.name == name) return &quantity;
+    }
+    return nullptr;
+  }
 };
 
 }  // namespace jostle

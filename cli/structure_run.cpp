@@ -1,0 +1,224 @@
+#include "cli/structure_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <mutex>
+
+#include "cli/point_scenes.hpp"
+#include "cli/provenance.hpp"
+#include "cli/scene_file.hpp"
+#include "cli/table_output.hpp"
+#include "config/json_text.hpp"
+#include "ensemble/parallel.hpp"
+#include "ensemble/structure_tables.hpp"
+#include "results/export.hpp"
+#include "results/extended_xyz.hpp"
+#include "results/layout.hpp"
+#include "results/particle_columns.hpp"
+#include "results/tables.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// A kept packing, or none.
+struct KeptPacking {
+  std::uint64_t tap = 0;
+  Packing packing;
+};
+
+/// The packings of one ensemble, read realization by realization.
+struct KeptEnsemble {
+  std::string name;  // for messages
+  std::vector<std::uint64_t> taps;
+  std::uint32_t realizations = 0;
+  std::function<std::vector<KeptPacking>(std::uint32_t realization)> read;  // one call at a time
+  std::uint64_t seed = 0, sweep_point = 0;                                  // of random points
+};
+
+std::size_t place_of(const std::vector<std::uint64_t>& taps, std::uint64_t tap) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(taps, tap) - taps.begin());
+}
+
+/// Measures the packings of one realization after another, on many threads.
+class Measurer {
+ public:
+  Measurer(const KeptEnsemble& ensemble, const StructureSettings& settings)
+      : ensemble_(ensemble), settings_(settings), failures_(ensemble.realizations) {
+    structure_.taps = ensemble.taps;
+    structure_.packings.assign(ensemble.taps.size(),
+                               std::vector<std::vector<Measurement>>(ensemble.realizations));
+  }
+
+  EnsembleStructure measured(int threads) {
+    on_threads(threads, [this] { work(); });
+    for (const std::exception_ptr& failure : failures_) {
+      if (failure) std::rethrow_exception(failure);
+    }
+    return std::move(structure_);
+  }
+
+ private:
+  void work() {
+    for (std::uint32_t r = next_++; r < ensemble_.realizations; r = next_++) {
+      try {
+        measure_realization(r);
+      } catch (...) {
+        failures_[r] = std::current_exception();
+      }
+    }
+  }
+
+  void measure_realization(std::uint32_t r) {
+    std::vector<KeptPacking> packings;
+    {
+      const std::lock_guard lock(reading_);
+      packings = ensemble_.read(r);
+    }
+    const StreamKey points =
+        stream_key(ensemble_.seed, ensemble_.sweep_point, r, Purpose::void_points);
+    for (const KeptPacking& kept : packings) {
+      const std::size_t place = place_of(ensemble_.taps, kept.tap);
+      if (place == ensemble_.taps.size() || ensemble_.taps[place] != kept.tap) continue;
+      try {
+        structure_.packings[place][r] = measure(wrapped_inside(kept.packing), settings_, points);
+      } catch (const std::invalid_argument& error) {
+        throw BadInput(fmt::format("{}, realization {}, tap {}: {}", ensemble_.name, r, kept.tap,
+                                   error.what()));
+      }
+    }
+  }
+
+  const KeptEnsemble& ensemble_;
+  const StructureSettings& settings_;
+  EnsembleStructure structure_;
+  std::vector<std::exception_ptr> failures_;
+  std::atomic<std::uint32_t> next_ = 0;
+  std::mutex reading_;
+};
+
+/// Of the taps that there are, those that are named; all if none is.
+std::vector<std::uint64_t> chosen_taps(const std::string& name,
+                                       const std::vector<std::uint64_t>& there,
+                                       std::span<const std::uint64_t> named) {
+  if (there.empty()) {
+    throw BadInput(
+        fmt::format("{}: no packings are kept; a scene keeps them with \"snapshots\": {{\"taps\": "
+                    "[...], \"keep\": [\"positions\"]}}",
+                    name));
+  }
+  if (named.empty()) return there;
+  std::vector<std::uint64_t> chosen(named.begin(), named.end());
+  std::ranges::sort(chosen);
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  for (const std::uint64_t tap : chosen) {
+    if (!std::ranges::binary_search(there, tap)) {
+      throw BadInput(
+          fmt::format("{}: no packing of tap {}; there are {}", name, tap, list_of(there)));
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::uint64_t> kept_taps(const ResultsFile& file, std::uint32_t point) {
+  std::vector<std::uint64_t> taps;
+  for (std::uint32_t r = 0; r < file.study().realizations; ++r) {
+    for (const SnapshotRecord& snapshot : file.snapshots({point, r})) {
+      if (!snapshot.centres.empty()) taps.push_back(snapshot.tap);
+    }
+  }
+  std::ranges::sort(taps);
+  taps.erase(std::unique(taps.begin(), taps.end()), taps.end());
+  return taps;
+}
+
+KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
+  const Scene scene = PointScenes(file).at(point);
+  const Container& container = file.study().points[point].container;
+  KeptEnsemble ensemble{.name = fmt::format("{}, sweep point {}", file.path(), point),
+                        .taps = kept_taps(file, point),
+                        .realizations = file.study().realizations,
+                        .read = {},
+                        .seed = scene.seed,
+                        .sweep_point = point};
+  ensemble.read = [&file, &container, point](std::uint32_t r) {
+    std::vector<KeptPacking> packings;
+    for (SnapshotRecord& snapshot : file.snapshots({point, r})) {
+      if (snapshot.centres.empty()) continue;
+      packings.push_back({snapshot.tap, {container, std::move(snapshot.centres)}});
+    }
+    return packings;
+  };
+  return ensemble;
+}
+
+}  // namespace
+
+std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> taps, int threads) {
+  std::vector<Table> tables;
+  for (const std::uint32_t point : points) {
+    KeptEnsemble ensemble = ensemble_at(file, point);
+    ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
+    const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
+    for (Table& table : structure_tables(point_name(point) + "/", structure, settings)) {
+      const std::string& label = file.study().points[point].label;
+      if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
+      tables.push_back(std::move(table));
+    }
+  }
+  return tables;
+}
+
+std::vector<Table> structure_of(std::span<const std::string> files,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> frames, int threads) {
+  std::vector<std::vector<Packing>> packings;
+  std::size_t most = 0;
+  for (const std::string& path : files) {
+    packings.push_back(read_extended_xyz_frames(path));
+    most = std::max(most, packings.back().size());
+  }
+  KeptEnsemble ensemble{.name = joined({files.begin(), files.end()}, ", "),
+                        .taps = {},
+                        .realizations = static_cast<std::uint32_t>(files.size()),
+                        .read = {},
+                        .seed = 1};
+  for (std::uint64_t frame = 0; frame < most; ++frame) ensemble.taps.push_back(frame);
+  ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, frames);
+  ensemble.read = [&packings](std::uint32_t r) {
+    std::vector<KeptPacking> kept;
+    for (std::size_t k = 0; k < packings[r].size(); ++k) kept.push_back({k, packings[r][k]});
+    return kept;
+  };
+  return structure_tables("", Measurer(ensemble, settings).measured(threads), settings);
+}
+
+StructureSettings structure_asked_for(const ResultsFile& file) {
+  const ParsedScene parsed = parse_scene(file.study().resolved_scene);
+  return parsed.scene ? parsed.scene->structure : StructureSettings{};
+}
+
+void make_scene_structure(const std::string& results, int threads, bool quiet) {
+  std::vector<Table> tables;
+  {
+    const ResultsFile file(results);
+    const StructureSettings settings = structure_asked_for(file);
+    if (settings.empty()) return;
+    std::vector<std::uint32_t> points(file.study().points.size());
+    for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
+    tables = structure_of(file, points, settings, {}, threads);
+  }
+  for (const Table& table : tables) {
+    if (!quiet) fmt::print("\n{}", table_text(table, Detail::brief));
+  }
+  store_tables(results, "structure", tables, provenance_of_this_run(fmt::to_string(threads)));
+}
+
+}  // namespace jostle

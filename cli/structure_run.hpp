@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/table.hpp"
+#include "results/results_file.hpp"
+#include "structure/measure.hpp"
+
+namespace jostle {
+
+/// Structure of the kept packings at the given sweep points, averaged over realizations: tables
+/// point_PPPP/<part>, as results files keep them. `taps`: of those with packings; all if none is
+/// named. The tables do not depend on the number of threads. Throws BadInput where there are no
+/// packings, or not of a tap that is named.
+std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> taps, int threads);
+
+/// The same of extended XYZ files, each one realization whose frames stand for taps: tables
+/// <part>. Throws BadInput likewise, ResultsError for a file.
+std::vector<Table> structure_of(std::span<const std::string> files,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> frames, int threads);
+
+/// What the scene of a results file asks for; no part where it asks for nothing.
+StructureSettings structure_asked_for(const ResultsFile& file);
+
+/// Makes, prints briefly (unless quiet) and stores the structure that the scene of a complete
+/// results file asks for. Throws ResultsError.
+void make_scene_structure(const std::string& results, int threads, bool quiet);
+
+}  // namespace jostle

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ensemble/table.hpp"
+#include "structure/measure.hpp"
+
+namespace jostle {
+
+/// One part of the structure of every packing, [n_taps][n_realizations]; null where there is none.
+using PartPackings = std::vector<std::vector<const Measurement*>>;
+
+/// Adds what the laws of that part find in its mean curves, [n_taps] each: parameters, their
+/// jackknife errors, and "converged" or why there is no fit. Eq. 7 to the vertical profile, the
+/// exponential to the tail of pores, the normal law to numbers of neighbours and of faces, the
+/// k-gamma law to free volumes; other parts have none.
+void add_fits(const std::string& part_name, const PartPackings& part,
+              const StructureSettings& settings, Table& table);
+
+}  // namespace jostle
