@@ -9,6 +9,7 @@
 #include "engine/cell_grid.hpp"
 #include "engine/geometry.hpp"
 #include "engine/slab.hpp"
+#include "structure/sphere_cuts.hpp"
 
 namespace jostle {
 namespace {
@@ -65,17 +66,55 @@ double squared_distance(const Container& container, Vec3 a, Vec3 b) {
                     container);
 }
 
-// The part of the region that spheres of radius sigma R around the centres fill, sigma <= 1.
+// What a sphere of radius R around `r` fills of a region between periodic sides.
+double filled_by(const PeriodicBox&, const Region& region, Vec3 r) {
+  return sphere_volume_in_slab(r.z, region.low, region.high);
+}
+double filled_by(const FullyPeriodicBox& box, const Region& region, Vec3 r) {
+  double filled = 0;
+  for (const double z : {r.z - box.height, r.z, r.z + box.height}) {
+    filled += sphere_volume_in_slab(z, region.low, region.high);
+  }
+  return filled;
+}
+double filled_by(const WalledBox& box, const Region& region, Vec3 r) {
+  const Vec3 low{region.from_sides, region.from_sides, region.low};
+  const Vec3 high{box.width_x - region.from_sides, box.width_y - region.from_sides, region.high};
+  return sphere_volume_in_box(low - r, high - r);
+}
+double filled_by(const Cylinder& tube, const Region& region, Vec3 r) {
+  const double axis = 0.5 * tube.diameter, x = r.x - axis, y = r.y - axis;
+  return sphere_volume_in_tube(std::sqrt(x * x + y * y), axis - region.from_sides, region.low - r.z,
+                               region.high - r.z);
+}
+
+PeriodicBox scaled(const PeriodicBox& box, double by) {
+  return {by * box.width_x, by * box.width_y};
+}
+FullyPeriodicBox scaled(const FullyPeriodicBox& box, double by) {
+  return {by * box.width_x, by * box.width_y, by * box.height};
+}
+WalledBox scaled(const WalledBox& box, double by) {
+  return {by * box.width_x, by * box.width_y};
+}
+Cylinder scaled(const Cylinder& tube, double by) {
+  return {by * tube.diameter};
+}
+
+// The part of the region that spheres of radius sigma R around the centres fill, sigma <= 1: as
+// spheres of radius R do where all lengths are divided by sigma.
 double filled_part(const Packing& packing, const Region& region, double sigma) {
   if (sigma == 0) return 0;
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
-  double filled = 0;
-  for (const Vec3& r : packing.centres) {
-    for (int image = bulk ? -1 : 0; image <= (bulk ? 1 : 0); ++image) {
-      const double z = r.z + (bulk ? image * bulk->height : 0);
-      filled += sphere_volume_in_slab(z / sigma, region.low / sigma, region.high / sigma);
-    }
-  }
+  const double by = 1 / sigma;
+  const Region larger{by * region.low, by * region.high, by * region.from_sides};
+  const double filled = std::visit(
+      [&](const auto& container) {
+        const auto room = scaled(container, by);
+        double sum = 0;
+        for (const Vec3& r : packing.centres) sum += filled_by(room, larger, by * r);
+        return sum;
+      },
+      packing.container);
   return filled * sigma * sigma * sigma / region.volume(packing.container);
 }
 
@@ -182,7 +221,7 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
   VoidProbability result;
   result.sigma.assign(sigma.begin(), sigma.end());
   for (std::size_t s = 0; s < sigma.size(); ++s) {
-    if (sigma[s] <= 1 && region.from_sides == 0) {
+    if (sigma[s] <= 1) {
       result.probability.push_back(1 - filled_part(packing, region, sigma[s]));
       result.error.push_back(0);
     } else {

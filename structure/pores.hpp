@@ -54,7 +54,7 @@ struct VoidProbability {
   std::vector<double> sigma, probability, error;  // error: binomial, 0 where exact
 };
 /// Up to sigma = 1, where spheres of radius sigma R do not overlap, exactly: one minus the part of
-/// the region that they fill, if the region reaches to the sides. Else by `points` random points.
+/// the region that they fill. Beyond by `points` random points.
 VoidProbability void_probability(const Packing& packing, const Region& region,
                                  std::span<const double> sigma, std::uint64_t points,
                                  StreamKey key);

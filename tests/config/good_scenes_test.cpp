@@ -54,6 +54,18 @@ TEST_CASE("Every key of a scene is read") {
         StopRule{BulkFractionStop{0.002, 500'000, 3, false, HeightWindow{4, 8.5}}});
   CHECK(scene.relax.stop.max_sweeps == 20'000);
   CHECK(scene.relax.sampler == Sampler::skipping);
+  const StructureSettings& structure = scene.structure;
+  CHECK(structure.region == Region{1.5, 8, 2});
+  CHECK(structure.profile == ProfileSettings{0.2, 0, HeightWindow{3, 9}});
+  CHECK(structure.sides == SidesSettings{0.25, HeightWindow{2, 7}, 3});
+  CHECK(structure.layers == LayersSettings{0.05, {0.2, 0.5, 0.8}});
+  CHECK(structure.coordination == CoordinationSettings{1.1, 2, 0.1});
+  CHECK(structure.pair_correlation == PairsSettings{3, 0.05});
+  CHECK(structure.order == OrderSettings{0.5});
+  CHECK(structure.voronoi == VoronoiSettings{0.01, 0.05});
+  CHECK(structure.pores == PoresSettings{0.01, 2, 1e-5, 0.01, 0.2});
+  CHECK(structure.void_probability == VoidSettings{1.5, 0.1, 5000});
+  CHECK(structure.holes == HolesSettings{{1.25, 1.35, 0.1}});
   REQUIRE(scene.observables.size() == 6);
   CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
   CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});

@@ -1,0 +1,212 @@
+#include "structure/measure.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "engine/slab.hpp"
+#include "reference_deposit.hpp"
+#include "structure/pores.hpp"
+#include "structure/profiles.hpp"
+#include "structure/voronoi.hpp"
+
+using namespace jostle;
+
+namespace {
+
+constexpr StreamKey points{20'261};
+
+const Measurement& part(const std::vector<Measurement>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &Measurement::part);
+  REQUIRE(found != all.end());
+  return *found;
+}
+
+double single(const Measurement& measurement, const std::string& name) {
+  const MeasuredQuantity* quantity = measurement.find(name);
+  REQUIRE(quantity != nullptr);
+  REQUIRE(quantity->places.empty());
+  REQUIRE(quantity->values.size() == 1);
+  return quantity->values[0];
+}
+
+const std::vector<double>& along(const Measurement& measurement, const std::string& name) {
+  const MeasuredQuantity* quantity = measurement.find(name);
+  REQUIRE(quantity != nullptr);
+  return quantity->values;
+}
+
+std::vector<double> places(const Measurement& measurement, const std::string& name) {
+  const auto found = std::ranges::find(measurement.places, name, &Places::name);
+  REQUIRE(found != measurement.places.end());
+  return std::get<std::vector<double>>(found->values);
+}
+
+double sum(const std::vector<double>& values) {
+  double total = 0;
+  for (const double value : values) total += value;
+  return total;
+}
+
+/// Touching spheres on an fcc lattice that fills a fully periodic box of 4 cubic cells a side.
+Packing fcc() {
+  const double a = std::numbers::sqrt2;
+  Packing packing{FullyPeriodicBox{4 * a, 4 * a, 4 * a}, {}};
+  for (int i = 0; i < 8 * 8 * 8; ++i) {
+    const int x = i % 8, y = i / 8 % 8, z = i / 64;
+    if ((x + y + z) % 2 == 0) packing.centres.push_back({x * a / 2, y * a / 2, z * a / 2});
+  }
+  return packing;
+}
+
+}  // namespace
+
+TEST_CASE("Every quantity of every part stands on its places and is finite where it must be") {
+  const std::vector<Measurement> all = measure(reference_deposit(), all_structure(), points);
+  CHECK(all.size() == 10);
+  for (const Measurement& measurement : all) {
+    INFO(measurement.part);
+    CHECK(measurement.refused.empty());
+    CHECK_FALSE(measurement.quantities.empty());
+    for (const MeasuredQuantity& quantity : measurement.quantities) {
+      INFO(quantity.name);
+      CHECK_FALSE(quantity.long_name.empty());
+      std::size_t n = 1;
+      if (!quantity.places.empty()) {
+        const auto found = std::ranges::find(measurement.places, quantity.places, &Places::name);
+        REQUIRE(found != measurement.places.end());
+        n = found->size();
+      }
+      CHECK(quantity.values.size() == n);
+      const bool may_lack = quantity.name.ends_with("_at_height");  // a bin without a sphere
+      for (const double value : quantity.values) CHECK((may_lack || std::isfinite(value)));
+    }
+  }
+}
+
+TEST_CASE("Parts of the reference deposit agree with what its maker and voro++ measured") {
+  const Packing deposit = reference_deposit();
+  const nlohmann::json measured = reference_measurements();
+  const std::vector<Measurement> all = measure(deposit, all_structure(), points);
+
+  const Measurement& profile = part(all, "profile");
+  double solids = sum(along(profile, "phi")) * 0.1 * footprint_area(deposit.container);
+  CHECK(solids == Approx(4096 * std::numbers::pi / 6).epsilon(1e-12));
+  CHECK(single(profile, "phi_region") == Approx(solids_fraction(deposit, {1, 10})).epsilon(1e-12));
+  const Measurement& layers = part(all, "layers");
+  CHECK(sum(along(layers, "n")) == Approx(1).epsilon(1e-12));
+  CHECK(places(layers, "layer_height")[1] == Approx(0.5 + std::sqrt(2.0 / 3)).epsilon(1e-14));
+
+  const Measurement& coordination = part(all, "coordination");
+  CHECK(sum(along(coordination, "neighbour_share")) == Approx(1).epsilon(1e-12));
+  // The first cut of the curve that is the cut of the counts.
+  CHECK(along(coordination, "n_c_of_cut")[5] == Approx(single(coordination, "n_c")).epsilon(1e-12));
+
+  const Measurement& cells = part(all, "voronoi");
+  CHECK(std::abs(single(cells, "volume_excess")) < 1e-10);
+  CHECK(sum(along(cells, "face_share")) == Approx(1).epsilon(1e-12));
+  CHECK(sum(along(cells, "free_volume_density")) * 0.02 == Approx(1).margin(2e-3));
+  CHECK(sum(along(cells, "local_fraction_density")) * 0.01 == Approx(1).epsilon(1e-12));
+  CHECK(single(cells, "mean_free_volume") ==
+        Approx(single(cells, "mean_volume") / (std::numbers::pi / 6) - 1).epsilon(1e-12));
+
+  const Measurement& found = part(all, "pores");
+  const double number = sum(along(found, "rho_xi")) * 0.02;
+  CHECK(number == Approx(single(found, "n_pores")).epsilon(1e-3));
+  const std::vector<double> xi = places(found, "xi");
+  for (std::size_t k = 0; k < xi.size(); ++k) {
+    const double rho_xi = along(found, "rho_xi")[k];
+    CHECK(along(found, "v_rho_v")[k] == Approx(xi[k] / 3 * rho_xi).epsilon(1e-9).margin(1e-9));
+  }
+
+  const Measurement& voids = part(all, "void_probability");
+  CHECK(single(voids, "phi") == Approx(solids_fraction(deposit, {1, 10})).epsilon(1e-12));
+  CHECK(along(voids, "p0")[0] == 1);
+  for (std::size_t k = 1; k <= 20; ++k) {  // eq. 8, but for spheres at the region's ends
+    CHECK(along(voids, "p0")[k] == Approx(along(voids, "p0_gotoh")[k]).margin(2e-3));
+  }
+}
+
+TEST_CASE("A perfect crystal is one everywhere") {
+  StructureSettings settings = all_structure();
+  settings.profile.reset();
+  settings.sides.reset();
+  settings.layers.reset();
+  const std::vector<Measurement> all = measure(fcc(), settings, points);
+  CHECK(single(part(all, "coordination"), "n_c") == 12);
+  CHECK(single(part(all, "order"), "fcc") == 1);
+  CHECK(single(part(all, "order"), "q6") == Approx(0.57452426).epsilon(1e-7));
+  CHECK(single(part(all, "voronoi"), "mean_faces") == 12);
+  CHECK(single(part(all, "voronoi"), "mean_free_volume") ==
+        Approx(3 * std::numbers::sqrt2 / std::numbers::pi - 1).epsilon(1e-9));
+  // Two tetrahedral sites and one octahedral a sphere.
+  CHECK(single(part(all, "pores"), "tetrahedral") == Approx(2.0 / 3).epsilon(1e-12));
+  CHECK(single(part(all, "pores"), "octahedral") == Approx(1.0 / 3).epsilon(1e-12));
+  CHECK(single(part(all, "void_probability"), "phi") ==
+        Approx(std::numbers::pi / std::numbers::sqrt2 / 3).epsilon(1e-9));
+  CHECK(single(part(all, "holes"), "unclassified") == 0);
+  // Two tetrahedra and one octahedron, that is two half-octahedra, a sphere.
+  CHECK(along(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
+  CHECK(along(part(all, "holes"), "number_fraction")[1] == Approx(0.5).epsilon(1e-12));
+}
+
+TEST_CASE("Parts that a container does not have say so, and others are measured") {
+  const std::vector<Measurement> all = measure(fcc(), all_structure(), points);
+  CHECK(part(all, "profile").refused.find("floor") != std::string::npos);
+  CHECK(part(all, "sides").refused.find("floor") != std::string::npos);
+  CHECK(part(all, "layers").refused.find("floor") != std::string::npos);
+  CHECK(part(all, "coordination").refused.empty());
+
+  StructureSettings high = all_structure();
+  high.region = Region{5, 5, 0};
+  const std::vector<Measurement> empty = measure(reference_deposit(), high, points);
+  CHECK(part(empty, "pores").refused.find("region") != std::string::npos);
+  CHECK(part(empty, "layers").refused.empty());
+}
+
+TEST_CASE("Only what has settings is measured") {
+  StructureSettings settings;
+  CHECK(measure(fcc(), settings, points).empty());
+  settings.order.emplace();
+  const std::vector<Measurement> one = measure(fcc(), settings, points);
+  REQUIRE(one.size() == 1);
+  CHECK(one[0].part == "order");
+}
+
+TEST_CASE("Spheres inside one another are refused, as of a file in other units") {
+  Packing packing = fcc();
+  for (Vec3& r : packing.centres) r = 0.4 * r;
+  packing.container = FullyPeriodicBox{3, 3, 3};
+  CHECK_THROWS_WITH(measure(packing, all_structure(), points),
+                    Catch::Matchers::Contains("must be in diameters"));
+}
+
+TEST_CASE("The region follows a bed lower than Philippe and Bideau's") {
+  const Region full = bulk_of(reference_deposit());
+  CHECK(full == pore_region);
+  Packing low{PeriodicBox{8, 8}, {}};
+  for (int i = 0; i < 49; ++i) low.centres.push_back({1.1 * (i % 7), 1.1 * (i / 7), 2.5});
+  CHECK(bulk_of(low) == Region{1, 4, 1});
+  CHECK(bulk_of(fcc()) == Region{0, 4 * std::numbers::sqrt2, 0});
+}
+
+TEST_CASE("In a cylinder cells at the curved wall are left out and their excess is told") {
+  Packing tube{Cylinder{6}, {}};
+  for (int i = 0; i < 4 * 5 * 5; ++i) {
+    const Vec3 r{0.9 + 1.05 * (i % 5), 0.9 + 1.05 * (i / 5 % 5), 0.5 + 1.05 * (i / 25)};
+    const double x = r.x - 3, y = r.y - 3;
+    if (x * x + y * y <= 2.5 * 2.5) tube.centres.push_back(r);
+  }
+  StructureSettings settings;
+  settings.voronoi.emplace();
+  settings.sides.emplace();
+  settings.sides->reach = 1;
+  settings.region = Region{0.6, 3, 0.5};
+  const std::vector<Measurement> all = measure(tube, settings, points);
+  CHECK(single(part(all, "voronoi"), "volume_excess") > 0.001);
+  CHECK(single(part(all, "voronoi"), "n_cells") < static_cast<double>(tube.centres.size()) / 2);
+  const Measurement& sides = part(all, "sides");
+  CHECK(sides.find("phi_radial") != nullptr);
+  CHECK(sides.find("phi_x") == nullptr);
+  CHECK(sides.find("lateral")->with_change);
+}
