@@ -82,9 +82,12 @@ Quantity number_of_packings(const PartPackings& part) {
   return {"realizations", {"tap"}, std::move(counts), "1", "packings averaged over", ""};
 }
 
+/// The first packing's of each kind.
 void add_notes(const Measurement& measurement, Table& table) {
   for (const auto& note : measurement.notes) {
-    if (std::ranges::find(table.notes, note) == table.notes.end()) table.notes.push_back(note);
+    const bool known = std::ranges::any_of(
+        table.notes, [&](const auto& other) { return other.first == note.first; });
+    if (!known) table.notes.push_back(note);
   }
 }
 

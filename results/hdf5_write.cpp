@@ -33,7 +33,7 @@ void write_text_attribute(hid_t object, const std::string& name, const Shape& sh
   const Hdf5Handle type = text_type(), space = space_of(shape);
   const Hdf5Handle attribute(
       H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  checked(H5Awrite(attribute, type, pointers(texts).data()));
+  if (!texts.empty()) checked(H5Awrite(attribute, type, pointers(texts).data()));
 }
 
 }  // namespace

@@ -111,6 +111,18 @@ TEST_CASE("values that may be missing or extreme are kept") {
   CHECK(std::get<std::vector<double>>(read.quantities[1].values).empty());
 }
 
+TEST_CASE("a table of nothing but a word of why is kept") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  synthetic::run_to_end(path);
+  store(path, "structure", {{.name = "t", .notes = {{"refused", "there is no floor"}}}});
+  const Table read = read_tables(path, "structure").at(0);
+  CHECK(read.axes.empty());
+  CHECK(read.quantities.empty());
+  CHECK(read.notes ==
+        std::vector<std::pair<std::string, std::string>>{{"refused", "there is no floor"}});
+}
+
 TEST_CASE("tables that contradict themselves are refused before anything is written") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";

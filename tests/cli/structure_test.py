@@ -1,0 +1,136 @@
+"""jostle structure: what kept packings look like inside, in results files and in extended XYZ."""
+
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from support import BAD_INPUT, TINY, Case, changed
+
+PARTS = ["coordination", "holes", "layers", "order", "pair_correlation", "pores", "profile", "sides",
+         "void_probability", "voronoi"]
+SMALL = {"profile": {}, "coordination": {"cut": 1.1}, "pores": {"largest": 2},
+         "region": {"heights": [0.6, 1.5], "from_sides": 0}}
+
+
+class Structure(Case):
+    def structure(self, *arguments, expect=0):
+        return self.jostle("structure", *arguments, expect=expect)
+
+    def tables(self, *arguments):
+        found = json.loads(self.structure(*arguments, "--json").stdout)["tables"]
+        return {table["name"]: table for table in found}
+
+    def stored(self, name="tiny.h5"):
+        """Every number under /structure."""
+        found = {}
+        with h5py.File(self.folder / name) as file:
+            file["structure"].visititems(
+                lambda path, node: found.update({path: node[...]})
+                if isinstance(node, h5py.Dataset) else None)
+        return found
+
+    def assert_same(self, one, other):
+        self.assertEqual(one.keys(), other.keys())
+        for path, values in one.items():
+            as_text = [values.tolist(), other[path].tolist()]
+            self.assertEqual(*map(repr, as_text), path)
+
+    def test_a_run_ends_with_what_its_scene_names_and_nothing_else(self):
+        self.write(changed(TINY, structure=SMALL))
+        printed = self.run_scene().stdout
+        self.assertIn("point_0001/pores", printed)
+        with h5py.File(self.folder / "tiny.h5") as file:
+            self.assertEqual(sorted(file["structure"]), ["point_0000", "point_0001"])
+            point = file["structure/point_0000"]
+            self.assertEqual(sorted(point), ["coordination", "pores", "profile"])
+            profile = point["profile"]
+            self.assertEqual(profile["tap"][:].tolist(), [0, 4])
+            self.assertEqual(profile["phi"].shape, (2, profile["height"].size))
+            self.assertEqual(profile["phi"].dims[1][0], profile["height"])
+            self.assertEqual(profile["phi"].attrs["units"], "1")
+            self.assertTrue((profile["phi_error"][:] >= 0).any())
+            self.assertEqual(point["coordination/realizations"][:].tolist(), [3, 3])
+            # All of the solids: the profile's integral is the volume of the spheres.
+            width = TINY["container"]["width"]
+            solids = profile["phi"][:].sum(axis=1) * 0.1 * width**2
+            np.testing.assert_allclose(solids, TINY["spheres"] * np.pi / 6, rtol=1e-12)
+        kept = self.stored()
+        self.structure("tiny.h5", "--threads", 2)
+        self.assert_same(kept, self.stored())
+
+    def test_the_same_after_the_fact_for_any_number_of_threads(self):
+        self.write(TINY)
+        self.run_scene()
+        out = self.structure("tiny.h5", "--threads", 1, "--csv", "all.csv").stdout
+        for part in PARTS:
+            self.assertIn(f"point_0000/{part}", out)
+        one = self.stored()
+        self.structure("tiny.h5", "--threads", 3)
+        self.assert_same(one, self.stored())
+        text = (self.folder / "all.csv").read_text()
+        self.assertIn("tap,height,phi,phi_error", text)
+
+    def test_mean_and_error_are_those_of_the_realizations(self):
+        self.write(TINY)
+        self.run_scene()
+        whole = self.tables("tiny.h5", "--part", "coordination", "--tap", 4, "--sweep-point", 1,
+                            "--no-store")["point_0001/coordination"]["quantities"]
+        for r in range(3):
+            self.jostle("export", "tiny.h5", "--format", "extxyz", "--sweep-point", 1,
+                        "--realization", r, "-o", f"r{r}.xyz")
+        single = [self.tables(f"r{r}.xyz", "--part", "coordination")["coordination"]["quantities"]
+                  ["n_c_all"] for r in range(3)]
+        values = [quantity["values"][0] for quantity in single]
+        self.assertAlmostEqual(whole["n_c_all"]["values"][0], np.mean(values), delta=1e-12)
+        self.assertAlmostEqual(whole["n_c_all_error"]["values"][0],
+                               np.std(values, ddof=1) / np.sqrt(3), delta=1e-12)
+        together = self.tables("r0.xyz", "r1.xyz", "r2.xyz", "--part", "coordination")
+        for name, quantity in whole.items():
+            self.assertEqual(quantity["values"],
+                             together["coordination"]["quantities"][name]["values"], name)
+
+    def test_a_part_that_is_not_there_says_so_and_the_rest_is_measured(self):
+        self.write(TINY)
+        self.run_scene()
+        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store")
+        self.assertIn("half a period", found["point_0000/pair_correlation"]["notes"]["refused"])
+        self.assertNotIn("refused", found["point_0000/sides"]["notes"])
+        with h5py.File(self.folder / "tiny.h5") as file:
+            self.assertNotIn("structure", file)
+
+    def test_settings_are_those_of_scenes(self):
+        self.write(TINY)
+        self.run_scene()
+        self.write({"pores": {"bin_width": 0.1}}, "settings.json")
+        for given in ("settings.json", '{"pores": {"bin_width": 0.1}}'):
+            found = self.tables("tiny.h5", "--settings", given, "--sweep-point", 0, "--no-store")
+            self.assertEqual(list(found), ["point_0000/pores"])
+            self.assertEqual(len(found["point_0000/pores"]["axes"]["xi"]["values"]), 15)
+
+    def test_bad_requests_are_refused_by_name(self):
+        self.write(TINY)
+        self.run_scene()
+        self.write({"pores": {"bin_widht": 0.1}}, "bad.json")
+        (self.folder / "radii.xyz").write_text(
+            '2\nLattice="4 0 0 0 4 0 0 0 4" Properties=species:S:1:pos:R:3 pbc="T T F"\n'
+            "X 1 1 0.5\nX 1.3 1 0.5\n")
+        for arguments, answer in ((["tiny.h5", "--part", "poers"], "there is no such part"),
+                                  (["tiny.h5", "--tap", 3], "there are 0, 4"),
+                                  (["tiny.h5", "--settings", "bad.json"], 'mean "bin_width"'),
+                                  (["tiny.h5", "--settings", "none.json"], "neither a file"),
+                                  (["tiny.h5", "tiny.h5"], "one results file"),
+                                  (["scene.json"], "neither a results file"),
+                                  (["radii.xyz"], "must be in diameters"),
+                                  (["tiny.h5", "--sweep-point", 9], "9")):
+            with self.subTest(arguments=arguments):
+                self.assertIn(answer, self.structure(*arguments, expect=BAD_INPUT).stderr)
+        self.write(changed(TINY, name="bare", snapshots={"taps": [0], "keep": ["coordination"]}))
+        self.run_scene()
+        self.assertIn("no packings are kept",
+                      self.structure("bare.h5", expect=BAD_INPUT).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
