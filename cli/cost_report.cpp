@@ -69,8 +69,12 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());
-  text += fmt::format("The most complete setting may itself be short by {:.2g} (extrapolated).\n",
-                      cost.remainder);
+  text += fmt::format("The step to the most complete setting: {}; ",
+                      with_error(cost.last_step.bias, cost.last_step.error));
+  text += std::isfinite(cost.remainder)
+              ? fmt::format("if steps go on to shrink, it is itself short by {:.2g}.\n",
+                            cost.remainder)
+              : "what it may itself lack is below what these rounds see.\n";
   if (study.pilot_taps() < study.taps()) {
     text += fmt::format("Biases are those after tap {} of {}: they may grow with further taps.\n",
                         study.pilot_taps(), study.taps());

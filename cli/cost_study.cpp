@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ensemble/moments.hpp"
 
@@ -106,7 +107,10 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file,
                              .sigma = deviation(at(p, pilot_taps_)),
                              .realization_seconds = realization_seconds(p)});
   }
-  cost.remainder = remainder(means[best.two_before], means[best.before], means[best.last]);
+  cost.last_step = paired_bias(at(best.last, pilot_taps_), at(best.before, pilot_taps_));
+  const bool seen = std::abs(cost.last_step.bias) > 2 * cost.last_step.error;
+  cost.remainder = seen ? remainder(means[best.two_before], means[best.before], means[best.last])
+                        : std::numeric_limits<double>::quiet_NaN();
   return cost;
 }
 
@@ -152,11 +156,18 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
         {"pareto", rung, pareto_front(cost.settings), "1", "1: no rung is better and faster", ""},
         {"bias_by_tap", by_tap, cost.bias_by_tap, units, "likewise, after each tap", ""},
         {"bias_by_tap_error", by_tap, cost.bias_error_by_tap, units, "standard error", ""},
+        {"last_step",
+         {},
+         std::vector{cost.last_step.bias},
+         units,
+         "the most complete rung less the one before",
+         ""},
+        {"last_step_error", {}, std::vector{cost.last_step.error}, units, "standard error", ""},
         {"remainder",
          {},
          std::vector{cost.remainder},
          units,
-         "that the most complete rung still lacks, extrapolated",
+         "that the most complete rung still lacks, extrapolated where the last step is seen",
          ""}};
     table.notes = {{"observable", cost.label.name},
                    {"reference", rungs_[most_complete(rungs_).last].name},

@@ -23,7 +23,8 @@ struct CostOfObservable {
   ObservableLabel label;
   std::vector<PairedBias> biases;  // [n_rungs]
   std::vector<Setting> settings;   // [n_rungs], for the whole run of the scene
-  double remainder = 0;            // that the most complete rung still lacks, extrapolated
+  PairedBias last_step{};          // the most complete rung less the one before
+  double remainder = 0;            // that it still lacks, extrapolated; NaN where the step is noise
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_rungs, n_taps], taps 1 .. n_taps
 };
 
