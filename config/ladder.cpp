@@ -164,6 +164,7 @@ Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint
   out.until = {};
   out.fits.clear();
   out.analyse = {};
+  out.structure = {};
   out.snapshots = SnapshotChoice{};
   out.protocol.clear();
   for (const Stage& stage : stages(scene.protocol)) {

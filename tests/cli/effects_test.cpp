@@ -25,6 +25,7 @@ TEST_CASE("Every part of a scene is among its effects, on or off") {
     lists("until", !scene.until.targets.empty());
     lists("fits", !scene.fits.empty());
     lists("analyse", !scene.analyse.empty());
+    lists("structure", !scene.structure.empty());
   }
 }
 
@@ -34,5 +35,5 @@ TEST_CASE("Effects are named with their settings") {
   CHECK_THAT(text, Contains("sides periodic, width 8") &&
                        Contains("tap (dilate 0.02), count 100") && Contains("sampler exhaustive") &&
                        Contains("off        sweep, until, fits, "
-                                "analyse\n"));
+                                "analyse, structure\n"));
 }

@@ -11,11 +11,11 @@
 
 namespace jostle {
 
-/// A shipped scene cut down to a test's means: `change` is merged into it (RFC 7386). Its sweep and
-/// its analyses, which may need more taps, are left out.
+/// A shipped scene cut down to a test's means: `change` is merged into it (RFC 7386). Its sweep,
+/// its analyses and structure, which may need more taps, are left out.
 inline Plan short_plan(const std::string& scene, const nlohmann::json& change) {
   auto json = nlohmann::json::parse(text_of(shipped_scenes / scene));
-  for (const char* key : {"sweep", "analyse", "fits"}) json.erase(key);
+  for (const char* key : {"sweep", "analyse", "fits", "structure"}) json.erase(key);
   json.merge_patch(change);
   return make_plans(scene_of(json.dump()), {}).at(0);
 }
