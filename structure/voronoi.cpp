@@ -30,7 +30,6 @@ Extent extent_of(const Packing& packing, std::optional<double> lid) {
   return extent;
 }
 
-// About six centres a block, as voro++ wants it.
 int n_blocks(double length, double per_length) {
   return std::clamp(static_cast<int>(length * per_length), 1, 1 << 12);
 }
@@ -116,8 +115,9 @@ class CellReader {
 // In units of which a diameter is `scale`, a power of two.
 VoronoiCells cells_at_scale(const Packing& packing, const Extent& box, double scale) {
   const std::size_t n = packing.centres.size();
+  constexpr double per_block = 2;  // centres: faster in deposits than the 5 to 6 voro++ advises
   const double per_length =
-      std::cbrt(static_cast<double>(n) / (6 * box.width_x * box.width_y * box.height));
+      std::cbrt(static_cast<double>(n) / (per_block * box.width_x * box.width_y * box.height));
   voro::container container(0, scale * box.width_x, 0, scale * box.width_y, 0, scale * box.height,
                             n_blocks(box.width_x, per_length), n_blocks(box.width_y, per_length),
                             n_blocks(box.height, per_length), box.periodic_sides,
