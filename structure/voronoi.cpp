@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
+#include <utility>
 #include <voro++/voro++.hh>
 
 namespace jostle {
@@ -34,82 +34,110 @@ int n_blocks(double length, double per_length) {
   return std::clamp(static_cast<int>(length * per_length), 1, 1 << 12);
 }
 
+// Takes cells from voro++ in ascending order of their spheres.
 class CellReader {
  public:
-  CellReader(std::size_t n, double unit) : found_(n), unit_(unit) {}
+  CellReader(std::size_t n, double unit) : unit_(unit) {
+    found_.faces.reserve(16 * n);  // enough for any random packing
+    found_.vertices.reserve(28 * n);
+    found_.owners.reserve(84 * n);
+    found_.first_face.push_back(0);
+    found_.first_vertex.push_back(0);
+  }
 
-  void read(voro::voronoicell_neighbor& cell, int i, const std::vector<Vec3>& centres) {
-    const Vec3 centre = centres[static_cast<std::size_t>(i)];
+  void read(voro::voronoicell_neighbor& cell, Vec3 centre) {
     cell.neighbors(neighbours_);
-    cell.face_areas(areas_);
     cell.face_vertices(face_vertices_);
     cell.vertices(positions_);
-    Cell& mine = found_[static_cast<std::size_t>(i)];
-    mine.volume = unit_ * unit_ * unit_ * cell.volume();
-    mine.corners.resize(positions_.size() / 3);
-    for (std::size_t v = 0; v < mine.corners.size(); ++v) {
-      mine.corners[v].position =
-          centre + unit_ * Vec3{positions_[3 * v], positions_[3 * v + 1], positions_[3 * v + 2]};
-    }
-    std::size_t at = 0;
-    for (std::size_t f = 0; f < neighbours_.size(); ++f) {
-      const std::uint32_t neighbour =
-          neighbours_[f] < 0 ? boundary : static_cast<std::uint32_t>(neighbours_[f]);
-      mine.faces.push_back({neighbour, unit_ * unit_ * areas_[f]});
-      const int n_corners = face_vertices_[at++];
-      for (int k = 0; k < n_corners; ++k) {
-        Corner& corner = mine.corners[static_cast<std::size_t>(face_vertices_[at++])];
-        if (neighbour == boundary) {
-          corner.on_boundary = true;
-        } else {
-          corner.owners.push_back(neighbour);
-        }
-      }
-    }
+    const double volume = read_faces();
+    read_vertices(centre);
+    end_cell(volume);
   }
 
-  VoronoiCells cells() const {
-    VoronoiCells all;
-    all.first_face = all.first_vertex = {0};
-    for (const Cell& cell : found_) {
-      double surface = 0;
-      bool cut = false;
-      for (const VoronoiFace& face : cell.faces) {
-        surface += face.area;
-        cut = cut || face.neighbour == boundary;
-      }
-      all.volumes.push_back(cell.volume);
-      all.surfaces.push_back(surface);
-      all.cut.push_back(cut);
-      all.faces.insert(all.faces.end(), cell.faces.begin(), cell.faces.end());
-      for (const Corner& corner : cell.corners) {
-        all.vertices.push_back({corner.position, static_cast<std::uint32_t>(all.owners.size()),
-                                static_cast<std::uint32_t>(corner.owners.size()),
-                                corner.on_boundary});
-        all.owners.insert(all.owners.end(), corner.owners.begin(), corner.owners.end());
-      }
-      all.first_face.push_back(static_cast<std::uint32_t>(all.faces.size()));
-      all.first_vertex.push_back(static_cast<std::uint32_t>(all.vertices.size()));
-    }
-    return all;
+  // Spheres up to `n` for which voro++ has no cell.
+  void skip_to(std::size_t n) {
+    while (found_.size() < n) end_cell(0);
   }
+
+  VoronoiCells cells() && { return std::move(found_); }
 
  private:
-  struct Corner {
-    Vec3 position;
-    std::vector<std::uint32_t> owners;
-    bool on_boundary = false;
-  };
-  struct Cell {
+  // Returns the volume, a pyramid on every face.
+  double read_faces() {
     double volume = 0;
-    std::vector<VoronoiFace> faces;
-    std::vector<Corner> corners;
-  };
+    std::size_t at = 0;
+    for (const int neighbour : neighbours_) {
+      const auto n_corners = static_cast<std::size_t>(face_vertices_[at++]);
+      const Vec3 first = corner(face_vertices_[at]);
+      Vec3 normal;  // as long as twice the area
+      for (std::size_t k = at + 2; k < at + n_corners; ++k)
+        normal = normal +
+                 cross(corner(face_vertices_[k - 1]) - first, corner(face_vertices_[k]) - first);
+      at += n_corners;
+      found_.faces.push_back({neighbour < 0 ? boundary : static_cast<std::uint32_t>(neighbour),
+                              0.5 * std::sqrt(norm_squared(normal))});
+      volume += std::abs(dot(first, normal)) / 6;
+    }
+    return volume;
+  }
 
-  std::vector<Cell> found_;
-  double unit_;  // diameters
-  std::vector<int> neighbours_, face_vertices_;
-  std::vector<double> areas_, positions_;
+  // Seen from the centre, diameters.
+  Vec3 corner(int v) const {
+    const double* position = &positions_[3 * static_cast<std::size_t>(v)];
+    return unit_ * Vec3{position[0], position[1], position[2]};
+  }
+
+  void read_vertices(Vec3 centre) {
+    const std::size_t first = found_.vertices.size();
+    const int n_corners = static_cast<int>(positions_.size() / 3);
+    for (int v = 0; v < n_corners; ++v)
+      found_.vertices.push_back({centre + corner(v), 0, 0, false});
+    for_each_corner([&](std::size_t v, int neighbour) {
+      VoronoiVertex& vertex = found_.vertices[first + v];
+      vertex.on_boundary |= neighbour < 0;
+      vertex.n_owners += neighbour >= 0;
+    });
+    auto n_owners = static_cast<std::uint32_t>(found_.owners.size());
+    for (std::size_t v = first; v < found_.vertices.size(); ++v) {
+      found_.vertices[v].first = n_owners;
+      n_owners += std::exchange(found_.vertices[v].n_owners, 0);
+    }
+    found_.owners.resize(n_owners);
+    for_each_corner([&](std::size_t v, int neighbour) {
+      if (neighbour < 0) return;
+      VoronoiVertex& vertex = found_.vertices[first + v];
+      found_.owners[vertex.first + vertex.n_owners++] = static_cast<std::uint32_t>(neighbour);
+    });
+  }
+
+  // Calls visit(vertex, neighbour) for every corner of every face.
+  template <class Visit>
+  void for_each_corner(Visit visit) const {
+    std::size_t at = 0;
+    for (const int neighbour : neighbours_) {
+      for (int left = face_vertices_[at++]; left > 0; --left)
+        visit(static_cast<std::size_t>(face_vertices_[at++]), neighbour);
+    }
+  }
+
+  void end_cell(double volume) {
+    double surface = 0;
+    bool cut = false;
+    for (std::size_t f = found_.first_face.back(); f < found_.faces.size(); ++f) {
+      surface += found_.faces[f].area;
+      cut = cut || found_.faces[f].neighbour == boundary;
+    }
+    found_.volumes.push_back(volume);
+    found_.surfaces.push_back(surface);
+    found_.cut.push_back(cut);
+    found_.first_face.push_back(static_cast<std::uint32_t>(found_.faces.size()));
+    found_.first_vertex.push_back(static_cast<std::uint32_t>(found_.vertices.size()));
+  }
+
+  VoronoiCells found_;
+  double unit_;                                  // diameters
+  std::vector<int> neighbours_, face_vertices_;  // as voro++ gives them, of one cell
+  std::vector<double> positions_;
 };
 
 // In units of which a diameter is `scale`, a power of two.
@@ -128,19 +156,23 @@ VoronoiCells cells_at_scale(const Packing& packing, const Extent& box, double sc
     tube.emplace(radius, radius, 0, 0, 0, 1, radius);
     container.add_wall(*tube);
   }
+  voro::particle_order order(static_cast<int>(n));
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 r = scale * packing.centres[i];
-    container.put(static_cast<int>(i), r.x, r.y, r.z);
+    container.put(order, static_cast<int>(i), r.x, r.y, r.z);
   }
   CellReader reader(n, 1 / scale);
   voro::voronoicell_neighbor cell;
-  voro::c_loop_all loop(container);
-  bool more = loop.start();
-  while (more) {
-    if (container.compute_cell(cell, loop)) reader.read(cell, loop.pid(), packing.centres);
-    more = loop.inc();
+  voro::c_loop_order loop(container, order);
+  if (loop.start()) {
+    do {
+      const auto i = static_cast<std::size_t>(loop.pid());
+      reader.skip_to(i);
+      if (container.compute_cell(cell, loop)) reader.read(cell, packing.centres[i]);
+    } while (loop.inc());
   }
-  return reader.cells();
+  reader.skip_to(n);
+  return std::move(reader).cells();
 }
 
 // Cells with a face that is not as large from the other side. Faces of a cell with its own image
