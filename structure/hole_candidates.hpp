@@ -25,16 +25,14 @@ class BondGraph {
  public:
   BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, double bond);
 
-  /// Ascending.
-  const std::vector<std::uint32_t>& bonded_to(std::uint32_t i) const { return bonded_[i]; }
   bool bonded(std::uint32_t i, std::uint32_t j) const;
   /// Number of bonded pairs of some spheres.
   std::size_t count_within(std::span<const std::uint32_t> spheres) const;
-  /// Spheres bonded to both, ascending.
-  std::vector<std::uint32_t> bonded_to_both(std::uint32_t i, std::uint32_t j) const;
+  /// Spheres bonded to both, ascending, in place of what `both` holds.
+  void bonded_to_both(std::uint32_t i, std::uint32_t j, std::vector<std::uint32_t>& both) const;
 
  private:
-  std::vector<std::vector<std::uint32_t>> bonded_;
+  std::vector<std::vector<std::uint32_t>> bonded_;  // ascending
 };
 
 struct HoleCandidate {
