@@ -19,10 +19,10 @@ class HoleFiller {
   HoleFiller(const Packing& packing, const std::vector<DelaunayTetrahedron>& tetrahedra)
       : packing_(packing),
         tetrahedra_(tetrahedra),
-        around_(packing.centres.size()),
+        first_(packing.centres.size() + 1, 0),
         taken_(tetrahedra.size(), false) {
-    for (std::uint32_t t = 0; t < tetrahedra.size(); ++t)
-      for (const std::uint32_t sphere : tetrahedra[t].spheres) around_[sphere].push_back(t);
+    for (const DelaunayTetrahedron& one : tetrahedra) ++first_[one.spheres.front() + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
   }
 
   void take_if_filled(const HoleCandidate& candidate) {
@@ -32,7 +32,7 @@ class HoleFiller {
 
   void take_tetrahedra(const BondGraph& bonds) {
     for (std::uint32_t t = 0; t < tetrahedra_.size(); ++t)
-      if (!taken_[t] && bonds.count_within(tetrahedra_[t].spheres) == 6)
+      if (!taken_[t] && bonds.all_bonded(tetrahedra_[t].spheres))
         take(HoleKind::tetrahedron, corners_of(t), {t});
   }
 
@@ -62,11 +62,10 @@ class HoleFiller {
   std::vector<std::uint32_t> free_within(const std::vector<std::uint32_t>& spheres) const {
     std::vector<std::uint32_t> found;
     for (const std::uint32_t sphere : spheres) {
-      for (const std::uint32_t t : around_[sphere]) {
-        const auto& corners = tetrahedra_[t].spheres;
-        if (!taken_[t] && corners.front() == sphere &&
-            std::ranges::all_of(
-                corners, [&](std::uint32_t c) { return std::ranges::binary_search(spheres, c); }))
+      for (std::uint32_t t = first_[sphere]; t < first_[sphere + 1]; ++t) {
+        if (!taken_[t] && std::ranges::all_of(tetrahedra_[t].spheres, [&](std::uint32_t corner) {
+              return std::ranges::find(spheres, corner) != spheres.end();
+            }))
           found.push_back(t);
       }
     }
@@ -119,7 +118,7 @@ class HoleFiller {
 
   const Packing& packing_;
   const std::vector<DelaunayTetrahedron>& tetrahedra_;
-  std::vector<std::vector<std::uint32_t>> around_;  // tetrahedra with a sphere as corner
+  std::vector<std::uint32_t> first_;  // tetrahedron whose first corner is a sphere, [n + 1]
   std::vector<bool> taken_;
   std::vector<BernalHole> holes_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "engine/geometry.hpp"
@@ -219,17 +220,26 @@ std::vector<Edge> edges_of(const Packing& packing,
 }
 
 BondGraph::BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, double bond)
-    : bonded_(n_spheres) {
+    : first_(n_spheres + 1, 0) {
   for (const auto& [i, j, length] : edges) {
     if (length >= bond) continue;
-    bonded_[i].push_back(j);
-    bonded_[j].push_back(i);
+    ++first_[i + 1];
+    ++first_[j + 1];
   }
-  for (auto& neighbours : bonded_) std::ranges::sort(neighbours);
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  bonded_.resize(first_.back());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (const auto& [i, j, length] : edges) {  // so that each sphere's are ascending
+    if (length >= bond) continue;
+    bonded_[next[i]++] = j;
+    bonded_[next[j]++] = i;
+  }
 }
 
-bool BondGraph::bonded(std::uint32_t i, std::uint32_t j) const {
-  return std::ranges::find(bonded_[i], j) != bonded_[i].end();  // about seven
+bool BondGraph::all_bonded(const std::array<std::uint32_t, 4>& spheres) const {
+  const auto& [a, b, c, d] = spheres;
+  return bonded(a, b) && bonded(a, c) && bonded(a, d) && bonded(b, c) && bonded(b, d) &&
+         bonded(c, d);
 }
 
 std::size_t BondGraph::count_within(std::span<const std::uint32_t> spheres) const {
@@ -242,7 +252,7 @@ std::size_t BondGraph::count_within(std::span<const std::uint32_t> spheres) cons
 void BondGraph::bonded_to_both(std::uint32_t i, std::uint32_t j,
                                std::vector<std::uint32_t>& both) const {
   both.clear();
-  std::ranges::set_intersection(bonded_[i], bonded_[j], std::back_inserter(both));
+  std::ranges::set_intersection(bonded_to(i), bonded_to(j), std::back_inserter(both));
 }
 
 std::vector<HoleCandidate> hole_candidates(const Packing& packing,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,14 +27,23 @@ class BondGraph {
  public:
   BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, double bond);
 
-  bool bonded(std::uint32_t i, std::uint32_t j) const;
+  bool bonded(std::uint32_t i, std::uint32_t j) const {
+    const auto near = bonded_to(i);
+    return std::ranges::find(near, j) != near.end();
+  }
+  bool all_bonded(const std::array<std::uint32_t, 4>& spheres) const;
   /// Number of bonded pairs of some spheres.
   std::size_t count_within(std::span<const std::uint32_t> spheres) const;
   /// Spheres bonded to both, ascending, in place of what `both` holds.
   void bonded_to_both(std::uint32_t i, std::uint32_t j, std::vector<std::uint32_t>& both) const;
 
  private:
-  std::vector<std::vector<std::uint32_t>> bonded_;  // ascending
+  std::span<const std::uint32_t> bonded_to(std::uint32_t i) const {
+    return {bonded_.data() + first_[i], bonded_.data() + first_[i + 1]};
+  }
+
+  std::vector<std::uint32_t> first_;   // of `bonded_`, [n_spheres + 1]
+  std::vector<std::uint32_t> bonded_;  // to each sphere, ascending
 };
 
 struct HoleCandidate {
