@@ -130,8 +130,13 @@ double part(double some, double all) {
 }  // namespace
 
 std::vector<BernalHole> bernal_holes(const Packing& packing, const BondLengths& lengths) {
+  return bernal_holes(packing, voronoi_cells(packing), lengths);
+}
+
+std::vector<BernalHole> bernal_holes(const Packing& packing, const VoronoiCells& cells,
+                                     const BondLengths& lengths) {
   assert(1 < lengths.first && lengths.first <= lengths.last && lengths.step > 0);
-  const auto tetrahedra = delaunay_tetrahedra(packing);
+  const auto tetrahedra = delaunay_tetrahedra(packing, cells);
   const auto edges = edges_of(packing, tetrahedra);
   HoleFiller filler(packing, tetrahedra);
   const int steps = static_cast<int>((lengths.last - lengths.first) / lengths.step + 1e-9);

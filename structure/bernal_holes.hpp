@@ -66,6 +66,10 @@ struct BondLengths {
 /// periodic widths under 4 diameters.
 std::vector<BernalHole> bernal_holes(const Packing& packing, const BondLengths& lengths = {});
 
+/// The same with cells of the packing that are there already.
+std::vector<BernalHole> bernal_holes(const Packing& packing, const VoronoiCells& cells,
+                                     const BondLengths& lengths = {});
+
 /// Holes whose centroids lie in a region: how many, and diameters cubed.
 struct HoleTable {
   std::array<std::uint64_t, 5> counts{};  // by kind

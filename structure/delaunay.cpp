@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "engine/geometry.hpp"
 #include "engine/random.hpp"
-#include "structure/voronoi.hpp"
 
 namespace jostle {
 namespace {
@@ -51,27 +51,66 @@ DelaunayTetrahedron tetrahedron(const Packing& packing, const std::array<std::ui
           std::abs(dot(a, cross(b, c))) / 6};
 }
 
+// The spheres of a vertex of cell i, ascending, if it is the middle of a tetrahedron.
+std::optional<std::array<std::uint32_t, 4>> spheres_at(const VoronoiCells& cells, std::uint32_t i,
+                                                       const VoronoiVertex& vertex) {
+  const auto owners = cells.owners_of(vertex);
+  if (vertex.on_boundary || owners.size() != 3) return std::nullopt;
+  std::array<std::uint32_t, 4> spheres = {i, owners[0], owners[1], owners[2]};
+  std::ranges::sort(spheres);
+  return spheres;
+}
+
+// Every tetrahedron is seen from its four cells: taken from the first.
+std::vector<DelaunayTetrahedron> from_first_cells(const Packing& packing,
+                                                  const VoronoiCells& cells) {
+  std::vector<DelaunayTetrahedron> found;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    const std::size_t first = found.size();
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
+      const auto spheres = spheres_at(cells, i, vertex);
+      if (spheres && spheres->front() == i)
+        found.push_back(tetrahedron(packing, *spheres, vertex.position));
+    }
+    const auto mine = std::ranges::subrange(found.begin() + first, found.end());
+    std::ranges::sort(mine, {}, &DelaunayTetrahedron::spheres);
+    const auto repeated = std::ranges::unique(mine, {}, &DelaunayTetrahedron::spheres);
+    found.erase(repeated.begin(), repeated.end());
+  }
+  return found;
+}
+
+// Whether each tetrahedron is seen from all of its four cells, and nothing else from any cell: not
+// so where five centres are so near a common sphere that cells differ in what meets there.
+bool all_agree(const VoronoiCells& cells, const std::vector<DelaunayTetrahedron>& found) {
+  std::size_t sightings = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
+      if (vertex.on_boundary) continue;
+      ++sightings;
+      const auto spheres = spheres_at(cells, i, vertex);
+      if (!spheres ||
+          !std::ranges::binary_search(found, *spheres, {}, &DelaunayTetrahedron::spheres))
+        return false;
+    }
+  }
+  return sightings == 4 * found.size();
+}
+
 }  // namespace
+
+std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing,
+                                                     const VoronoiCells& cells) {
+  require_wide(packing.container);
+  auto found = from_first_cells(packing, cells);
+  if (all_agree(cells, found)) return found;
+  const Packing moved = in_general_position(packing);
+  return from_first_cells(moved, voronoi_cells(moved));
+}
 
 std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing) {
   require_wide(packing.container);
-  const Packing moved = in_general_position(packing);
-  const VoronoiCells cells = voronoi_cells(moved);
-  std::vector<DelaunayTetrahedron> found;
-  for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
-      const auto owners = cells.owners_of(vertex);
-      if (vertex.on_boundary || owners.size() != 3) continue;
-      std::array<std::uint32_t, 4> spheres = {i, owners[0], owners[1], owners[2]};
-      std::ranges::sort(spheres);
-      // Every tetrahedron is seen from its four cells: taken from the first.
-      if (spheres[0] == i) found.push_back(tetrahedron(moved, spheres, vertex.position));
-    }
-  }
-  std::ranges::sort(found, {}, &DelaunayTetrahedron::spheres);
-  const auto repeated = std::ranges::unique(found, {}, &DelaunayTetrahedron::spheres);
-  found.erase(repeated.begin(), repeated.end());
-  return found;
+  return delaunay_tetrahedra(packing, voronoi_cells(packing));
 }
 
 }  // namespace jostle

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/packing.hpp"
+#include "structure/voronoi.hpp"
 
 namespace jostle {
 
@@ -17,9 +18,13 @@ struct DelaunayTetrahedron {
 
 /// The Delaunay tetrahedra of the centres, dual to the Voronoi vertices that neither floor, lid nor
 /// sides cut, in ascending order of their spheres. More than four centres may lie on one sphere, as
-/// in crystals: so that there are tetrahedra all the same, centres are moved by up to 1e-6
-/// diameters, always alike; such a sphere's centres then come as several tetrahedra, some of them
-/// nearly flat. Throws std::invalid_argument for periodic widths under 4 diameters.
+/// in crystals: so that there are tetrahedra all the same, centres are then moved by up to 1e-6
+/// diameters, always alike; such a sphere's centres come as several tetrahedra, some of them nearly
+/// flat. Throws std::invalid_argument for periodic widths under 4 diameters.
 std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing);
+
+/// The same from cells of the packing that are there already.
+std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing,
+                                                     const VoronoiCells& cells);
 
 }  // namespace jostle

@@ -196,7 +196,7 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
 }
 
 Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
-  const std::vector<BernalHole> holes = bernal_holes(in.packing, settings.bonds);
+  const std::vector<BernalHole> holes = bernal_holes(in.packing, in.voronoi(), settings.bonds);
   const HoleTable table = hole_table(holes, in.packing.container, in.region);
   std::vector<std::string> names;
   std::vector<double> number, volume, published_number, published_volume;
