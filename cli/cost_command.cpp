@@ -83,14 +83,14 @@ std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const Loade
                     "FILE, or replace it with --force.",
                     output));
   }
-  const Study stored = ResultsFile(output).study();
-  const auto faults = resume_faults(nlohmann::ordered_json::parse(stored.resolved_scene),
-                                    nlohmann::ordered_json::parse(pilot.resolved));
+  const ResultsFile file(output);
+  const auto faults =
+      resume_faults(stored_scene(file), nlohmann::ordered_json::parse(pilot.resolved));
   if (!faults.empty()) {
     throw BadInput(
         fmt::format("{} holds the pilot of another scene:\n{}", output, fault_lines(faults)));
   }
-  study.realizations = std::max(study.realizations, stored.realizations);
+  study.realizations = std::max(study.realizations, file.study().realizations);
   return RunStore::resume(output, study, Shard{}, by);
 }
 

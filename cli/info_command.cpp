@@ -8,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/effects.hpp"
 #include "cli/report.hpp"
+#include "cli/scene_file.hpp"
 #include "cli/text_table.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
@@ -79,7 +80,7 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
           {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
           {"version", file.provenance().front().version},
           {"git_revision", file.provenance().front().git_revision},
-          {"scene", Json::parse(study.resolved_scene)},
+          {"scene", stored_scene(file)},
           {"points", points},
           {"realizations", realizations},
           {"tables", table_names(file.path())},
@@ -104,7 +105,7 @@ std::string counts(const ResultsFile& file, const RunStatus& status) {
 
 std::string info_text(const ResultsFile& file, const RunStatus& status) {
   const Study& study = file.study();
-  const Json scene = Json::parse(study.resolved_scene);
+  const Json scene = stored_scene(file);
   std::string text =
       fmt::format("{}: {}, {}\n", file.path(), scene.value("name", ""), state_of(status));
   if (const std::string about = scene.value("description", ""); !about.empty()) {
@@ -127,7 +128,7 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
          fmt::format("jostle {} ({}) on {}, {}, {} threads", process.version, process.git_revision,
                      process.host, process.started, process.threads));
   }
-  return text + effects_text(scene) + "\n" + report(file);
+  return text + effects_text(scene) + "\n" + report(file, status.realizations);
 }
 
 struct InfoArguments {

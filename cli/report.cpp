@@ -171,8 +171,7 @@ std::vector<std::uint64_t> reported_taps(std::uint64_t last) {
   return taps;
 }
 
-std::string report(const ResultsFile& file) {
-  const auto realizations = file.realizations();
+std::string report(const ResultsFile& file, const std::vector<RealizationSummary>& realizations) {
   std::string text;
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
     if (!text.empty()) text += '\n';

@@ -10,8 +10,10 @@ namespace jostle {
 
 /// For every sweep point a table over taps, about three a decade, of mean +- standard error and
 /// sigma of every observable, with mean sweeps and acceptance of the relaxations; below it capped
-/// relaxations, cost, and failed realizations with seed and reason.
-std::string report(const ResultsFile& file);
+/// relaxations, cost, and failed realizations with seed and reason. `realizations` are the file's,
+/// or those of a live run (run_status), which is ahead of its file: the tables over taps are the
+/// file's.
+std::string report(const ResultsFile& file, const std::vector<RealizationSummary>& realizations);
 
 /// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.
 std::vector<std::uint64_t> reported_taps(std::uint64_t last);

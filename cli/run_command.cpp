@@ -69,8 +69,8 @@ Seconds duration_argument(const std::string& option, const std::string& text) {
 /// What a resume would change, named; nothing else may differ from the file's scene.
 void require_same_scene(const std::string& output, const LoadedScene& loaded, const Shard& shard) {
   const ResultsFile file(output);
-  const auto stored = nlohmann::ordered_json::parse(file.study().resolved_scene);
-  const auto faults = resume_faults(stored, nlohmann::ordered_json::parse(loaded.resolved));
+  const auto faults =
+      resume_faults(stored_scene(file), nlohmann::ordered_json::parse(loaded.resolved));
   if (!faults.empty()) {
     throw BadInput(
         fmt::format("{} was begun with another scene and cannot be resumed with this one:\n{}\n"
@@ -229,8 +229,9 @@ bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, Op
 }
 
 void print_results(const OpenedRun& run, const Work& work, int threads) {
+  const ResultsFile file(run.output);
   const std::string text =
-      report(ResultsFile(run.output)) +
+      report(file, file.realizations()) +
       process_line(work.progress, std::chrono::steady_clock::now() - work.began, threads);
   std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
 }

@@ -77,6 +77,16 @@ LoadedScene load_derived(const Scene& scene, const std::string& path) {
   return load_text(resolved(scene).dump(2), path);
 }
 
+nlohmann::ordered_json stored_scene(const ResultsFile& file) {
+  auto scene = nlohmann::ordered_json::parse(file.study().resolved_scene, nullptr, false);
+  if (!scene.is_object()) {
+    throw ResultsError(file.path(),
+                       "its scene (/scene/resolved) is not a JSON object: jostle did not write it "
+                       "so; restore the file from a copy");
+  }
+  return scene;
+}
+
 Study study_of(const LoadedScene& loaded) {
   return make_study(loaded.plans, loaded.text, loaded.resolved, loaded.scene.realizations);
 }

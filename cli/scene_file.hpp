@@ -1,11 +1,12 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "config/scene.hpp"
-#include "results/study.hpp"
+#include "results/results_file.hpp"
 
 namespace jostle {
 
@@ -28,6 +29,10 @@ LoadedScene load_scene(const std::string& path);
 
 /// A scene made of that in `path`: it starts from the same packings. Throws BadInput likewise.
 LoadedScene load_derived(const Scene& scene, const std::string& path);
+
+/// The scene that a results file was made from, every default written out. Throws ResultsError
+/// where what is stored is none.
+nlohmann::ordered_json stored_scene(const ResultsFile& file);
 
 Study study_of(const LoadedScene& loaded);
 

@@ -52,7 +52,7 @@ class WallFitter {
 }  // namespace
 
 std::vector<Vec3> fit_pour(const FittedPour& fitted, const WalledBox& box, std::uint32_t n_spheres,
-                           RandomStream& random) {
+                           RandomStream& random, const StopAsked& stop) {
   const PeriodicBox sides{box.width_x, box.width_y};
   if (const auto fault = width_fault(sides)) {
     throw StartError("fitted pour: the pour before the fitting needs periodic sides, and their " +
@@ -62,9 +62,10 @@ std::vector<Vec3> fit_pour(const FittedPour& fitted, const WalledBox& box, std::
     throw StartError("fitted pour: max_step is " + std::to_string(fitted.max_step) +
                      "; choose one in (0, 1] diameters");
   }
-  WallFitter fitter(box, pour(sides, n_spheres, random));
+  WallFitter fitter(box, pour(sides, n_spheres, random, stop));
   constexpr std::uint64_t renewal = 50;  // sweeps
   for (std::uint64_t sweep = 0; sweep < fitted.max_sweeps && fitter.overlapping() > 0; ++sweep) {
+    heed(stop);
     if (sweep % renewal == 0) fitter.renew_lists();
     for (std::uint32_t trial = 0; trial < n_spheres; ++trial) {
       fitter.try_step(static_cast<std::uint32_t>(random.below(n_spheres)), fitted.max_step, random);

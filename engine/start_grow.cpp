@@ -76,7 +76,7 @@ double growth_limit(double least) {
 }  // namespace
 
 std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
-                       RandomStream& random) {
+                       RandomStream& random, const StopAsked& stop) {
   constexpr double most_fraction = 0.64;
   const double volume = box.width_x * box.width_y * box.height;
   const double fraction = n_spheres * sphere_volume / volume;
@@ -97,6 +97,7 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint
   double max_step = longest_step;
   for (std::uint64_t sweep = 0; sweep < start.max_sweeps && spheres.full_grown() < n_spheres;
        ++sweep) {
+    heed(stop);
     const double limit = growth_limit(spheres.least_diameter());
     if (sweep % renewal == 0) spheres.renew_lists();
     const std::uint64_t accepted = spheres.accepted();

@@ -16,16 +16,21 @@ struct PourTally {
   std::uint64_t redrawn = 0;
 };
 
+/// Throws StartStopped once a stop is asked for.
+inline void heed(const StopAsked& stop) {
+  if (stop && stop()) throw StartStopped();
+}
+
 std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
-                       PourTally* tally = nullptr);
+                       const StopAsked& stop = {}, PourTally* tally = nullptr);
 std::vector<Vec3> fit_pour(const FittedPour& fitted, const WalledBox& box, std::uint32_t n_spheres,
-                           RandomStream& random);
+                           RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           std::uint32_t n_spheres, RandomStream& random);
 std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
                                 std::uint32_t n_spheres);
 std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
-                       RandomStream& random);
+                       RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
                               std::uint32_t n_spheres);
 

@@ -20,7 +20,7 @@ Vec3 draw_drop(const PourBed& bed, RandomStream& random) {
 }  // namespace
 
 std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
-                       PourTally* tally) {
+                       const StopAsked& stop, PourTally* tally) {
   if (!has_gravity(container)) {
     throw StartError(
         "steepest-descent pour: a fully periodic box has no floor to pour on; use the start grow "
@@ -29,6 +29,7 @@ std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, Rand
   constexpr int max_redraws = 1000;  // of one sphere
   PourBed bed(container, n_spheres);
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
+    heed(stop);
     std::optional<Vec3> rest;
     for (int draw = 0; draw < max_redraws && !rest; ++draw) {
       rest = descend(bed, draw_drop(bed, random));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <variant>
@@ -79,10 +81,20 @@ class StartError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A start that was stopped under way: what there was of it is lost.
+class StartStopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "the start was stopped"; }
+};
+
+/// Whether a start under way is to stop; empty: never.
+using StopAsked = std::function<bool()>;
+
 /// Builds the starting packing, before any relaxation. Throws StartError where the start does not
-/// suit the container or the spheres do not fit; never hangs.
+/// suit the container or the spheres do not fit, and StartStopped soon after `stop` says so, within
+/// a sweep or the pour of a sphere; never hangs.
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
-                   RandomStream& random);
+                   RandomStream& random, const StopAsked& stop = {});
 
 /// Whether tap 0 is recorded only after a relaxation without a tap (RandomSettle and FittedPour).
 bool relaxes_before_recording(const Start& start);

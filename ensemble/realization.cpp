@@ -7,7 +7,6 @@
 
 #include "engine/relaxation.hpp"
 #include "engine/slab.hpp"
-#include "engine/starts.hpp"
 #include "engine/taps.hpp"
 #include "structure/snapshot_statistics.hpp"
 
@@ -57,21 +56,33 @@ bool Realization::finished() const {
   return state_.rows > total_taps(plan_);
 }
 
-Slice Realization::advance(std::uint64_t trials) {
+Slice Realization::advance(std::uint64_t trials, const StopAsked& stop) {
   assert(!finished());
   Slice slice;
-  if (!state_.relaxing) state_.rows == 0 ? start() : tap();
+  if (!state_.relaxing) {
+    if (state_.rows > 0) {
+      tap();
+    } else if (!start(stop)) {
+      return slice;
+    }
+  }
   if (state_.relaxing) relax_for(trials, slice);
   if (!state_.relaxing) record(slice);
   return slice;
 }
 
-void Realization::start() {
+// Returns whether it was finished, not stopped.
+bool Realization::start(const StopAsked& stop) {
   RandomStream random(key_of(plan_, index_, Purpose::start));
-  packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random);
-  if (!relaxes_before_recording(plan_.start)) return;
+  try {
+    packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random, stop);
+  } catch (const StartStopped&) {
+    return false;
+  }
+  if (!relaxes_before_recording(plan_.start)) return true;
   state_.stop_window = start_stop_window(relaxation().stop, packing_);
   begin_relaxation();
+  return true;
 }
 
 void Realization::tap() {

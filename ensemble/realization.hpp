@@ -7,6 +7,7 @@
 
 #include "engine/packing.hpp"
 #include "engine/random.hpp"
+#include "engine/starts.hpp"
 #include "engine/trial_loop.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/sink.hpp"
@@ -38,13 +39,14 @@ class Realization {
 
   /// Goes on until a row is complete or about `trials` trials are made, to the next end of a sweep.
   /// Requires !finished(). Throws StartError where the start is impossible, std::invalid_argument
-  /// where the move does not suit the container; the realization is then lost.
-  Slice advance(std::uint64_t trials);
+  /// where the move does not suit the container; the realization is then lost. A start is given up
+  /// once `stop` says so, to be made anew by the next call: the slice is empty.
+  Slice advance(std::uint64_t trials, const StopAsked& stop = {});
 
   RealizationState state() const;
 
  private:
-  void start();
+  bool start(const StopAsked& stop);
   void tap();
   void begin_relaxation();
   void relax_for(std::uint64_t trials, Slice& slice);

@@ -113,7 +113,10 @@ void EnsembleRun::carry_on(RealizationId id, Realization& realization, Outcome& 
       return;
     }
     Slice slice;
-    if (!attempt(outcome, [&] { slice = realization.advance(options_.trials_per_slice); })) return;
+    const auto advance = [&] {
+      slice = realization.advance(options_.trials_per_slice, [this] { return stopping(); });
+    };
+    if (!attempt(outcome, advance)) return;
     outcome.trials += slice.trials;
     outcome.distance_tests += slice.distance_tests;
     hand_over(id, slice);

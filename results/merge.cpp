@@ -9,6 +9,7 @@
 #include "results/checksum.hpp"
 #include "results/error.hpp"
 #include "results/lock.hpp"
+#include "results/publish.hpp"
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
 #include "results/run_parts.hpp"
@@ -55,6 +56,16 @@ void check_gaps(const Owners& owners, const Study& study, const std::string& out
                                              named(id)));
 }
 
+/// The merged file holds what its inputs hold, compressed alike.
+std::uint64_t bytes_of(std::span<const std::string> files) {
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files) {
+    struct stat status;
+    if (::stat(file.c_str(), &status) == 0) bytes += static_cast<std::uint64_t>(status.st_size);
+  }
+  return bytes;
+}
+
 std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
                                       const Provenance& own) {
   std::vector<Provenance> processes;
@@ -89,6 +100,7 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
   // Scenes that mean the same may be written differently: whatever the order of the inputs, one is
   // kept.
   const Study& study = owners.begin()->second->study();
+  require_free_space(output, bytes_of(inputs));
   remove_parts(output);
   write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
                          [&](RealizationId id) { return owners.at(id)->record(id); }});

@@ -130,16 +130,16 @@ void sync_folder_of(const std::string& path) {
   if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail_on_disk(folder, "fsync", errno);
 }
 
-void require_free_space(const std::string& path, std::uint64_t bytes) {
+void require_free_space(const std::string& path, std::uint64_t bytes, const char* advice) {
   const std::string folder = folder_of(path);
   struct statvfs disk;
   if (::statvfs(folder.c_str(), &disk) != 0) fail_on_disk(folder, "ask for free space", errno);
   const std::uint64_t free_bytes = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   if (free_bytes >= bytes) return;
   throw ResultsError(
-      path, fmt::format("the run may need {:.1f} MB of disk, but only {:.1f} MB are free; free "
-                        "some space, write elsewhere, or keep fewer snapshots",
-                        static_cast<double>(bytes) / 1e6, static_cast<double>(free_bytes) / 1e6));
+      path,
+      fmt::format("{:.1f} MB of disk may be needed, but only {:.1f} MB are free; {}",
+                  static_cast<double>(bytes) / 1e6, static_cast<double>(free_bytes) / 1e6, advice));
 }
 
 }  // namespace jostle

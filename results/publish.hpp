@@ -24,8 +24,9 @@ void remove_file(const std::string& path);
 /// Makes renames and removals in the folder of `path` durable.
 void sync_folder_of(const std::string& path);
 
-/// Throws if the file system below `path` has fewer free bytes than needed.
-void require_free_space(const std::string& path, std::uint64_t bytes);
+/// Throws if the file system below `path` has fewer free bytes than needed, with the `advice`.
+void require_free_space(const std::string& path, std::uint64_t bytes,
+                        const char* advice = "free some space or write elsewhere");
 
 /// Throws ResultsError for a failed system call: "cannot `what`: " and the system's reason, with
 /// the way out where there is one.

@@ -29,6 +29,10 @@ std::uint64_t file_bytes(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
 }
 
+void require_room_for_run(const std::string& path, std::uint64_t bytes) {
+  require_free_space(path, bytes, "free some space, write elsewhere, or keep fewer snapshots");
+}
+
 /// A study with another scene or other sizes: the file must say so before parts follow it.
 bool differs(const Study& stored, const Study& study) {
   return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
@@ -68,7 +72,7 @@ class RunStore::Impl {
 };
 
 void RunStore::Impl::start(const Provenance& provenance) {
-  require_free_space(path, disk_estimate(study, shard));
+  require_room_for_run(path, disk_estimate(study, shard));
   remove_parts(path);
   run_id = random_identity();
   processes = {provenance};
@@ -88,7 +92,7 @@ void RunStore::Impl::go_on(const Provenance& provenance) {
   // its end.
   const std::uint64_t needed = disk_estimate(study, shard),
                       have = parts_bytes(path) + file_bytes(path);
-  if (needed > have) require_free_space(path, needed - have);
+  if (needed > have) require_room_for_run(path, needed - have);
   if (differs(file->study(), study))
     fold();
   else
@@ -203,7 +207,7 @@ void RunStore::extend(std::uint32_t realizations) {
   impl_->study.realizations = realizations;
   const std::uint64_t needed = disk_estimate(impl_->study, impl_->shard),
                       have = file_bytes(impl_->path);
-  if (needed > have) require_free_space(impl_->path, needed - have);
+  if (needed > have) require_room_for_run(impl_->path, needed - have);
   impl_->fold();
 }
 

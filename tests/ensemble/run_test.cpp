@@ -7,6 +7,7 @@
 
 #include "bits.hpp"
 #include "ensemble/parallel.hpp"
+#include "ensemble/realization.hpp"
 #include "small_plans.hpp"
 
 using namespace jostle;
@@ -33,6 +34,12 @@ std::vector<RealizationId> realizations_of(std::size_t points, std::uint32_t eac
 std::map<RealizationId, Bits> bits_of(const MemorySink& sink) {
   std::map<RealizationId, Bits> all;
   for (const auto& [id, record] : sink.records()) all[id] = bits(record);
+  return all;
+}
+
+Bits bits(const RealizationState& state) {
+  Bits all;
+  all.add(state);
   return all;
 }
 
@@ -137,6 +144,31 @@ TEST_CASE("A stop is honoured within a slice, by every realization") {
     if (record.outcome->status == RealizationStatus::done) continue;
     CHECK(record.outcome->status == RealizationStatus::running);
     CHECK(record.state->relaxation.trials % plans[id.point].n_spheres == 0);
+  }
+}
+
+TEST_CASE("A start under way is given up at a stop and made anew") {
+  std::vector<Plan> plans(3, small_plan());
+  plans[1].container = WalledBox{4.5, 4.2};
+  plans[1].start = FittedPour{};
+  plans[2].container = FullyPeriodicBox{4, 4.5, 5};
+  plans[2].start = Grow{};
+  plans[2].relax.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
+  plans[2].relax.stop = {.rule = SweepsStop{.sweeps = 60}};
+  plans[2].protocol = {{Lift{.gamma = 0}, 5}};
+  plans[2].observables = {};
+  for (const Plan& plan : plans) {
+    int asked = 0;
+    const auto stop = [&] { return ++asked == 3; };
+    Realization realization(plan, 0), undisturbed(plan, 0);
+    const Slice stopped = realization.advance(1'000'000, stop);
+    CHECK_FALSE(stopped.row);
+    CHECK(stopped.trials == 0);
+    CHECK(realization.state().rows == 0);
+    CHECK_FALSE(realization.state().relaxing);
+    realization.advance(1'000'000, stop);
+    undisturbed.advance(1'000'000);
+    CHECK(bits(realization.state()) == bits(undisturbed.state()));
   }
 }
 
