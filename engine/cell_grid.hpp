@@ -46,6 +46,36 @@ class CellGrid {
     std::array<std::array<int, 3>, 3> line;
     std::array<int, 3> length;
     for (int axis = 0; axis < 3; ++axis) length[axis] = neighbours(home[axis], axis, line[axis]);
+    for_each_in(line, length, visit);
+  }
+
+  /// The same for those of the cells that come within `reach` of `r`: few, if it is far less than
+  /// the cutoff.
+  template <class Visit>
+  void for_each_within(Vec3 r, double reach, Visit&& visit) const {
+    std::array<std::array<int, 3>, 3> line;
+    std::array<int, 3> length;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = axis == 0 ? r.x : axis == 1 ? r.y : r.z;
+      const int home = index(x, axis);
+      const bool inside =
+          (x - reach) * per_length_[axis] >= home && (x + reach) * per_length_[axis] < home + 1;
+      line[axis][0] = home;
+      length[axis] = inside ? 1 : neighbours(home, axis, line[axis]);
+    }
+    for_each_in(line, length, visit);
+  }
+
+  std::size_t bytes() const {
+    return sizeof(std::uint32_t) * (heads_.capacity() + next_.capacity() + cell_of_.capacity());
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  template <class Visit>
+  void for_each_in(const std::array<std::array<int, 3>, 3>& line, const std::array<int, 3>& length,
+                   Visit& visit) const {
     for (int a = 0; a < length[2]; ++a) {
       for (int b = 0; b < length[1]; ++b) {
         for (int c = 0; c < length[0]; ++c) {
@@ -55,13 +85,6 @@ class CellGrid {
       }
     }
   }
-
-  std::size_t bytes() const {
-    return sizeof(std::uint32_t) * (heads_.capacity() + next_.capacity() + cell_of_.capacity());
-  }
-
- private:
-  static constexpr std::uint32_t none = 0xffffffff;
 
   void link(std::uint32_t i, std::uint32_t cell) {
     next_[i] = heads_[cell];

@@ -18,47 +18,55 @@ double xi_of(const Pore& pore) {
   return pore.radius / sphere_radius;
 }
 
+// A vertex from one of the cells that have it.
+struct Sighting {
+  Vec3 centre;  // wrapped
+  double radius;
+  std::uint32_t cell;
+  const VoronoiVertex* vertex;
+};
+
 // Every vertex from every cell that has it: at degenerate ones the cells that meet do not all see
 // one another, and only together they name all the spheres around it.
-std::vector<Pore> found_pores(const Packing& packing, const VoronoiCells& cells) {
-  std::vector<Pore> found;
+std::vector<Sighting> sightings(const Packing& packing, const VoronoiCells& cells) {
+  std::vector<Sighting> found;
+  found.reserve(cells.vertices.size());
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
       if (vertex.on_boundary) continue;
-      const auto others = cells.owners_of(vertex);
-      Pore pore;
-      pore.radius = std::sqrt(norm_squared(vertex.position - packing.centres[i])) - sphere_radius;
-      pore.centre = std::visit([&](const auto& box) { return wrapped(box, vertex.position); },
-                               packing.container);
-      pore.owners.assign(others.begin(), others.end());
-      pore.owners.push_back(i);
-      found.push_back(std::move(pore));
+      const Vec3 r = vertex.position;
+      const double radius = std::sqrt(norm_squared(r - packing.centres[i])) - sphere_radius;
+      found.push_back(
+          {std::visit([&](const auto& box) { return wrapped(box, r); }, packing.container), radius,
+           i, &vertex});
     }
   }
   return found;
 }
 
-Pore merged(const Container& container, const std::vector<Pore>& found,
-            const std::vector<std::uint32_t>& cluster) {
-  Pore pore = found[cluster.front()];
-  const Vec3 first = pore.centre;
+// `owners` is room to work in.
+Pore merged(const Container& container, const VoronoiCells& cells,
+            const std::vector<Sighting>& found, const std::vector<std::uint32_t>& cluster,
+            std::vector<std::uint32_t>& owners) {
+  const Vec3 first = found[cluster.front()].centre;
   Vec3 shift;
   double radius = 0;
+  owners.clear();
   for (const std::uint32_t k : cluster) {
     shift =
         shift + std::visit([&](const auto& box) { return separation(box, found[k].centre, first); },
                            container);
     radius += found[k].radius;
-    pore.owners.insert(pore.owners.end(), found[k].owners.begin(), found[k].owners.end());
+    const auto others = cells.owners_of(*found[k].vertex);
+    owners.insert(owners.end(), others.begin(), others.end());
+    owners.push_back(found[k].cell);
   }
+  std::ranges::sort(owners);
   const double part = 1.0 / static_cast<double>(cluster.size());
-  pore.radius = part * radius;
-  pore.centre =
-      std::visit([&](const auto& box) { return wrapped(box, first + part * shift); }, container);
-  std::ranges::sort(pore.owners);
-  const auto repeated = std::ranges::unique(pore.owners);
-  pore.owners.erase(repeated.begin(), repeated.end());
-  return pore;
+  return {
+      std::visit([&](const auto& box) { return wrapped(box, first + part * shift); }, container),
+      part * radius,
+      {owners.begin(), std::ranges::unique(owners).begin()}};
 }
 
 double squared_distance(const Container& container, Vec3 a, Vec3 b) {
@@ -130,28 +138,28 @@ Vec3 random_point(const Container& container, const Region& region, RandomStream
 }  // namespace
 
 std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
-  const std::vector<Pore> found = found_pores(packing, cells);
+  const std::vector<Sighting> found = sightings(packing, cells);
   const auto n = static_cast<std::uint32_t>(found.size());
   CellGrid grid;
   grid.build(packing.container, std::max(merge, 1e-3), n,
              [&](std::uint32_t k) { return found[k].centre; });
   std::vector<bool> taken(n, false);
   std::vector<Pore> all;
-  std::vector<std::uint32_t> cluster;
+  std::vector<std::uint32_t> cluster, owners;
   for (std::uint32_t k = 0; k < n; ++k) {
     if (taken[k]) continue;
     cluster = {k};
     taken[k] = true;
     for (std::size_t at = 0; at < cluster.size(); ++at) {
       const Vec3 here = found[cluster[at]].centre;
-      grid.for_each_near(here, [&](std::uint32_t j) {
+      grid.for_each_within(here, merge, [&](std::uint32_t j) {
         if (taken[j]) return;
         if (squared_distance(packing.container, here, found[j].centre) > merge * merge) return;
         taken[j] = true;
         cluster.push_back(j);
       });
     }
-    all.push_back(merged(packing.container, found, cluster));
+    all.push_back(merged(packing.container, cells, found, cluster, owners));
   }
   return all;
 }
