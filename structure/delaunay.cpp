@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "engine/geometry.hpp"
@@ -83,15 +85,21 @@ std::vector<DelaunayTetrahedron> from_first_cells(const Packing& packing,
 // Whether each tetrahedron is seen from all of its four cells, and nothing else from any cell: not
 // so where five centres are so near a common sphere that cells differ in what meets there.
 bool all_agree(const VoronoiCells& cells, const std::vector<DelaunayTetrahedron>& found) {
+  std::vector<std::size_t> first(cells.size() + 1, 0);  // of those with a sphere as first
+  for (const DelaunayTetrahedron& one : found) ++first[one.spheres.front() + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  const auto is_found = [&](const std::array<std::uint32_t, 4>& spheres) {
+    const std::uint32_t least = spheres.front();
+    const auto some = std::span(found).subspan(first[least], first[least + 1] - first[least]);
+    return std::ranges::find(some, spheres, &DelaunayTetrahedron::spheres) != some.end();
+  };
   std::size_t sightings = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
       if (vertex.on_boundary) continue;
       ++sightings;
       const auto spheres = spheres_at(cells, i, vertex);
-      if (!spheres ||
-          !std::ranges::binary_search(found, *spheres, {}, &DelaunayTetrahedron::spheres))
-        return false;
+      if (!spheres || !is_found(*spheres)) return false;
     }
   }
   return sightings == 4 * found.size();
