@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 
 #include "cli/point_scenes.hpp"
@@ -41,15 +42,14 @@ struct KeptEnsemble {
   std::uint64_t seed = 0, sweep_point = 0;                                  // of random points
 };
 
-std::size_t place_of(const std::vector<std::uint64_t>& taps, std::uint64_t tap) {
-  return static_cast<std::size_t>(std::ranges::lower_bound(taps, tap) - taps.begin());
-}
-
-/// Measures the packings of one realization after another, on many threads.
+/// Measures one packing after another, on many threads. Those of a realization are read together.
 class Measurer {
  public:
   Measurer(const KeptEnsemble& ensemble, const StructureSettings& settings)
-      : ensemble_(ensemble), settings_(settings), failures_(ensemble.realizations) {
+      : ensemble_(ensemble),
+        settings_(settings),
+        n_jobs_(ensemble.taps.size() * ensemble.realizations),
+        failures_(n_jobs_) {
     structure_.taps = ensemble.taps;
     structure_.packings.assign(ensemble.taps.size(),
                                std::vector<std::vector<Measurement>>(ensemble.realizations));
@@ -64,43 +64,72 @@ class Measurer {
   }
 
  private:
+  using Packings = std::vector<KeptPacking>;
+
   void work() {
-    for (std::uint32_t r = next_++; r < ensemble_.realizations; r = next_++) {
+    for (std::size_t job = next_++; job < n_jobs_; job = next_++) {
       try {
-        measure_realization(r);
+        measure_one(static_cast<std::uint32_t>(job / ensemble_.taps.size()),
+                    job % ensemble_.taps.size());
       } catch (...) {
-        failures_[r] = std::current_exception();
+        failures_[job] = std::current_exception();
       }
     }
   }
 
-  void measure_realization(std::uint32_t r) {
-    std::vector<KeptPacking> packings;
-    {
-      const std::lock_guard lock(reading_);
-      packings = ensemble_.read(r);
+  /// Jobs come in the order of realizations: the last one read is nearly always the one wanted.
+  std::shared_ptr<const Packings> packings_of(std::uint32_t realization) {
+    const std::lock_guard lock(reading_);
+    if (!read_ || read_realization_ != realization) {
+      read_ = std::make_shared<const Packings>(ensemble_.read(realization));
+      read_realization_ = realization;
     }
-    const StreamKey points =
-        stream_key(ensemble_.seed, ensemble_.sweep_point, r, Purpose::void_points);
-    for (const KeptPacking& kept : packings) {
-      const std::size_t place = place_of(ensemble_.taps, kept.tap);
-      if (place == ensemble_.taps.size() || ensemble_.taps[place] != kept.tap) continue;
-      try {
-        structure_.packings[place][r] = measure(wrapped_inside(kept.packing), settings_, points);
-      } catch (const std::invalid_argument& error) {
-        throw BadInput(fmt::format("{}, realization {}, tap {}: {}", ensemble_.name, r, kept.tap,
-                                   error.what()));
-      }
+    return read_;
+  }
+
+  void measure_one(std::uint32_t r, std::size_t place) {
+    const std::uint64_t tap = ensemble_.taps[place];
+    const auto packings = packings_of(r);
+    const auto kept = std::ranges::find(*packings, tap, &KeptPacking::tap);
+    if (kept == packings->end()) return;
+    try {
+      structure_.packings[place][r] =
+          measure(wrapped_inside(kept->packing), settings_,
+                  stream_key(ensemble_.seed, ensemble_.sweep_point, r, Purpose::void_points));
+    } catch (const std::invalid_argument& error) {
+      throw BadInput(
+          fmt::format("{}, realization {}, tap {}: {}", ensemble_.name, r, tap, error.what()));
     }
   }
 
   const KeptEnsemble& ensemble_;
   const StructureSettings& settings_;
+  std::size_t n_jobs_;
   EnsembleStructure structure_;
   std::vector<std::exception_ptr> failures_;
-  std::atomic<std::uint32_t> next_ = 0;
+  std::atomic<std::size_t> next_ = 0;
   std::mutex reading_;
+  std::shared_ptr<const Packings> read_;
+  std::uint32_t read_realization_ = 0;
 };
+
+/// The tables, each with what it was measured with.
+std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ensemble,
+                             const StructureSettings& settings, int threads) {
+  const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
+  const auto written = resolved(settings);
+  std::vector<Table> tables = structure_tables(prefix, structure, settings);
+  for (Table& table : tables) {
+    const auto part = written.find(table.name.substr(prefix.size()));
+    table.notes.emplace_back("settings", part->dump());
+    table.notes.emplace_back(
+        "region", settings.region
+                      ? written["region"].dump()
+                      : "of each packing: heights 1 to 10 but at most 2<Z> - 1, 1 from walls; all "
+                        "of a fully periodic box");
+  }
+  return tables;
+}
 
 /// Of the taps that there are, those that are named; all if none is.
 std::vector<std::uint64_t> chosen_taps(const std::string& name,
@@ -166,8 +195,7 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
   for (const std::uint32_t point : points) {
     KeptEnsemble ensemble = ensemble_at(file, point);
     ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
-    const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
-    for (Table& table : structure_tables(point_name(point) + "/", structure, settings)) {
+    for (Table& table : tables_of(point_name(point) + "/", ensemble, settings, threads)) {
       const std::string& label = file.study().points[point].label;
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
@@ -184,6 +212,12 @@ std::vector<Table> structure_of(std::span<const std::string> files,
   for (const std::string& path : files) {
     packings.push_back(read_extended_xyz_frames(path));
     most = std::max(most, packings.back().size());
+    for (const Packing& packing : packings.back()) {
+      if (packing.container == packings.front().front().container) continue;
+      throw BadInput(fmt::format(
+          "{}: its container is not that of {}: only packings of one container have a mean", path,
+          files.front()));
+    }
   }
   KeptEnsemble ensemble{.name = joined({files.begin(), files.end()}, ", "),
                         .taps = {},
@@ -197,7 +231,7 @@ std::vector<Table> structure_of(std::span<const std::string> files,
     for (std::size_t k = 0; k < packings[r].size(); ++k) kept.push_back({k, packings[r][k]});
     return kept;
   };
-  return structure_tables("", Measurer(ensemble, settings).measured(threads), settings);
+  return tables_of("", ensemble, settings, threads);
 }
 
 StructureSettings structure_asked_for(const ResultsFile& file) {

@@ -162,6 +162,9 @@ struct ParsedStructure {
 /// Reads an object as the key "structure" of a scene holds it.
 ParsedStructure parse_structure(std::string_view json_text);
 
+/// The settings with every default of their parts written out.
+nlohmann::ordered_json resolved(const StructureSettings& settings);
+
 /// Names of the parts that are measured: "profile", "pores", ...
 std::vector<std::string> parts_of(const StructureSettings& settings);
 

@@ -107,7 +107,9 @@ void read_settings(const Reader& in, OrderSettings& settings) {
   if (has_keys(in, order_keys)) read_numbers(in, order_keys, settings);
 }
 void read_settings(const Reader& in, VoronoiSettings& settings) {
-  if (has_keys(in, voronoi_keys)) read_numbers(in, voronoi_keys, settings);
+  if (!has_keys(in, voronoi_keys, {"cut_cells"})) return;
+  read_numbers(in, voronoi_keys, settings);
+  in.read_flag("cut_cells", settings.cut_cells);
 }
 void read_settings(const Reader& in, PoresSettings& settings) {
   if (has_keys(in, pores_keys)) read_numbers(in, pores_keys, settings);
@@ -166,6 +168,7 @@ Json written(const OrderSettings& settings) {
 Json written(const VoronoiSettings& settings) {
   Json out;
   write_numbers(voronoi_keys, settings, out);
+  out["cut_cells"] = settings.cut_cells;
   return out;
 }
 Json written(const PoresSettings& settings) {
@@ -226,6 +229,10 @@ StructureSettings read_structure(const Reader& in) {
     if (const auto member = in.find(name)) read_settings(*member, part.emplace());
   });
   return settings;
+}
+
+Json resolved(const StructureSettings& settings) {
+  return written(settings);
 }
 
 Json written(const StructureSettings& settings) {

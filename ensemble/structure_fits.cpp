@@ -21,13 +21,14 @@ struct FittedLaw {
   std::string quantity;  // fitted, along its places
   std::string prefix;    // of the parameters' names in the table
   std::string model;
+  std::vector<std::string> units;  // of its parameters
   /// The law's variable at a place; nothing where the law does not hold.
   std::function<std::optional<double>(double place)> variable;
   /// What a value is multiplied by to become a count, whose error is its root; none: all alike.
   std::function<double(double place)> width{};
 };
 
-const std::vector<double>& places_of(const Measurement& measurement, const std::string& name) {
+const std::vector<double>& places_of(const Measurement& measurement, std::string_view name) {
   const auto found = std::ranges::find(measurement.places, name, &Places::name);
   return std::get<std::vector<double>>(found->values);
 }
@@ -74,18 +75,37 @@ struct FoundLaw {
   std::string status;
 };
 
+/// Whether there are more points that say something than parameters: bins that hold anything, where
+/// the curve is one of counts.
+bool has_points(const RealizationCurves& curves, std::size_t n_parameters) {
+  const Curve mean = mean_curve(curves);
+  const auto filled = std::ranges::count_if(mean.x, [](double x) { return x != 0; });
+  return static_cast<std::size_t>(filled) > n_parameters;
+}
+
 FoundLaw fitted(const Model& model, const RealizationCurves& curves) {
   const std::size_t n = model.parameters().size();
-  FoundLaw found{std::vector(n, nan), std::vector(n, nan), {}};
+  FoundLaw found{std::vector(n, nan), std::vector(n, nan), "converged"};
   if (curves.realizations == 0) return found.status = "no packing", found;
+  if (!has_points(curves, n)) return found.status = "too few places that hold anything", found;
   const auto outcome = fit(model, mean_curve(curves), {.profiles = false});
   if (const auto* refusal = std::get_if<Refusal>(&outcome)) {
     return found.status = refusal->message, found;
   }
   const Fit& result = std::get<Fit>(outcome);
+  if (!is_minimum(result.reason)) {
+    return found.status = std::string("did not settle: ") + describe(result.reason), found;
+  }
   found.values = result.values();
-  found.status = "converged";
-  if (curves.realizations >= 2) found.errors = resample(model, curves, result, {}).errors;
+  if (curves.realizations < 2) return found;
+  const ResampledErrors errors = resample(model, curves, result, {});
+  if (errors.failed == 0) {
+    found.errors = errors.errors;
+  } else {
+    found.status = std::to_string(errors.failed);
+    found.status.append(" of ").append(std::to_string(errors.resamples));
+    found.status.append(" refits without a realization did not settle: no error");
+  }
   return found;
 }
 
@@ -114,7 +134,7 @@ void add_law(const FittedLaw& law, const PartPackings& part, Table& table) {
     std::string meaning = parameters[j].meaning;
     meaning.append(", of ").append(law.quantity).append(" = ").append(model->formula());
     table.quantities.push_back(
-        {name, {"tap"}, std::move(values[j]), "1", std::move(meaning), model->source()});
+        {name, {"tap"}, std::move(values[j]), law.units[j], std::move(meaning), model->source()});
     name.append("_error");
     table.quantities.push_back({std::move(name),
                                 {"tap"},
@@ -143,7 +163,7 @@ double pore_volume(double xi) {
 
 }  // namespace
 
-void add_fits(const std::string& part_name, const PartPackings& part,
+void add_fits(std::string_view part_name, const PartPackings& part,
               const StructureSettings& settings, Table& table) {
   if (part_name == "profile") {
     // In R, above the layers at the floor.
@@ -152,16 +172,22 @@ void add_fits(const std::string& part_name, const PartPackings& part,
     const auto in_radii = [low](double height) {
       return height >= low ? std::optional(height / sphere_radius) : std::nullopt;
     };
-    add_law({"phi", "eq7", "profile", in_radii}, part, table);
+    add_law({"phi", "eq7", "profile", {"1", "1/R", "1/R", "R"}, in_radii}, part, table);
   } else if (part_name == "coordination") {
-    add_law({"neighbour_share", "normal", "normal", itself, one}, part, table);
+    add_law({"neighbour_share", "normal", "normal", {"1", "1", "1"}, itself, one}, part, table);
   } else if (part_name == "voronoi") {
-    add_law({"face_share", "normal", "normal", itself, one}, part, table);
+    add_law({"face_share", "normal", "normal", {"1", "1", "1"}, itself, one}, part, table);
     const auto above_least = [](double free_volume) {
       const double t = free_volume - least_free_volume;
       return t > 0 ? std::optional(t) : std::nullopt;
     };
-    add_law({"free_volume_density", "k_gamma", "k_gamma", above_least, one}, part, table);
+    add_law({"free_volume_density",
+             "k_gamma",
+             "k_gamma",
+             {"1", "sphere volumes", "1"},
+             above_least,
+             one},
+            part, table);
   } else if (part_name == "pores") {
     const auto tail = [from = settings.pores->tail_from](double xi) {
       return pore_volume(xi) >= from ? std::optional(pore_volume(xi)) : std::nullopt;
@@ -169,7 +195,7 @@ void add_fits(const std::string& part_name, const PartPackings& part,
     const auto width = [bin = settings.pores->bin_width](double xi) {
       return pore_volume(xi + 0.5 * bin) - pore_volume(xi - 0.5 * bin);
     };
-    add_law({"rho_v", "tail", "pore_tail", tail, width}, part, table);
+    add_law({"rho_v", "tail", "pore_tail", {"1", "R^3"}, tail, width}, part, table);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "ensemble/table.hpp"
@@ -12,10 +12,11 @@ namespace jostle {
 using PartPackings = std::vector<std::vector<const Measurement*>>;
 
 /// Adds what the laws of that part find in its mean curves, [n_taps] each: parameters, their
-/// jackknife errors, and "converged" or why there is no fit. Eq. 7 to the vertical profile, the
+/// jackknife errors (not a number with fewer than two realizations, or where a refit does not
+/// settle), and "converged" or why there is no fit. Eq. 7 to the vertical profile, the
 /// exponential to the tail of pores, the normal law to numbers of neighbours and of faces, the
 /// k-gamma law to free volumes; other parts have none.
-void add_fits(const std::string& part_name, const PartPackings& part,
+void add_fits(std::string_view part_name, const PartPackings& part,
               const StructureSettings& settings, Table& table);
 
 }  // namespace jostle

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "ensemble/moments.hpp"
 #include "ensemble/structure_fits.hpp"
@@ -14,8 +15,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The longest list of each kind of places.
-std::map<std::string, Places> longest_places(const PartPackings& part) {
-  std::map<std::string, Places> longest;
+std::map<std::string_view, Places> longest_places(const PartPackings& part) {
+  std::map<std::string_view, Places> longest;
   for (const auto& realizations : part) {
     for (const Measurement* measurement : realizations) {
       if (measurement == nullptr) continue;
@@ -33,7 +34,7 @@ struct MeansAndErrors {
 };
 
 /// Over realizations, [n_taps, n_places]; of the changes since the first tap where `change`.
-MeansAndErrors averages(const PartPackings& part, const std::string& name, std::size_t n_places,
+MeansAndErrors averages(const PartPackings& part, std::string_view name, std::size_t n_places,
                         bool change) {
   MeansAndErrors out;
   for (const auto& realizations : part) {
@@ -56,21 +57,23 @@ MeansAndErrors averages(const PartPackings& part, const std::string& name, std::
   return out;
 }
 
+/// `since`: the tap that changes are counted from; absent: the values themselves.
 void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, std::size_t n_places,
-                  bool change, Table& table) {
+                  std::optional<std::uint64_t> since, Table& table) {
   std::vector<std::string> axes = {"tap"};
-  if (!quantity.places.empty()) axes.push_back(quantity.places);
-  MeansAndErrors found = averages(part, quantity.name, n_places, change);
-  std::string name = quantity.name, long_name = quantity.long_name;
-  if (change) {
+  if (!quantity.places.empty()) axes.emplace_back(quantity.places);
+  MeansAndErrors found = averages(part, quantity.name, n_places, since.has_value());
+  std::string name(quantity.name), long_name(quantity.long_name);
+  const std::string units(quantity.units);
+  if (since) {
     name.append("_change");
-    long_name.append(", change since the first tap");
+    long_name.append(", change since tap ").append(std::to_string(*since));
   }
   table.quantities.push_back(
-      {name, axes, std::move(found.means), quantity.units, long_name, quantity.source});
+      {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
   name.append("_error");
-  table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors),
-                              quantity.units, "standard error over realizations", ""});
+  table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
+                              "standard error over realizations", ""});
 }
 
 Quantity number_of_packings(const PartPackings& part) {
@@ -141,7 +144,7 @@ std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStr
   }
   std::vector<Table> tables;
   for (std::size_t k = 0; example != nullptr && k < example->size(); ++k) {
-    Table table{.name = prefix + (*example)[k].part};
+    Table table{.name = prefix + std::string((*example)[k].part)};
     const PartPackings part = part_of(structure, k, table);
     const std::vector<const MeasuredQuantity*> quantities = quantities_of(part);
     if (!quantities.empty()) {
@@ -149,15 +152,19 @@ std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStr
       table.axes.push_back(
           {"tap", {"tap"}, structure.taps, "taps", "taps made before; of a file, the frame", ""});
       for (const auto& [name, list] : places) {
-        Quantity axis{name, {name}, {}, list.units, list.long_name, ""};
+        const std::string axis_name(name);
+        Quantity axis{
+            axis_name, {axis_name}, {}, std::string(list.units), std::string(list.long_name), ""};
         std::visit([&](const auto& values) { axis.values = values; }, list.values);
         table.axes.push_back(std::move(axis));
       }
       table.quantities.push_back(number_of_packings(part));
       for (const MeasuredQuantity* quantity : quantities) {
         const std::size_t n = quantity->places.empty() ? 1 : places.at(quantity->places).size();
-        add_averages(part, *quantity, n, false, table);
-        if (quantity->with_change) add_averages(part, *quantity, n, true, table);
+        add_averages(part, *quantity, n, std::nullopt, table);
+        if (quantity->with_change) {
+          add_averages(part, *quantity, n, structure.taps.front(), table);
+        }
       }
       add_fits((*example)[k].part, part, settings, table);
     }

@@ -15,8 +15,9 @@ double hcp_layer_height(std::size_t k);
 
 /// When a layer counts as grown. Ours: the papers draw layers and do not count them.
 struct LayerRule {
-  /// Of the centres between the mid-planes to the layers below and above, at least `least_share`
-  /// lie within `tolerance` of the hcp height. Centres at even heights have a share of 0.245.
+  /// Its height is within `tolerance` of the place that the layer below points to, and of the centres
+  /// between the mid-planes to the layers below and above at least `least_share` lie within
+  /// `tolerance` of that height. Centres at even heights have a share of 0.245.
   double tolerance = 0.1;
   double least_share = 0.6;
   /// And they are at least this part of a full layer, 2/sqrt(3) a unit of area: of the footprint,
@@ -25,11 +26,13 @@ struct LayerRule {
   bool operator==(const LayerRule&) const = default;
 };
 
-/// What stands between two mid-planes.
+/// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are
+/// a little farther apart within them: so each is sought from the one found below it.
 struct Layer {
   double height = 0;   // of hcp
-  double filling = 0;  // number of centres over that of a full layer
-  double share = 0;    // of them within the tolerance; 0 of none
+  double found = 0;    // mean height of the centres near the place that the layer below points to
+  double filling = 0;  // number of centres between mid-planes over that of a full layer
+  double share = 0;    // of them within the tolerance of `found`; 0 of none
 };
 
 /// All layers up to the highest centre. Throws std::invalid_argument for a fully periodic box,

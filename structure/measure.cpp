@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/slab.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/neighbours.hpp"
 #include "structure/pores.hpp"
@@ -13,31 +14,53 @@ namespace jostle {
 
 namespace {
 
-// Voronoi cells of centres that all but coincide are lost in rounding.
-void require_apart(const Packing& packing) {
-  constexpr double least = 0.5;
-  const NeighbourFinder finder(packing, least);
+// Voronoi cells of centres that all but coincide are lost in rounding, and beds have contacts.
+void require_diameters(const Packing& packing) {
+  constexpr double least = 0.5, most = 1.5;
+  constexpr std::uint32_t many = 100;
+  const NeighbourFinder finder(packing, most);
+  bool any = finder.size() < many;
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      any = true;
+      if (distance_squared >= least * least) return;
       throw std::invalid_argument("structure: spheres " + std::to_string(i) + " and " +
                                   std::to_string(j) + " are " +
                                   std::to_string(std::sqrt(distance_squared)) +
                                   " apart, and their diameter is 1: lengths must be in diameters");
     });
   }
+  if (!any) {
+    throw std::invalid_argument(
+        "structure: no two spheres are less than 1.5 apart, and their diameter is 1: lengths must "
+        "be in diameters");
+  }
 }
 
 std::string in_words(const Region& region, const Container& container) {
   std::string words = "heights " + std::to_string(region.low);
   words.append(" to ").append(std::to_string(region.high));
-  if (std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container)) {
+  if (std::holds_alternative<WalledBox>(container) ||
+      std::holds_alternative<Cylinder>(container)) {
     words.append(", ").append(std::to_string(region.from_sides)).append(" from the walls");
   }
   return words;
 }
 
-bool is_empty(const Region& region, const Container& container) {
-  return !(region.high > region.low) || !(region.volume(container) > 0);
+/// Throws where nothing can be counted in the region.
+void require_region(const MeasuredPacking& in) {
+  const Container& container = in.packing.container;
+  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
+  if (bulk != nullptr && (in.region.low < 0 || in.region.high > bulk->height)) {
+    throw std::invalid_argument("the region, " + in_words(in.region, container) +
+                                ", must lie within the periodic box: heights 0 to " +
+                                std::to_string(bulk->height));
+  }
+  const bool empty = !(in.region.high > in.region.low) || !(in.region.volume(container) > 0);
+  const auto inside = [&](const Vec3& r) { return in.region.contains(container, r); };
+  if (empty || std::ranges::none_of(in.packing.centres, inside)) {
+    throw std::invalid_argument("no sphere lies in the region, " + in_words(in.region, container));
+  }
 }
 
 template <class Settings>
@@ -46,10 +69,7 @@ void add_part(const char* name, MeasuredPacking& in, const std::optional<Setting
   if (!settings) return;
   Measurement measurement{.part = name};
   try {
-    if (needs_region && is_empty(in.region, in.packing.container)) {
-      throw std::invalid_argument("nothing lies in the region, " +
-                                  in_words(in.region, in.packing.container));
-    }
+    if (needs_region) require_region(in);
     measurement = measure_part(in, *settings);
     measurement.part = name;
   } catch (const std::invalid_argument& refusal) {
@@ -86,7 +106,7 @@ Region bulk_of(const Packing& packing) {
 
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {
-  require_apart(packing);
+  require_diameters(packing);
   MeasuredPacking in{
       .packing = packing, .region = settings.region.value_or(bulk_of(packing)), .points = points};
   std::vector<Measurement> all;
@@ -101,6 +121,21 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
   add_part("void_probability", in, settings.void_probability, true, all);
   add_part("holes", in, settings.holes, true, all);
   return all;
+}
+
+double fraction_of(const Packing& packing, const Region& region) {
+  if (has_gravity(packing.container)) return solids_fraction(packing, {region.low, region.high});
+  const auto& bulk = std::get<FullyPeriodicBox>(packing.container);
+  return static_cast<double>(packing.centres.size()) * sphere_volume /
+         (footprint_area(packing.container) * bulk.height);
+}
+
+void require_bins(double length, double width) {
+  constexpr double most = 1e6;
+  if (length / width <= most) return;
+  throw std::invalid_argument("more than a million bins of " + std::to_string(width) +
+                              " up to a height of " + std::to_string(length) +
+                              ": take wider ones, and see whether a sphere lies far above the bed");
 }
 
 std::vector<double> middles_of_bins(std::size_t n, double width) {

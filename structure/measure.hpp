@@ -58,6 +58,7 @@ struct OrderSettings {
 struct VoronoiSettings {
   double least_area = 1e-3;  // of a face that counts, in surfaces of its cell
   double bin_width = 0.02;   // of free volumes, in volumes of a sphere
+  bool cut_cells = false;    // whether cells that floor, sides or lid cut are counted too
   bool operator==(const VoronoiSettings&) const = default;
 };
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/slab.hpp"
 #include "structure/bond_order.hpp"
 #include "structure/crystal_order.hpp"
 #include "structure/measure_parts.hpp"
@@ -42,20 +43,19 @@ class Means {
 };
 
 struct OrderColumn {
-  const char* name;
-  const char* long_name;
-  const char* source;
+  std::string_view name, at_height;
+  std::string_view long_name, source;
 };
 
 constexpr const char* steinhardt = "Steinhardt et al. 1983, doi:10.1103/PhysRevB.28.784";
 constexpr const char* stukowski = "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021";
 constexpr OrderColumn order_columns[] = {
-    {"fcc", "fraction of spheres in fcc surroundings", stukowski},
-    {"hcp", "fraction of spheres in hcp surroundings", stukowski},
-    {"disordered", "fraction of spheres in neither", stukowski},
-    {"q4", "mean bond order of the 12 nearest neighbours", steinhardt},
-    {"q6", "mean bond order of the 12 nearest neighbours", steinhardt},
-    {"w6", "mean bond order of the 12 nearest neighbours", steinhardt}};
+    {"fcc", "fcc_at_height", "fraction of spheres in fcc surroundings", stukowski},
+    {"hcp", "hcp_at_height", "fraction of spheres in hcp surroundings", stukowski},
+    {"disordered", "disordered_at_height", "fraction of spheres in neither", stukowski},
+    {"q4", "q4_at_height", "mean q4 of the 12 nearest neighbours", steinhardt},
+    {"q6", "q6_at_height", "mean q6 of the 12 nearest neighbours", steinhardt},
+    {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours", steinhardt}};
 constexpr std::size_t n_order_columns = std::size(order_columns);
 
 }  // namespace
@@ -111,6 +111,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
 }
 
 Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
+  require_bins(top_height(in.packing), settings.bin_width);
   const NeighbourTable nearest = nearest_neighbours(in.packing);
   const std::vector<CrystalOrder> orders = crystal_order(nearest);
   const std::vector<BondOrder> bonds = bond_order(nearest);
@@ -134,8 +135,8 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
   out.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameters",
                  "height above the floor, middle of a bin"}};
   for (std::size_t c = 0; c < n_order_columns; ++c) {
-    const auto& [name, long_name, source] = order_columns[c];
-    out.quantities.push_back({.name = std::string(name).append("_at_height"),
+    const auto& [name, at_height, long_name, source] = order_columns[c];
+    out.quantities.push_back({.name = at_height,
                               .places = "height",
                               .values = by_height[c].values(),
                               .long_name = long_name,
@@ -143,7 +144,7 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                               .beyond = nan});
     out.quantities.push_back({.name = name,
                               .values = of_region[c].values(),
-                              .long_name = std::string(long_name).append(", over the region"),
+                              .long_name = long_name,
                               .source = source});
   }
   return out;

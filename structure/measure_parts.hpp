@@ -5,11 +5,8 @@
 #include "structure/measure.hpp"
 #include "structure/voronoi.hpp"
 
-// The parts of measure(), each with notes of what it was measured with.
+// The parts of measure().
 namespace jostle {
-
-inline constexpr const char* philippe_bideau = "Philippe & Bideau 2001";
-inline constexpr const char* rosato_dybenko = "Rosato et al. 2010";
 
 /// What parts share: the packing, the region, and cells that are made once.
 struct MeasuredPacking {
@@ -42,7 +39,14 @@ Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings);
 std::vector<double> middles_of_bins(std::size_t n, double width);
 std::vector<double> whole_numbers(std::size_t n);
 
-/// Parts of `total` per value 0 .. up to the greatest.
+/// Packing fraction between the heights of a region, from side to side; of all of a fully periodic
+/// box.
+double fraction_of(const Packing& packing, const Region& region);
+
+/// Throws std::invalid_argument where bins of `width` up to `length` would be more than a million.
+void require_bins(double length, double width);
+
+/// Each count over their sum, [n_counts].
 std::vector<double> shares(std::span<const std::uint64_t> counts);
 
 }  // namespace jostle

@@ -52,6 +52,19 @@ void add_along(Axis axis, const Packing& packing, HeightWindow window, double bi
                              .long_name = "area fraction of plane cuts parallel to a side"});
 }
 
+/// Where the footprint is square.
+void add_mean_of_axes(const Packing& packing, Measurement& into) {
+  if (width_x(packing.container) != width_y(packing.container)) return;
+  std::vector<double> mean = into.find("phi_x")->values;
+  const std::vector<double>& other = into.find("phi_y")->values;
+  for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (mean[k] + other[k]);
+  into.quantities.push_back({.name = "phi_xy",
+                             .places = "x",
+                             .values = std::move(mean),
+                             .long_name = "the mean of phi_x and phi_y",
+                             .source = "Philippe & Bideau 2001, fig. 7"});
+}
+
 void add_from_walls(const Packing& packing, HeightWindow window, const SidesSettings& settings,
                     Measurement& into) {
   if (std::holds_alternative<WalledBox>(packing.container)) {
@@ -92,6 +105,7 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
 
 Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
   require_floor(in.packing);
+  require_bins(top_height(in.packing), settings.bin_width);
   const Profile vertical =
       vertical_profile(in.packing, height_edges(in.packing, settings.bin_width));
   GradientRange range = gradient_range(in.packing.container);
@@ -118,12 +132,14 @@ Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
                             .units = "1/R",
                             .long_name = "minus the slope of the smoothed profile",
                             .source = "Philippe & Bideau 2001, fig. 8"});
+  out.quantities.push_back({.name = "alpha_line_error",
+                            .values = {found.error},
+                            .units = "1/R",
+                            .long_name = "of alpha, from the scatter about the line"});
   if (!found.reason.empty()) out.notes.emplace_back("alpha", found.reason);
   if (in.region.high > in.region.low) {
-    const HeightWindow window{in.region.low, in.region.high};
-    const double edges[] = {window.low, window.high};
     out.quantities.push_back({.name = "phi_region",
-                              .values = vertical_profile(in.packing, edges).values,
+                              .values = {fraction_of(in.packing, in.region)},
                               .long_name = "packing fraction between the heights of the region"});
   }
   return out;
@@ -136,19 +152,23 @@ Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
   if (!std::holds_alternative<Cylinder>(in.packing.container)) {
     add_along(Axis::x, in.packing, window, settings.bin_width, out);
     add_along(Axis::y, in.packing, window, settings.bin_width, out);
+    add_mean_of_axes(in.packing, out);
   }
   add_from_walls(in.packing, window, settings, out);
   return out;
 }
 
 Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
+  require_floor(in.packing);
+  require_bins(top_height(in.packing), settings.bin_width);
   const std::vector<Layer> found = layers(in.packing, settings.rule.tolerance);
   const std::vector<double> n = height_histogram(in.packing, settings.bin_width);
-  std::vector<double> at, filling, share;
+  std::vector<double> at, where, filling, share;
   for (const Layer& layer : found) {
     at.push_back(layer.height);
+    where.push_back(layer.found);
     filling.push_back(layer.filling);
-    share.push_back(layer.share);
+    share.push_back(layer.filling > 0 ? layer.share : nan);
   }
   Measurement out;
   out.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
@@ -158,6 +178,12 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
                      .values = n,
                      .long_name = "fraction of all centres per bin",
                      .source = "Rosato et al. 2010, fig. 6"},
+                    {.name = "found_height",
+                     .places = "layer_height",
+                     .values = where,
+                     .units = "diameters",
+                     .long_name = "mean height of the centres near that place of the layer",
+                     .beyond = nan},
                     {.name = "filling",
                      .places = "layer_height",
                      .values = filling,
@@ -165,7 +191,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
                     {.name = "share",
                      .places = "layer_height",
                      .values = share,
-                     .long_name = "part of them within the tolerance of the layer's height",
+                     .long_name = "part of them within the tolerance of the found height",
                      .beyond = nan},
                     {.name = "grown_layers",
                      .values = {static_cast<double>(grown_layers(in.packing, settings.rule))},

@@ -39,19 +39,19 @@ double volume_of(const Container& container, double height) {
   return footprint_area(container) * (bulk != nullptr ? bulk->height : height);
 }
 
-/// What is measured of the cells of a region that no boundary cuts.
+/// What is measured of the cells of a region.
 struct InnerCells {
   std::vector<std::uint64_t> face_counts;
   std::vector<double> faces, volumes, free_volumes, fractions;
 };
 
-InnerCells inner_cells(MeasuredPacking& in, double least_area) {
+InnerCells inner_cells(MeasuredPacking& in, const VoronoiSettings& settings) {
   const VoronoiCells& cells = in.voronoi();
   const std::vector<double> fractions = local_fractions(cells), free = free_volumes(cells);
   InnerCells inner;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    if (cells.cut[i] != 0 || !in.in_region(i)) continue;
-    const std::uint32_t faces = n_faces(cells, i, least_area);
+    if ((cells.cut[i] != 0 && !settings.cut_cells) || !in.in_region(i)) continue;
+    const std::uint32_t faces = n_faces(cells, i, settings.least_area);
     if (inner.face_counts.size() <= faces) inner.face_counts.resize(faces + 1, 0);
     ++inner.face_counts[faces];
     inner.faces.push_back(faces);
@@ -72,7 +72,8 @@ void add_single(const char* name, double value, const char* long_name, Measureme
 
 Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
   constexpr double fraction_bin = 0.01, largest_free_volume = 2;
-  const InnerCells inner = inner_cells(in, settings.least_area);
+  constexpr std::size_t n_fractions = 76;  // a dodecahedron's is 0.755
+  const InnerCells inner = inner_cells(in, settings);
   if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
   const std::vector<double> faces = shares(inner.face_counts);
   const auto n_free = static_cast<std::size_t>(largest_free_volume / settings.bin_width + 0.5);
@@ -80,7 +81,7 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
   out.places = {{"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},
                 {"free_volume", middles_of_bins(n_free, settings.bin_width), "sphere volumes",
                  "volume of a cell without its sphere, middle of a bin"},
-                {"local_fraction", middles_of_bins(75, fraction_bin), "1",
+                {"local_fraction", middles_of_bins(n_fractions, fraction_bin), "1",
                  "volume of a sphere over that of its cell, middle of a bin"}};
   out.quantities = {{.name = "face_share",
                      .places = "faces",
@@ -95,7 +96,7 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
                      .source = "Rosato et al. 2010, fig. 9"},
                     {.name = "local_fraction_density",
                      .places = "local_fraction",
-                     .values = density(inner.fractions, fraction_bin, 75),
+                     .values = density(inner.fractions, fraction_bin, n_fractions),
                      .long_name = "probability density of local packing fractions"}};
   const double free_mean = mean_of(inner.free_volumes);
   const double sigma = deviation_of(inner.free_volumes, free_mean);
@@ -107,7 +108,8 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
   add_single("sigma_free_volume", sigma, "deviation of the free volumes of cells", out, "",
              "sphere volumes");
   add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction", out);
-  add_single("k", above_least * above_least / (sigma * sigma),
+  const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal
+  add_single("k", varies ? above_least * above_least / (sigma * sigma) : nan,
              "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
              "least cell being a regular dodecahedron",
              out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
@@ -131,8 +133,9 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
       pores_in(pores(in.packing, in.voronoi(), settings.merge), in.packing.container, in.region);
   if (found.empty()) throw std::invalid_argument("no pore lies in the region");
   const PoreDistribution sizes = pore_distribution(found, settings.bin_width, settings.largest);
-  double tetrahedral = 0, octahedral = 0;
+  double tetrahedral = 0, octahedral = 0, touched = 0;
   for (const Pore& pore : found) {
+    touched += static_cast<double>(pore.owners.size());
     const Site site = site_of(pore, settings.tolerance);
     tetrahedral += site == Site::tetrahedral ? 1 : 0;
     octahedral += site == Site::octahedral ? 1 : 0;
@@ -158,6 +161,7 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
   add_single("n_pores", number, "pores of the region", out, "Philippe & Bideau 2001, sec. V");
   add_single("nu", mean_pore_volume(found), "mean of xi^3", out, "Philippe & Bideau 2001, sec. V",
              "R^3");
+  add_single("mean_touched", touched / number, "spheres that a pore touches", out);
   add_single("tetrahedral", tetrahedral / number,
              "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", out,
              "Philippe & Bideau 2001, sec. V");
@@ -176,6 +180,7 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
       void_probability(in.packing, in.region, sigma, settings.points, in.points);
   const double phi = 1 - found.probability.back();
   found.probability.pop_back();
+  found.error.pop_back();
   sigma.pop_back();
   std::vector<double> theory;
   for (const double s : sigma) theory.push_back(gotoh_void_probability(phi, s));
@@ -186,6 +191,10 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
                      .values = found.probability,
                      .long_name = "chance that a random sphere contains no centre",
                      .source = "Philippe & Bideau 2001, fig. 9"},
+                    {.name = "p0_points_error",
+                     .places = "sigma",
+                     .values = found.error,
+                     .long_name = "of one packing's p0, from its random points"},
                     {.name = "p0_gotoh",
                      .places = "sigma",
                      .values = theory,
@@ -198,6 +207,7 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
 Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
   const std::vector<BernalHole> holes = bernal_holes(in.packing, in.voronoi(), settings.bonds);
   const HoleTable table = hole_table(holes, in.packing.container, in.region);
+  if (!(table.volume() > 0)) throw std::invalid_argument("no hole lies in the region");
   std::vector<std::string> names;
   std::vector<double> number, volume, published_number, published_volume;
   for (std::size_t k = 0; k < canonical_holes.size(); ++k) {

@@ -127,9 +127,12 @@ double filled_part(const Packing& packing, const Region& region, double sigma) {
 }
 
 Vec3 random_point(const Container& container, const Region& region, RandomStream& random) {
+  const bool walled = std::holds_alternative<WalledBox>(container) ||
+                      std::holds_alternative<Cylinder>(container);
+  const double off = walled ? region.from_sides : 0;
   while (true) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    const Vec3 r{width_x(container) * x, width_y(container) * y,
+    const Vec3 r{off + (width_x(container) - 2 * off) * x, off + (width_y(container) - 2 * off) * y,
                  region.low + (region.high - region.low) * z};
     if (region.contains(container, r)) return r;
   }
@@ -213,7 +216,10 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
   grid.build(packing.container, std::max(longest, sphere_radius),
              static_cast<std::uint32_t>(packing.centres.size()),
              [&](std::uint32_t i) { return packing.centres[i]; });
-  std::vector<std::uint64_t> empty(sigma.size(), 0);
+  std::vector<double> reaches;  // squared, ascending
+  for (const double s : sigma) reaches.push_back(s * s * sphere_radius * sphere_radius);
+  std::ranges::sort(reaches);
+  std::vector<std::uint64_t> reached(sigma.size() + 1, 0);  // points by how many reaches are empty
   RandomStream random(key);
   for (std::uint64_t p = 0; p < points; ++p) {
     const Vec3 r = random_point(packing.container, region, random);
@@ -221,11 +227,10 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
     grid.for_each_near(r, [&](std::uint32_t i) {
       nearest = std::min(nearest, squared_distance(packing.container, r, packing.centres[i]));
     });
-    for (std::size_t s = 0; s < sigma.size(); ++s) {
-      const double reach = sigma[s] * sphere_radius;
-      empty[s] += nearest >= reach * reach;
-    }
+    ++reached[static_cast<std::size_t>(std::ranges::upper_bound(reaches, nearest) -
+                                       reaches.begin())];
   }
+  for (std::size_t k = reached.size() - 1; k > 0; --k) reached[k - 1] += reached[k];
   VoidProbability result;
   result.sigma.assign(sigma.begin(), sigma.end());
   for (std::size_t s = 0; s < sigma.size(); ++s) {
@@ -233,7 +238,10 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
       result.probability.push_back(1 - filled_part(packing, region, sigma[s]));
       result.error.push_back(0);
     } else {
-      const double p = static_cast<double>(empty[s]) / static_cast<double>(points);
+      const auto rank = static_cast<std::size_t>(
+          std::ranges::lower_bound(reaches, sigma[s] * sigma[s] * sphere_radius * sphere_radius) -
+          reaches.begin());
+      const double p = static_cast<double>(reached[rank + 1]) / static_cast<double>(points);
       result.probability.push_back(p);
       result.error.push_back(std::sqrt(p * (1 - p) / static_cast<double>(points)));
     }

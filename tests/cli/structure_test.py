@@ -100,6 +100,24 @@ class Structure(Case):
         with h5py.File(self.folder / "tiny.h5") as file:
             self.assertNotIn("structure", file)
 
+    def test_packings_of_several_containers_have_no_mean(self):
+        cell = 'Lattice="{0} 0 0 0 {0} 0 0 0 9" Properties=species:S:1:pos:R:3 pbc="T T F"'
+        for width in (4, 5):
+            (self.folder / f"{width}.xyz").write_text(
+                f"2\n{cell.format(width)}\nX 1 1 0.5\nX 2 1 0.5\n")
+        self.assertIn("its container is not that of 4.xyz",
+                      self.structure("4.xyz", "5.xyz", expect=BAD_INPUT).stderr)
+
+    def test_tables_tell_what_they_were_measured_with(self):
+        self.write(TINY)
+        self.run_scene()
+        given = '{"coordination": {"cut": 1.3}, "region": {"heights": [0.5, 2]}}'
+        notes = self.tables("tiny.h5", "--settings", given, "--sweep-point", 0, "--tap", 4,
+                            "--no-store")["point_0000/coordination"]["notes"]
+        self.assertEqual(json.loads(notes["settings"]),
+                         {"cut": 1.3, "largest_cut": 1.5, "step": 0.01})
+        self.assertEqual(json.loads(notes["region"]), {"heights": [0.5, 2], "from_sides": 1})
+
     def test_settings_are_those_of_scenes(self):
         self.write(TINY)
         self.run_scene()

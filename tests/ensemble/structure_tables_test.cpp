@@ -43,9 +43,8 @@ Measurement measurement(const std::vector<double>& along, double value) {
 }
 
 /// Realizations whose curve of `part` is `curve` times 1 + 0.01 (r - 1), r = 0, 1, 2.
-EnsembleStructure three_curves(const std::string& part, const std::string& places,
-                               const std::string& name, const std::vector<double>& at,
-                               const std::vector<double>& curve) {
+EnsembleStructure three_curves(const char* part, const char* places, const char* name,
+                               const std::vector<double>& at, const std::vector<double>& curve) {
   EnsembleStructure structure{.taps = {0}, .packings = {{}}};
   for (int r = 0; r < 3; ++r) {
     Measurement one{.part = part};
@@ -88,6 +87,7 @@ TEST_CASE("Averages over packings of unequal height, with the errors of realizat
   // Changes by realization: 1 and 4; the third has no start.
   CHECK(numbers(table, "lateral_change") == std::vector<double>{0, 2.5});
   CHECK(numbers(table, "lateral_change_error")[1] == Approx(1.5).epsilon(1e-14));
+  CHECK(quantity(table, "lateral_change").long_name == "one value, change since tap 0");
 }
 
 TEST_CASE("A part that all packings refuse says why, and others speak for those that do not") {
@@ -149,6 +149,27 @@ TEST_CASE("The laws of the papers are found in the mean curves, with jackknife e
   CHECK(numbers(table, "k_gamma_mean")[0] == Approx(0.4).epsilon(1e-8));
   CHECK(std::get<std::vector<std::string>>(quantity(table, "normal_status").values)[0] ==
         "no packing");
+}
+
+TEST_CASE("What is no curve of a law is not fitted, and says why") {
+  const StructureSettings settings = all_structure();
+  const auto status = [&](const EnsembleStructure& structure, const std::string& name) {
+    const Table table = structure_tables("", structure, settings).at(0);
+    CHECK(std::isnan(numbers(table, name)[0]));
+    const std::string prefix = name.substr(0, name.rfind('_'));
+    return std::get<std::vector<std::string>>(quantity(table, prefix + "_status").values)[0];
+  };
+  // All cells of a perfect crystal have twelve faces; a region with a single pore.
+  std::vector<double> faces(13, 0.0), at(13);
+  for (int k = 0; k < 13; ++k) at[k] = k;
+  faces[12] = 1;
+  CHECK(status(three_curves("voronoi", "faces", "face_share", at, faces), "normal_mean") ==
+        "too few places that hold anything");
+  std::vector<double> rho(75, 0.0), xi(75);
+  for (int k = 0; k < 75; ++k) xi[k] = 0.01 + 0.02 * k;
+  rho[30] = 80;
+  CHECK(status(three_curves("pores", "xi", "rho_v", xi, rho), "tail_v0") ==
+        "too few places that hold anything");
 }
 
 }  // namespace jostle

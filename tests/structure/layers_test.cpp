@@ -82,6 +82,16 @@ TEST_CASE("Layers of a crystal lie at the heights of hcp and are full") {
   }
 }
 
+TEST_CASE("Layers that lie a little closer than those of hcp are followed to the top") {
+  Packing packing = crystal(commensurate, 168 * 15);
+  for (Vec3& centre : packing.centres) centre.z = 0.5 + 0.97 * (centre.z - 0.5);
+  CHECK(grown_layers(packing) == 15);
+  CHECK(grown_layers(shaken(packing, 0.08)) == 15);
+  const std::vector<Layer> all = layers(packing);
+  CHECK(all[14].found == Approx(0.5 + 0.97 * 14 * std::sqrt(2.0 / 3)).epsilon(1e-12));
+  CHECK(all[14].height == hcp_layer_height(14));
+}
+
 TEST_CASE("Layers of another spacing are none after the floor's") {
   CHECK(grown_layers(crystal(PeriodicBox{12, 12}, 144 * 6, Lattice::fcc)) == 1);
 }

@@ -164,6 +164,43 @@ TEST_CASE("Parts that a container does not have say so, and others are measured"
   CHECK(part(empty, "layers").refused.empty());
 }
 
+TEST_CASE(
+    "A region beyond a periodic box, or without a sphere, is refused by all that count in it") {
+  const auto refused_everywhere = [](const Packing& packing, const Region& region) {
+    StructureSettings settings = all_structure();
+    settings.region = region;
+    for (const Measurement& measurement : measure(packing, settings, points)) {
+      INFO(measurement.part);
+      const bool counts = measurement.part != "profile" && measurement.part != "sides" &&
+                          measurement.part != "layers" && measurement.part != "pair_correlation";
+      if (counts) CHECK(measurement.refused.find("region") != std::string::npos);
+      if (!counts && has_gravity(packing.container)) CHECK(measurement.refused.empty());
+    }
+  };
+  refused_everywhere(fcc(), {0, 26, 0});
+  refused_everywhere(fcc(), {5, 8, 0});
+  refused_everywhere(reference_deposit(), {50, 60, 0});
+  // A region as narrow as one centre's place is counted, and soon.
+  Packing walled = reference_deposit();
+  walled.container = WalledBox{16, 16};
+  StructureSettings narrow;
+  narrow.void_probability.emplace();
+  narrow.region = Region{1, 10, 7.9};
+  CHECK(part(measure(walled, narrow, points), "void_probability").refused.empty());
+}
+
+TEST_CASE("A sphere far above its bed is named, not filled with bins") {
+  Packing packing = reference_deposit();
+  packing.centres.push_back({8, 8, 2e8});
+  StructureSettings settings;
+  settings.profile.emplace();
+  settings.layers.emplace();
+  settings.region = Region{1, 10, 0};
+  for (const Measurement& measurement : measure(packing, settings, points)) {
+    CHECK(measurement.refused.find("more than a million bins") != std::string::npos);
+  }
+}
+
 TEST_CASE("Only what has settings is measured") {
   StructureSettings settings;
   CHECK(measure(fcc(), settings, points).empty());
@@ -177,6 +214,10 @@ TEST_CASE("Spheres inside one another are refused, as of a file in other units")
   Packing packing = fcc();
   for (Vec3& r : packing.centres) r = 0.4 * r;
   packing.container = FullyPeriodicBox{3, 3, 3};
+  CHECK_THROWS_WITH(measure(packing, all_structure(), points),
+                    Catch::Matchers::Contains("must be in diameters"));
+  for (Vec3& r : packing.centres) r = 100.0 * r;
+  packing.container = FullyPeriodicBox{300, 300, 300};
   CHECK_THROWS_WITH(measure(packing, all_structure(), points),
                     Catch::Matchers::Contains("must be in diameters"));
 }
