@@ -202,6 +202,8 @@ def profiles(run):
     rows = [[f"Phi, tap {taps[k]}"] +
             [entry(profile, "phi", k, nearest(profile["height"], z)) for z in heights]
             for k in (0, last)]
+    if run.labels[last_point]:
+        text.append(f"Figs. 6 and 7 at {run.labels[last_point]}:")
     text.append(table(["fig. 6: height"] + [f"{z:.2f}" for z in heights], rows))
     if "phi_wall" in sides:
         places = (0.05, 0.25, 0.45, 0.55, 0.95, 1.35, 1.45, 1.85, 2.25, 2.35, 3.05, 5.05, 7.05)
@@ -296,6 +298,12 @@ def layers(run):
                     [entry(grown, "share", k, layer, digits=2) for layer in range(8)])
     text = [table(["tap", "Phi", "grown layers"] +
                   [f"share, layer {layer + 1}" for layer in range(8)], rows)]
+    found = grown["found_height"][-1, :6]
+    text.append(f"Layers of tap {grown['tap'][-1]} lie at " +
+                ", ".join(f"{height:.2f}" for height in found) + " (hcp: " +
+                ", ".join(f"{height:.2f}" for height in grown["layer_height"][:6]) + "). fcc and "
+                f"hcp make {entry(order, 'fcc', -1, digits=3)} and "
+                f"{entry(order, 'hcp', -1, digits=3)} of the spheres of the region.")
     rows = []
     heights = order["height"][:]
     for k, tap in enumerate(order["tap"][:]):
@@ -354,19 +362,28 @@ Made by `./dev physics [FIGURE ...]` from scenes of reduced size ([config/scenes
 """
 
 
-def remark_of(page, figure):
-    """What a person wrote below the numbers, kept when the numbers are made again."""
-    found = re.search(rf"## {re.escape(figure)}\n.*?\n\*\*Outcome\*\*: (.*?)(?=\n## |\Z)", page, re.S)
-    return found.group(1).strip() if found else "not judged yet."
+OUTDATED = "(Of earlier numbers.) "
+
+
+def remark_of(page, figure, numbers):
+    """What a person wrote below the numbers, kept when they are made again, and marked if they
+    are not the same any more."""
+    found = re.search(rf"## {re.escape(figure)}\n(.*?)\n\*\*Outcome\*\*: (.*?)(?=\n## |\Z)", page, re.S)
+    if not found:
+        return "not judged yet."
+    remark = found.group(2).strip()
+    same = numbers in found.group(1) or remark.startswith(OUTDATED)
+    return remark if same else OUTDATED + remark
 
 
 def section(figure, run, page):
     _, write, claim = FIGURES[figure]
     description = json.loads(run.scene.read_text())["description"]
+    numbers = write(run)
     return "\n\n".join([
         f"## {figure}", f"`./dev physics {figure}`, {run.seconds / 60:.0f} core-minutes. " +
-        " ".join(description), f"**The paper**: {claim}", write(run),
-        f"**Outcome**: {remark_of(page, figure)}"]) + "\n"
+        " ".join(description), f"**The paper**: {claim}", numbers,
+        f"**Outcome**: {remark_of(page, figure, numbers)}"]) + "\n"
 
 
 def main(jostle, folder, page, figures):
