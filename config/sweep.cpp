@@ -230,8 +230,10 @@ std::string point_label(const SweepPoint& point) {
 }
 
 Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults) {
-  Json changed = resolved_scene;
-  changed.erase("sweep");
+  Json changed = Json::object();  // without the sweep, which may be longer than all the rest
+  for (const auto& [key, part] : resolved_scene.items()) {
+    if (key != "sweep") changed[key] = part;
+  }
   for (const auto& [pointer, value] : point.values) {
     const Json::json_pointer place(pointer);
     if (changed.contains(place)) changed.at(place) = value;
