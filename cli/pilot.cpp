@@ -8,11 +8,12 @@
 #include "engine/starts.hpp"
 #include "engine/taps.hpp"
 #include "engine/trial_loop.hpp"
+#include "ensemble/processor_clock.hpp"
 
 namespace jostle {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = ProcessorClock;
 
 /// A cut-down bed is a shallower one of the same kind; a file's packing and a fluid without gravity
 /// would be something else.
@@ -39,16 +40,21 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   Packing packing = make_start(plan.start, plan.container, estimate.n_spheres, start_stream);
   const Seconds start_time = Clock::now() - began;
 
-  const auto loop = make_trial_loop(plan.container, plan.relax.move, key(Purpose::trials),
-                                    best_instruction_set(), plan.relax.sampler);
+  const auto make_loop = [&](const Relaxation& rule) {
+    return make_trial_loop(plan.container, rule.move, key(Purpose::trials), best_instruction_set(),
+                           rule.sampler);
+  };
   const auto relax_began = Clock::now();
   RelaxationProgress before;
   if (relaxes_before_recording(plan.start)) {
+    const Relaxation& rule = plan.relax_start ? *plan.relax_start : plan.relax;
+    const auto loop = make_loop(rule);
     loop->load(packing);
     loop->begin_tap();
-    relax(*loop, plan.relax.stop, pilot_window(plan.relax.stop, packing), before, budget / 2);
+    relax(*loop, rule.stop, pilot_window(rule.stop, packing), before, budget / 2);
     loop->store(packing);
   }
+  const auto loop = make_loop(plan.relax);
   RelaxationProgress tap;
   const HeightWindow window = pilot_window(plan.relax.stop, packing);
   if (total_taps(plan) > 0) excite(packing, tap_number(plan, 1), tap_stream);
@@ -57,7 +63,7 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   relax(*loop, plan.relax.stop, window, tap, budget - std::min(budget / 2, before.trials));
   const Seconds relax_time = Clock::now() - relax_began;
 
-  estimate.trials = loop->tally().trials;
+  estimate.trials = before.trials + loop->tally().trials;
   estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
   estimate.settled = tap.status != RelaxationStatus::running;
   estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;

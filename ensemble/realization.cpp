@@ -8,6 +8,7 @@
 #include "engine/relaxation.hpp"
 #include "engine/slab.hpp"
 #include "engine/taps.hpp"
+#include "ensemble/processor_clock.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle {
@@ -100,9 +101,9 @@ void Realization::begin_relaxation() {
 
 void Realization::relax_for(std::uint64_t trials, Slice& slice) {
   const TrialTally before = loop().tally();
-  const auto began = std::chrono::steady_clock::now();
+  const auto began = ProcessorClock::now();
   relax(loop(), relaxation().stop, state_.stop_window, state_.relaxation, trials);
-  slice.relaxing = std::chrono::steady_clock::now() - began;
+  slice.relaxing = ProcessorClock::now() - began;
   slice.trials = loop().tally().trials - before.trials;
   slice.distance_tests = loop().tally().distance_tests - before.distance_tests;
   if (state_.relaxation.status == RelaxationStatus::running) return;

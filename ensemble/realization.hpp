@@ -21,7 +21,7 @@ struct Slice {
   std::optional<SnapshotRecord> snapshot;  // where one was due at that tap
   std::uint64_t trials = 0;
   std::uint64_t distance_tests = 0;
-  std::chrono::nanoseconds relaxing{0};  // wall time inside the relaxation
+  std::chrono::nanoseconds relaxing{0};  // processor time inside the relaxation
 };
 
 /// One realization of a plan: start, then excite, relax and observe, tap after tap. It is advanced

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ensemble/parallel.hpp"
+#include "ensemble/processor_clock.hpp"
 #include "ensemble/realization.hpp"
 
 namespace jostle {
@@ -92,14 +93,14 @@ void EnsembleRun::carry_out(RealizationId id) {
     ~Running() { --count; }
   } running(progress_.realizations_running);
 
-  const auto began = Clock::now();
+  const auto began = ProcessorClock::now();
   std::optional<RealizationState> resumed = sink_.begin(id);
   std::optional<Realization> realization;
   Outcome outcome;
   const bool begun = attempt(
       outcome, [&] { realization.emplace(plans_[id.point], id.realization, std::move(resumed)); });
   if (begun) carry_on(id, *realization, outcome);
-  outcome.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  outcome.seconds = std::chrono::duration<double>(ProcessorClock::now() - began).count();
   const bool failed = outcome.status == RealizationStatus::failed;
   sink_.end(id, failed ? RealizationState{} : realization->state(), outcome);
   count(outcome);
