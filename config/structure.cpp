@@ -17,64 +17,82 @@ struct NumberKey {
   Range range;
 };
 
+/// The numbers of a part's settings.
+template <class Settings>
+const std::vector<NumberKey<Settings>> number_keys{};
+
 constexpr Range widths = between(0.001, 10);
 constexpr double highest = 1e6;
 
-const std::vector<NumberKey<ProfileSettings>> profile_keys = {
+template <>
+const std::vector<NumberKey<ProfileSettings>> number_keys<ProfileSettings> = {
     {"bin_width", &ProfileSettings::bin_width, widths},
     {"smoothing", &ProfileSettings::smoothing, between(0, 10)}};
-const std::vector<NumberKey<SidesSettings>> sides_keys = {
+template <>
+const std::vector<NumberKey<SidesSettings>> number_keys<SidesSettings> = {
     {"bin_width", &SidesSettings::bin_width, widths},
     {"reach", &SidesSettings::reach, above(0, highest)}};
-const std::vector<NumberKey<LayersSettings>> layers_keys = {
+template <>
+const std::vector<NumberKey<LayersSettings>> number_keys<LayersSettings> = {
     {"bin_width", &LayersSettings::bin_width, widths}};
-const std::vector<NumberKey<LayerRule>> layer_rule_keys = {
+template <>
+const std::vector<NumberKey<LayerRule>> number_keys<LayerRule> = {
     {"tolerance", &LayerRule::tolerance, above(0, 0.4)},
     {"least_share", &LayerRule::least_share, between(0, 1)},
     {"least_filling", &LayerRule::least_filling, between(0, 1)}};
-const std::vector<NumberKey<CoordinationSettings>> coordination_keys = {
+template <>
+const std::vector<NumberKey<CoordinationSettings>> number_keys<CoordinationSettings> = {
     {"cut", &CoordinationSettings::cut, between(1, 3)},
     {"largest_cut", &CoordinationSettings::largest_cut, between(1, 3)},
     {"step", &CoordinationSettings::step, between(0.001, 1)}};
-const std::vector<NumberKey<PairsSettings>> pairs_keys = {
+template <>
+const std::vector<NumberKey<PairsSettings>> number_keys<PairsSettings> = {
     {"r_max", &PairsSettings::r_max, between(1, 20)},
     {"bin_width", &PairsSettings::bin_width, between(0.001, 1)}};
-const std::vector<NumberKey<OrderSettings>> order_keys = {
+template <>
+const std::vector<NumberKey<OrderSettings>> number_keys<OrderSettings> = {
     {"bin_width", &OrderSettings::bin_width, between(0.1, 1000)}};
-const std::vector<NumberKey<VoronoiSettings>> voronoi_keys = {
+template <>
+const std::vector<NumberKey<VoronoiSettings>> number_keys<VoronoiSettings> = {
     {"least_area", &VoronoiSettings::least_area, between(0, 0.1)},
     {"bin_width", &VoronoiSettings::bin_width, between(0.001, 1)}};
-const std::vector<NumberKey<PoresSettings>> pores_keys = {
+template <>
+const std::vector<NumberKey<PoresSettings>> number_keys<PoresSettings> = {
     {"bin_width", &PoresSettings::bin_width, between(0.001, 0.5)},
     {"largest", &PoresSettings::largest, between(0.5, 10)},
     {"merge", &PoresSettings::merge, between(0, 0.1)},
     {"tolerance", &PoresSettings::tolerance, between(0, 0.1)},
     {"tail_from", &PoresSettings::tail_from, between(0, 100)}};
-const std::vector<NumberKey<VoidSettings>> void_keys = {
+template <>
+const std::vector<NumberKey<VoidSettings>> number_keys<VoidSettings> = {
     {"largest", &VoidSettings::largest, between(0.1, 5)},
     {"step", &VoidSettings::step, between(0.001, 1)}};
-const std::vector<NumberKey<BondLengths>> bond_keys = {
+template <>
+const std::vector<NumberKey<BondLengths>> number_keys<BondLengths> = {
     {"first", &BondLengths::first, above(1, 2)},
     {"last", &BondLengths::last, above(1, 2)},
     {"step", &BondLengths::step, between(0.001, 1)}};
 
 template <class Settings>
-void read_numbers(const Reader& in, const std::vector<NumberKey<Settings>>& keys,
-                  Settings& settings) {
-  for (const auto& [key, member, range] : keys) in.read(key, settings.*member, range);
+void read_numbers(const Reader& in, Settings& settings) {
+  for (const auto& [key, member, range] : number_keys<Settings>) {
+    in.read(key, settings.*member, range);
+  }
 }
 
 template <class Settings>
-void write_numbers(const std::vector<NumberKey<Settings>>& keys, const Settings& settings,
-                   Json& out) {
-  for (const auto& [key, member, range] : keys) out[key] = plain_number(settings.*member);
+Json written_numbers(const Settings& settings) {
+  Json out;
+  for (const auto& [key, member, range] : number_keys<Settings>) {
+    out[key] = plain_number(settings.*member);
+  }
+  return out;
 }
 
-/// Whether this is an object of the keys of the table and others.
+/// Whether this is an object of the numbers of some settings and other keys.
 template <class Settings>
-bool has_keys(const Reader& in, const std::vector<NumberKey<Settings>>& table,
-              std::vector<std::string> others = {}) {
-  for (const auto& entry : table) others.emplace_back(entry.key);
+bool has_keys(const Reader& in, std::vector<std::string> others = {}) {
+  for (const auto& entry : number_keys<Settings>) others.emplace_back(entry.key);
   return in.is_object_of(others);
 }
 
@@ -82,110 +100,86 @@ void read_window(const Reader& in, const char* key, std::optional<HeightWindow>&
   if (const auto heights = in.find(key)) into = read_heights(*heights);
 }
 
-void read_settings(const Reader& in, ProfileSettings& settings) {
-  if (!has_keys(in, profile_keys, {"gradient"})) return;
-  read_numbers(in, profile_keys, settings);
-  read_window(in, "gradient", settings.gradient);
+// Settings that are numbers alone; others have functions of their own.
+template <class Settings>
+void read_settings(const Reader& in, Settings& settings) {
+  if (has_keys<Settings>(in)) read_numbers(in, settings);
 }
-void read_settings(const Reader& in, SidesSettings& settings) {
-  if (!has_keys(in, sides_keys, {"heights"})) return;
-  read_numbers(in, sides_keys, settings);
-  read_window(in, "heights", settings.heights);
-}
-void read_settings(const Reader& in, LayersSettings& settings) {
-  if (!has_keys(in, layers_keys, {"tolerance", "least_share", "least_filling"})) return;
-  read_numbers(in, layers_keys, settings);
-  read_numbers(in, layer_rule_keys, settings.rule);
-}
-void read_settings(const Reader& in, CoordinationSettings& settings) {
-  if (has_keys(in, coordination_keys)) read_numbers(in, coordination_keys, settings);
-}
-void read_settings(const Reader& in, PairsSettings& settings) {
-  if (has_keys(in, pairs_keys)) read_numbers(in, pairs_keys, settings);
-}
-void read_settings(const Reader& in, OrderSettings& settings) {
-  if (has_keys(in, order_keys)) read_numbers(in, order_keys, settings);
-}
-void read_settings(const Reader& in, VoronoiSettings& settings) {
-  if (!has_keys(in, voronoi_keys, {"cut_cells"})) return;
-  read_numbers(in, voronoi_keys, settings);
-  in.read_flag("cut_cells", settings.cut_cells);
-}
-void read_settings(const Reader& in, PoresSettings& settings) {
-  if (has_keys(in, pores_keys)) read_numbers(in, pores_keys, settings);
-}
-void read_settings(const Reader& in, VoidSettings& settings) {
-  if (!has_keys(in, void_keys, {"points"})) return;
-  read_numbers(in, void_keys, settings);
-  in.read_whole("points", settings.points, 100, 1'000'000'000);
-}
-void read_settings(const Reader& in, HolesSettings& settings) {
-  if (!has_keys(in, bond_keys)) return;
-  read_numbers(in, bond_keys, settings.bonds);
-  if (in.sound() && settings.bonds.last < settings.bonds.first) {
-    in.fault(fmt::format("bond lengths from {} to {} are none: first must not be above last",
-                         settings.bonds.first, settings.bonds.last));
-  }
+template <class Settings>
+Json written_settings(const Settings& settings) {
+  return written_numbers(settings);
 }
 
-Json written(const ProfileSettings& settings) {
-  Json out;
-  write_numbers(profile_keys, settings, out);
-  if (settings.gradient) {
-    out["gradient"] = written_bounds(settings.gradient->low, settings.gradient->high);
+void read_settings(const Reader& in, ProfileSettings& settings) {
+  if (!has_keys<ProfileSettings>(in, {"gradient"})) return;
+  read_numbers(in, settings);
+  read_window(in, "gradient", settings.gradient);
+}
+Json written_settings(const ProfileSettings& settings) {
+  Json out = written_numbers(settings);
+  if (const auto& heights = settings.gradient) {
+    out["gradient"] = written_bounds(heights->low, heights->high);
   }
   return out;
 }
-Json written(const SidesSettings& settings) {
-  Json out;
-  write_numbers(sides_keys, settings, out);
-  if (settings.heights) {
-    out["heights"] = written_bounds(settings.heights->low, settings.heights->high);
+
+void read_settings(const Reader& in, SidesSettings& settings) {
+  if (!has_keys<SidesSettings>(in, {"heights"})) return;
+  read_numbers(in, settings);
+  read_window(in, "heights", settings.heights);
+}
+Json written_settings(const SidesSettings& settings) {
+  Json out = written_numbers(settings);
+  if (const auto& heights = settings.heights) {
+    out["heights"] = written_bounds(heights->low, heights->high);
   }
   return out;
 }
-Json written(const LayersSettings& settings) {
-  Json out;
-  write_numbers(layers_keys, settings, out);
-  write_numbers(layer_rule_keys, settings.rule, out);
+
+void read_settings(const Reader& in, LayersSettings& settings) {
+  if (!has_keys<LayersSettings>(in, {"tolerance", "least_share", "least_filling"})) return;
+  read_numbers(in, settings);
+  read_numbers(in, settings.rule);
+}
+Json written_settings(const LayersSettings& settings) {
+  Json out = written_numbers(settings);
+  out.update(written_numbers(settings.rule));
   return out;
 }
-Json written(const CoordinationSettings& settings) {
-  Json out;
-  write_numbers(coordination_keys, settings, out);
-  return out;
+
+void read_settings(const Reader& in, VoronoiSettings& settings) {
+  if (!has_keys<VoronoiSettings>(in, {"cut_cells"})) return;
+  read_numbers(in, settings);
+  in.read_flag("cut_cells", settings.cut_cells);
 }
-Json written(const PairsSettings& settings) {
-  Json out;
-  write_numbers(pairs_keys, settings, out);
-  return out;
-}
-Json written(const OrderSettings& settings) {
-  Json out;
-  write_numbers(order_keys, settings, out);
-  return out;
-}
-Json written(const VoronoiSettings& settings) {
-  Json out;
-  write_numbers(voronoi_keys, settings, out);
+Json written_settings(const VoronoiSettings& settings) {
+  Json out = written_numbers(settings);
   out["cut_cells"] = settings.cut_cells;
   return out;
 }
-Json written(const PoresSettings& settings) {
-  Json out;
-  write_numbers(pores_keys, settings, out);
-  return out;
+
+void read_settings(const Reader& in, VoidSettings& settings) {
+  if (!has_keys<VoidSettings>(in, {"points"})) return;
+  read_numbers(in, settings);
+  in.read_whole("points", settings.points, 100, 1'000'000'000);
 }
-Json written(const VoidSettings& settings) {
-  Json out;
-  write_numbers(void_keys, settings, out);
+Json written_settings(const VoidSettings& settings) {
+  Json out = written_numbers(settings);
   out["points"] = settings.points;
   return out;
 }
-Json written(const HolesSettings& settings) {
-  Json out;
-  write_numbers(bond_keys, settings.bonds, out);
-  return out;
+
+void read_settings(const Reader& in, HolesSettings& settings) {
+  BondLengths& bonds = settings.bonds;
+  if (!has_keys<BondLengths>(in)) return;
+  read_numbers(in, bonds);
+  if (in.sound() && bonds.last < bonds.first) {
+    in.fault(fmt::format("bond lengths from {} to {} are none: first must not be above last",
+                         bonds.first, bonds.last));
+  }
+}
+Json written_settings(const HolesSettings& settings) {
+  return written_numbers(settings.bonds);
 }
 
 Region read_region(const Reader& in) {
@@ -243,7 +237,7 @@ Json written(const StructureSettings& settings) {
                      {"from_sides", plain_number(region.from_sides)}};
   }
   for_each_part(settings, [&](const char* name, const auto& part) {
-    if (part) out[name] = written(*part);
+    if (part) out[name] = written_settings(*part);
   });
   return out;
 }
