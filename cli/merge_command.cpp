@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/analyse_run.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
-#include "cli/fit_run.hpp"
 #include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/scene_tables.hpp"
 #include "cli/standard_streams.hpp"
 #include "results/merge.hpp"
 
@@ -47,8 +46,7 @@ void add_merge(CLI::App& app, int& code) {
     std::fputs(
         fmt::format("{}: {} files merged\n", arguments->output, arguments->inputs.size()).c_str(),
         stdout);
-    make_scene_fits(arguments->output, available_cpus(), false);
-    make_scene_analyses(arguments->output, available_cpus(), false);
+    make_scene_tables(arguments->output, available_cpus(), false);
     code = exit_ok;
   });
 }

@@ -9,22 +9,20 @@
 #include <optional>
 #include <string>
 
-#include "cli/analyse_run.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
 #include "cli/enough_run.hpp"
 #include "cli/failure.hpp"
-#include "cli/fit_run.hpp"
 #include "cli/output_file.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/scene_tables.hpp"
 #include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
-#include "cli/structure_run.hpp"
 #include "cli/text_table.hpp"
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
@@ -245,9 +243,7 @@ void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
     store_tables(output, "analysis", std::span(&table, 1),
                  provenance_of_this_run(fmt::to_string(threads)));
   }
-  make_scene_fits(output, threads, arguments.quiet);
-  make_scene_analyses(output, threads, arguments.quiet);
-  make_scene_structure(output, threads, arguments.quiet);
+  make_scene_tables(output, threads, arguments.quiet);
 }
 
 int run(const RunArguments& arguments) {

@@ -13,6 +13,7 @@
 #include "cli/point_scenes.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_error.hpp"
 #include "cli/table_output.hpp"
 #include "config/json_text.hpp"
 #include "ensemble/parallel.hpp"
@@ -131,16 +132,27 @@ std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ense
   return tables;
 }
 
+[[noreturn]] void refuse_without_packings(const std::string& name) {
+  throw BadInput(
+      fmt::format("{}: no packings are kept: every realization failed, or the scene keeps none; it "
+                  "keeps them with \"snapshots\": {{\"taps\": [...], \"keep\": [\"positions\"]}}",
+                  name));
+}
+
+std::vector<Table> tables_without_packings(const std::string& prefix,
+                                           const StructureSettings& settings) {
+  std::vector<Table> tables;
+  for (const std::string& part : parts_of(settings)) {
+    tables.push_back({.name = prefix + part,
+                      .notes = {{"refused", "no realization has a packing at this point"}}});
+  }
+  return tables;
+}
+
 /// Of the taps that there are, those that are named; all if none is.
 std::vector<std::uint64_t> chosen_taps(const std::string& name,
                                        const std::vector<std::uint64_t>& there,
                                        std::span<const std::uint64_t> named) {
-  if (there.empty()) {
-    throw BadInput(
-        fmt::format("{}: no packings are kept; a scene keeps them with \"snapshots\": {{\"taps\": "
-                    "[...], \"keep\": [\"positions\"]}}",
-                    name));
-  }
   if (named.empty()) return there;
   std::vector<std::uint64_t> chosen(named.begin(), named.end());
   std::ranges::sort(chosen);
@@ -191,11 +203,23 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
 std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
                                 const StructureSettings& settings,
                                 std::span<const std::uint64_t> taps, int threads) {
+  std::vector<KeptEnsemble> ensembles;
+  for (const std::uint32_t point : points) ensembles.push_back(ensemble_at(file, point));
+  const auto is_empty = [](const KeptEnsemble& ensemble) { return ensemble.taps.empty(); };
+  if (std::ranges::all_of(ensembles, is_empty)) refuse_without_packings(file.path());
   std::vector<Table> tables;
-  for (const std::uint32_t point : points) {
-    KeptEnsemble ensemble = ensemble_at(file, point);
-    ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
-    for (Table& table : tables_of(point_name(point) + "/", ensemble, settings, threads)) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::uint32_t point = points[k];
+    KeptEnsemble& ensemble = ensembles[k];
+    const std::string prefix = point_name(point) + "/";
+    std::vector<Table> of_point;
+    if (is_empty(ensemble)) {
+      of_point = tables_without_packings(prefix, settings);
+    } else {
+      ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
+      of_point = tables_of(prefix, ensemble, settings, threads);
+    }
+    for (Table& table : of_point) {
       const std::string& label = file.study().points[point].label;
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
@@ -247,7 +271,12 @@ void make_scene_structure(const std::string& results, int threads, bool quiet) {
     if (settings.empty()) return;
     std::vector<std::uint32_t> points(file.study().points.size());
     for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
-    tables = structure_of(file, points, settings, {}, threads);
+    try {
+      tables = structure_of(file, points, settings, {}, threads);
+    } catch (const BadInput& refusal) {  // the run is stored and stays so
+      print_to_standard_error(fmt::format("jostle: no structure: {}\n", refusal.what()));
+      return;
+    }
   }
   for (const Table& table : tables) {
     if (!quiet) fmt::print("\n{}", table_text(table, Detail::brief));

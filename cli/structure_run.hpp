@@ -13,8 +13,9 @@ namespace jostle {
 
 /// Structure of the kept packings at the given sweep points, averaged over realizations: tables
 /// point_PPPP/<part>, as results files keep them. `taps`: of those with packings; all if none is
-/// named. The tables do not depend on the number of threads. Throws BadInput where there are no
-/// packings, or not of a tap that is named.
+/// named. A point without packings, as where its realizations failed, has tables with the note
+/// "refused" alone. The tables do not depend on the number of threads. Throws BadInput where no
+/// point has packings, or one has none of a tap that is named.
 std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
                                 const StructureSettings& settings,
                                 std::span<const std::uint64_t> taps, int threads);

@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, TINY, Case, changed
+from support import BAD_INPUT, FAILED, TINY, Case, changed
 
 PARTS = ["coordination", "holes", "layers", "order", "pair_correlation", "pores", "profile", "sides",
          "void_probability", "voronoi"]
@@ -99,6 +99,30 @@ class Structure(Case):
         self.assertNotIn("refused", found["point_0000/sides"]["notes"])
         with h5py.File(self.folder / "tiny.h5") as file:
             self.assertNotIn("structure", file)
+
+    def test_shards_are_measured_when_they_are_merged(self):
+        self.write(changed(TINY, structure=SMALL))
+        self.run_scene()
+        straight = self.stored()
+        for share in (1, 2):
+            self.run_scene("--shard", f"{share}/2", "-o", f"part{share}.h5")
+        self.jostle("merge", "part1.h5", "part2.h5", "-o", "all.h5")
+        self.assert_same(straight, self.stored("all.h5"))
+
+    def test_a_point_whose_realizations_failed_says_so_and_others_are_measured(self):
+        # Walls need more than one sweep of agitation: the first point fails, the second does not.
+        scene = changed(TINY, start={"pour": {"fitted": {"max_sweeps": 1}}}, structure=SMALL,
+                        container={"sides": "walls", "width": 4},
+                        sweep={"/start/pour/fitted/max_sweeps": [1, 100000]})
+        self.write(scene)
+        self.run_scene(expect=FAILED)
+        with h5py.File(self.folder / "tiny.h5") as file:
+            refused, measured = (file[f"structure/point_000{p}/profile"] for p in (0, 1))
+            self.assertIn("no realization has a packing", refused.attrs["note_refused"])
+            self.assertEqual(measured["realizations"][:].tolist(), [3, 3])
+        scene["sweep"] = {"/start/pour/fitted/max_sweeps": [1, 2]}
+        self.write(changed(scene, name="none"))
+        self.assertIn("no structure", self.run_scene(expect=FAILED).stderr)
 
     def test_packings_of_several_containers_have_no_mean(self):
         cell = 'Lattice="{0} 0 0 0 {0} 0 0 0 9" Properties=species:S:1:pos:R:3 pbc="T T F"'
