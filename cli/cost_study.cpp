@@ -50,11 +50,8 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint
 }
 
 void CostStudy::read_times(const ResultsFile& file) {
-  std::vector<double> seconds(rungs_.size()), trials(rungs_.size());
-  for (const RealizationSummary& one : file.realizations()) {
-    seconds[one.id.point] += one.seconds;
-    trials[one.id.point] += static_cast<double>(one.trials);
-  }
+  std::vector<Work> work(rungs_.size());  // of all rounds
+  for (const RealizationSummary& one : file.realizations()) work[one.id.point] += one.work;
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
   for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
     const std::vector<double> sweeps =
@@ -64,13 +61,10 @@ void CostStudy::read_times(const ResultsFile& file) {
       all.add(sweeps[i]);
       if (1 + i / rounds_ >= first) late.add(sweeps[i]);
     }
-    // A start's seconds are what the trials of the taps leave of all.
-    const double n_spheres = rungs_[p].n_spheres;
-    const double of_taps =
-        all.mean() * n_spheres * static_cast<double>(pilot_taps_ * rounds_) / trials[p];
-    const double per_sweep = seconds[p] / trials[p] * n_spheres;
-    times_.push_back({.start_seconds = seconds[p] * (1 - of_taps) / rounds_,
-                      .tap_seconds = per_sweep * late.mean(),
+    const double of_a_tap =
+        (work[p].seconds - work[p].start_seconds) / (static_cast<double>(pilot_taps_) * rounds_);
+    times_.push_back({.start_seconds = work[p].start_seconds / rounds_,
+                      .tap_seconds = of_a_tap * late.mean() / all.mean(),
                       .sweeps = late.mean()});
   }
 }

@@ -38,13 +38,11 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   const auto began = Clock::now();
   RandomStream start_stream(key(Purpose::start)), tap_stream(key(Purpose::tap));
   Packing packing = make_start(plan.start, plan.container, estimate.n_spheres, start_stream);
-  const Seconds start_time = Clock::now() - began;
-
+  const auto made = Clock::now();
   const auto make_loop = [&](const Relaxation& rule) {
     return make_trial_loop(plan.container, rule.move, key(Purpose::trials), best_instruction_set(),
                            rule.sampler);
   };
-  const auto relax_began = Clock::now();
   RelaxationProgress before;
   if (relaxes_before_recording(plan.start)) {
     const Relaxation& rule = plan.relax_start ? *plan.relax_start : plan.relax;
@@ -54,23 +52,24 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
     relax(*loop, rule.stop, pilot_window(rule.stop, packing), before, budget / 2);
     loop->store(packing);
   }
+  const Seconds start_time = Clock::now() - began;
+
   const auto loop = make_loop(plan.relax);
   RelaxationProgress tap;
   const HeightWindow window = pilot_window(plan.relax.stop, packing);
+  const auto tap_began = Clock::now();
   if (total_taps(plan) > 0) excite(packing, tap_number(plan, 1), tap_stream);
   loop->load(packing);
   loop->begin_tap();
   relax(*loop, plan.relax.stop, window, tap, budget - std::min(budget / 2, before.trials));
-  const Seconds relax_time = Clock::now() - relax_began;
+  const Seconds tap_time = Clock::now() - tap_began, relax_time = Clock::now() - made;
 
   estimate.trials = before.trials + loop->tally().trials;
   estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
   estimate.settled = tap.status != RelaxationStatus::running;
   estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;
   const double scale = static_cast<double>(plan.n_spheres) / estimate.n_spheres;
-  const double trials = static_cast<double>(before.trials) +
-                        static_cast<double>(tap.trials) * static_cast<double>(total_taps(plan));
-  estimate.realization = scale * (start_time + Seconds(trials / estimate.trials_per_second));
+  estimate.realization = scale * (start_time + tap_time * static_cast<double>(total_taps(plan)));
   const double bytes = static_cast<double>(loop->bytes() + packing.centres.size() * sizeof(Vec3));
   estimate.bytes = static_cast<std::size_t>(scale * bytes);
   return estimate;

@@ -113,19 +113,19 @@ std::string dropped_offsets_line(const EnsembleSeries& dropped) {
 
 /// Realizations of one point by how they ended, and what they cost.
 struct PointCost {
-  std::uint64_t done = 0, unfinished = 0, failed = 0, trials = 0;
-  double seconds = 0;
+  std::uint64_t done = 0, unfinished = 0, failed = 0;
+  Work work;
 };
 
 std::string cost_line(const PointCost& cost) {
   std::string line = fmt::format("{} done", cost.done);
   if (cost.unfinished > 0) line += fmt::format(", {} unfinished", cost.unfinished);
   line += fmt::format(", {} failed; {} trials in {} of one core", cost.failed,
-                      format_count(static_cast<double>(cost.trials)),
-                      format_duration(Seconds(cost.seconds)));
-  if (cost.seconds > 0) {
+                      format_count(static_cast<double>(cost.work.trials)),
+                      format_duration(Seconds(cost.work.seconds)));
+  if (cost.work.seconds > 0) {
     line += fmt::format(", {} trials/s a core",
-                        format_count(static_cast<double>(cost.trials) / cost.seconds));
+                        format_count(static_cast<double>(cost.work.trials) / cost.work.seconds));
   }
   return line + "\n";
 }
@@ -137,8 +137,7 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
   std::string failures;
   for (const auto& one : realizations) {
     if (one.id.point != point) continue;
-    cost.trials += one.trials;
-    cost.seconds += one.seconds;
+    cost.work += one.work;
     if (one.status == RealizationStatus::done) {
       ++cost.done;
     } else if (one.status == RealizationStatus::failed) {

@@ -176,8 +176,8 @@ int exit_code_of(const ResultsFile& file) {
 }
 
 /// What a process does from opening its file to its last realization.
-struct Work {
-  explicit Work(StopRequest& request) : stop(request) {}
+struct ProcessWork {
+  explicit ProcessWork(StopRequest& request) : stop(request) {}
 
   StopRequest& stop;
   Progress progress;
@@ -187,7 +187,7 @@ struct Work {
 
 /// Runs what is pending and folds it into the file. Returns whether it was stopped before the end.
 bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run, int threads,
-             Work& work) {
+             ProcessWork& work) {
   // Those that failed are tried once, before others are added.
   const bool retry_failed = arguments.retry_failed && work.rounds++ == 0;
   const auto pending = run.store->pending(retry_failed);
@@ -212,7 +212,7 @@ bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun
 /// Runs realizations, and more of them until the scene says that they are enough. Returns whether
 /// it was stopped before the end.
 bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run,
-                    int threads, Work& work) {
+                    int threads, ProcessWork& work) {
   const Enough& until = loaded.scene.until;
   while (!compute(arguments, loaded, run, threads, work)) {
     if (until.targets.empty()) return false;
@@ -226,7 +226,7 @@ bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, Op
   return true;
 }
 
-void print_results(const OpenedRun& run, const Work& work, int threads) {
+void print_results(const OpenedRun& run, const ProcessWork& work, int threads) {
   const ResultsFile file(run.output);
   const std::string text =
       report(file, file.realizations()) +
@@ -264,7 +264,7 @@ int run(const RunArguments& arguments) {
   OpenedRun run = open_run(arguments, loaded, threads);
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
-    Work work(stop);
+    ProcessWork work(stop);
     const bool stopped = compute_enough(arguments, loaded, run, threads, work);
     if (!arguments.quiet) print_results(run, work, threads);
     if (stopped) {

@@ -34,6 +34,9 @@ class Realization {
   Realization(const Plan& plan, std::uint32_t index,
               std::optional<RealizationState> resumed = std::nullopt);
 
+  /// Recorded taps, the start included.
+  std::uint64_t rows() const { return state_.rows; }
+
   /// Whether every tap of the plan is recorded.
   bool finished() const;
 

@@ -16,6 +16,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds_since(ProcessorClock::time_point began) {
+  return std::chrono::duration<double>(ProcessorClock::now() - began).count();
+}
+
 // Whether `act` succeeded; if not, the outcome says why. Memory that ran out is no fault of the
 // realization: that ends the run, and the realization goes on from its last checkpoint.
 template <class Act>
@@ -52,7 +56,8 @@ class EnsembleRun {
  private:
   void work() noexcept;
   void carry_out(RealizationId id);
-  void carry_on(RealizationId id, Realization& realization, Outcome& outcome);
+  void carry_on(RealizationId id, Realization& realization, ProcessorClock::time_point began,
+                Outcome& outcome);
   void hand_over(RealizationId id, const Slice& slice);
   void count(const Outcome& outcome);
   bool stopping() const;
@@ -99,14 +104,15 @@ void EnsembleRun::carry_out(RealizationId id) {
   Outcome outcome;
   const bool begun = attempt(
       outcome, [&] { realization.emplace(plans_[id.point], id.realization, std::move(resumed)); });
-  if (begun) carry_on(id, *realization, outcome);
-  outcome.seconds = std::chrono::duration<double>(ProcessorClock::now() - began).count();
+  if (begun) carry_on(id, *realization, began, outcome);
+  outcome.work.seconds = seconds_since(began);
   const bool failed = outcome.status == RealizationStatus::failed;
   sink_.end(id, failed ? RealizationState{} : realization->state(), outcome);
   count(outcome);
 }
 
-void EnsembleRun::carry_on(RealizationId id, Realization& realization, Outcome& outcome) {
+void EnsembleRun::carry_on(RealizationId id, Realization& realization,
+                           ProcessorClock::time_point began, Outcome& outcome) {
   auto checkpointed = Clock::now();
   while (!realization.finished()) {
     if (stopping()) {
@@ -117,9 +123,12 @@ void EnsembleRun::carry_on(RealizationId id, Realization& realization, Outcome& 
     const auto advance = [&] {
       slice = realization.advance(options_.trials_per_slice, [this] { return stopping(); });
     };
-    if (!attempt(outcome, advance)) return;
-    outcome.trials += slice.trials;
-    outcome.distance_tests += slice.distance_tests;
+    const bool starting = realization.rows() == 0;
+    const bool advanced = attempt(outcome, advance);
+    if (starting) outcome.work.start_seconds = seconds_since(began);
+    if (!advanced) return;
+    outcome.work.trials += slice.trials;
+    outcome.work.distance_tests += slice.distance_tests;
     hand_over(id, slice);
     if (!realization.finished() && Clock::now() - checkpointed >= options_.checkpoint_every) {
       sink_.checkpoint(id, realization.state());

@@ -63,14 +63,27 @@ struct RealizationState {
 
 enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 2, failed = 3 };
 
+/// What a realization took: cost, not physics, so it depends on where a run was resumed.
+struct Work {
+  double seconds = 0;        // of processor time
+  double start_seconds = 0;  // of them, until tap 0 was recorded
+  std::uint64_t trials = 0;
+  std::uint64_t distance_tests = 0;  // pair distances computed in them
+
+  Work& operator+=(const Work& other) {
+    seconds += other.seconds;
+    start_seconds += other.start_seconds;
+    trials += other.trials;
+    distance_tests += other.distance_tests;
+    return *this;
+  }
+};
+
 /// How a realization ended.
 struct Outcome {
   RealizationStatus status = RealizationStatus::done;
   std::string reason;  // of a failure
-  // Of the work in this process: cost, not physics, so it depends on where a run was resumed.
-  double seconds = 0;
-  std::uint64_t trials = 0;
-  std::uint64_t distance_tests = 0;  // pair distances computed
+  Work work{};         // in this process
 };
 
 /// Receives the records of realizations. Calls for one realization come one after another, calls

@@ -35,8 +35,7 @@ struct PartState {
   SeriesPiece tail;
   RealizationStatus status = RealizationStatus::running;
   std::string reason;
-  double seconds = 0;
-  std::uint64_t trials = 0, distance_tests = 0;
+  Work work{};  // over all processes that lived to tell
   std::optional<RealizationState> state;
 };
 

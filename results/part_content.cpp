@@ -118,9 +118,10 @@ void put(ByteWriter& writer, const PartState& part) {
   put(writer, part.tail);
   writer.put(part.status);
   writer.put(part.reason);
-  writer.put(part.seconds);
-  writer.put(part.trials);
-  writer.put(part.distance_tests);
+  writer.put(part.work.seconds);
+  writer.put(part.work.start_seconds);
+  writer.put(part.work.trials);
+  writer.put(part.work.distance_tests);
   writer.put(part.state.has_value());
   if (part.state) put(writer, *part.state);
 }
@@ -132,9 +133,10 @@ PartState get_part_state(ByteReader& reader) {
   part.tail = get_piece(reader);
   part.status = reader.get<RealizationStatus>();
   part.reason = reader.get_string();
-  part.seconds = reader.get<double>();
-  part.trials = reader.get<std::uint64_t>();
-  part.distance_tests = reader.get<std::uint64_t>();
+  part.work.seconds = reader.get<double>();
+  part.work.start_seconds = reader.get<double>();
+  part.work.trials = reader.get<std::uint64_t>();
+  part.work.distance_tests = reader.get<std::uint64_t>();
   if (reader.get<bool>()) part.state = get_realization_state(reader);
   return part;
 }

@@ -57,10 +57,8 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       columns_(labels_.size(), std::vector<double>(n_rows_ * n_realizations_, nan)),
       statuses_(n_realizations_, 0),
       rows_(n_realizations_, 0),
-      trials_(n_realizations_, 0),
-      distance_tests_(n_realizations_, 0),
       reasons_(n_realizations_),
-      seconds_(n_realizations_, 0),
+      work_(n_realizations_),
       coordination_(point_.snapshots.taps.size() * n_realizations_, nan),
       histograms_(coordination_.size()) {
   for (const char* folder : {"observables", "ensemble", "snapshots", "restart", "timing"})
@@ -79,9 +77,7 @@ RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationR
     status = RealizationStatus::running;
   statuses_[realization] = static_cast<std::uint8_t>(status);
   reasons_[realization] = record.reason;
-  seconds_[realization] = record.seconds;
-  trials_[realization] = record.trials;
-  distance_tests_[realization] = record.distance_tests;
+  work_[realization] = record.work;
   take_snapshots(realization, record);
   if (record.state) write_restart(realization, record);
   return status;
@@ -176,15 +172,19 @@ void PointWriter::write_timing() {
   const Hdf5Handle group = group_under("timing");
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
   const Hdf5Handle* const axes[] = {&realizations};
-  const Hdf5Handle seconds = write_numbers(group, "seconds", seconds_);
-  write_label(seconds, {"seconds", "s", "wall time of the realization's work", "jostle"});
-  attach_axes(seconds, axes);
-  const Hdf5Handle trials = write_numbers(group, "trials", trials_);
-  write_label(trials, {"trials", "1", "trials made in that time", "jostle"});
-  attach_axes(trials, axes);
-  const Hdf5Handle tests = write_numbers(group, "distance_tests", distance_tests_);
-  write_label(tests, {"distance_tests", "1", "pair distances computed in them", "jostle"});
-  attach_axes(tests, axes);
+  const auto write = [&]<class Number>(Number Work::*member, const ObservableLabel& label) {
+    std::vector<Number> numbers;
+    for (const Work& work : work_) numbers.push_back(work.*member);
+    const Hdf5Handle written = write_numbers(group, label.name.c_str(), numbers);
+    write_label(written, label);
+    attach_axes(written, axes);
+  };
+  write(&Work::seconds, {"seconds", "s", "processor time of the realization", "jostle"});
+  write(&Work::start_seconds,
+        {"start_seconds", "s", "of that, until tap 0 was recorded", "jostle"});
+  write(&Work::trials, {"trials", "1", "trials made in that time", "jostle"});
+  write(&Work::distance_tests,
+        {"distance_tests", "1", "pair distances computed in them", "jostle"});
 }
 
 }  // namespace jostle

@@ -45,9 +45,9 @@ class PointWriter {
   std::vector<ObservableLabel> labels_;
   std::vector<std::vector<double>> columns_;  // [n_columns] of [n_rows, n_realizations]
   std::vector<std::uint8_t> statuses_;
-  std::vector<std::uint64_t> rows_, trials_, distance_tests_;
+  std::vector<std::uint64_t> rows_;
   std::vector<std::string> reasons_;
-  std::vector<double> seconds_;
+  std::vector<Work> work_;
   std::vector<double> coordination_;             // [n_snapshot_taps, n_realizations]
   std::vector<std::vector<double>> histograms_;  // likewise
 };

@@ -15,9 +15,8 @@ inline constexpr std::size_t n_relaxation_columns = std::size(relaxation_columns
 /// All that is stored of one realization.
 struct RealizationRecord {
   RealizationStatus status = RealizationStatus::missing;
-  std::string reason;                            // of a failure
-  double seconds = 0;                            // of work, over all processes that lived to tell
-  std::uint64_t trials = 0, distance_tests = 0;  // likewise
+  std::string reason;        // of a failure
+  Work work{};               // over all processes that lived to tell
   std::vector<double> rows;  // [n_rows, n_observables + n_relaxation_columns], NaN where undefined
   std::vector<SnapshotRecord> snapshots;  // ascending taps
   std::optional<RealizationState> state;  // where it goes on; none for missing and failed ones

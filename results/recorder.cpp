@@ -64,9 +64,7 @@ RealizationSummary Recorder::checkpoint(const RealizationState& state) {
 RealizationSummary Recorder::end(const RealizationState& state, const Outcome& outcome) {
   part_.status = outcome.status;
   part_.reason = outcome.reason;
-  part_.seconds += outcome.seconds;
-  part_.trials += outcome.trials;
-  part_.distance_tests += outcome.distance_tests;
+  part_.work += outcome.work;
   part_.state = state;
   if (outcome.status == RealizationStatus::failed) {
     part_.base_rows = 0;

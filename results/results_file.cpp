@@ -27,12 +27,29 @@ Hdf5Handle open_sealed(const std::string& path) {
 struct PointTables {
   std::uint32_t point = 0;
   std::vector<std::uint8_t> statuses;
-  std::vector<std::uint64_t> rows, trials, distance_tests;
+  std::vector<std::uint64_t> rows;
   std::vector<std::string> reasons;
-  std::vector<double> seconds;
+  std::vector<Work> work;
   std::vector<double> coordination;      // [n_snapshot_taps, n_realizations], or empty
   std::vector<double> height_histogram;  // [n_snapshot_taps, n_realizations, n_bins], or empty
 };
+
+std::vector<Work> read_work(const Hdf5Handle& timing) {
+  const auto seconds = read_numbers<double>(timing, "seconds");
+  const auto start_seconds = exists(timing, "start_seconds")
+                                 ? read_numbers<double>(timing, "start_seconds")
+                                 : std::vector<double>(seconds.size(), 0);  // older files
+  const auto trials = read_numbers<std::uint64_t>(timing, "trials");
+  const auto distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests");
+  std::vector<Work> work(seconds.size());
+  for (std::size_t r = 0; r < work.size(); ++r) {
+    work[r] = {.seconds = seconds[r],
+               .start_seconds = start_seconds.at(r),
+               .trials = trials.at(r),
+               .distance_tests = distance_tests.at(r)};
+  }
+  return work;
+}
 
 }  // namespace
 
@@ -85,9 +102,7 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   tables.rows = read_numbers<std::uint64_t>(observables, "rows");
   tables.reasons = read_texts(observables, "reason");
   const Hdf5Handle timing = open_group(file, "timing/" + point_name(point));
-  tables.seconds = read_numbers<double>(timing, "seconds");
-  tables.trials = read_numbers<std::uint64_t>(timing, "trials");
-  tables.distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests");
+  tables.work = read_work(timing);
   const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
     tables.coordination = read_numbers<double>(snapshots, "coordination");
@@ -130,9 +145,7 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
           summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
           summary.rows = tables.rows.at(r);
           summary.reason = tables.reasons.at(r);
-          summary.seconds = tables.seconds.at(r);
-          summary.trials = tables.trials.at(r);
-          summary.distance_tests = tables.distance_tests.at(r);
+          summary.work = tables.work.at(r);
         }
         all.push_back(summary);
       }
@@ -225,9 +238,7 @@ RealizationRecord ResultsFile::record(RealizationId id) const {
     const PointTables& tables = impl_->tables(id.point);
     record.status = static_cast<RealizationStatus>(tables.statuses.at(id.realization));
     record.reason = tables.reasons.at(id.realization);
-    record.seconds = tables.seconds.at(id.realization);
-    record.trials = tables.trials.at(id.realization);
-    record.distance_tests = tables.distance_tests.at(id.realization);
+    record.work = tables.work.at(id.realization);
     for (std::uint64_t tap = 0; tap < tables.rows.at(id.realization); ++tap)
       for (const auto& column : impl_->columns(id.point))
         record.rows.push_back(column.at(tap * study().realizations + id.realization));

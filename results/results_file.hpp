@@ -49,8 +49,7 @@ struct RealizationSummary {
   RealizationStatus status = RealizationStatus::missing;
   std::uint64_t rows = 0;  // recorded taps, the start included
   std::string reason;      // of a failure
-  double seconds = 0;
-  std::uint64_t trials = 0, distance_tests = 0;
+  Work work{};
 };
 
 /// A results file opened for reading. Its checksum is verified first: a damaged, truncated or

@@ -116,9 +116,7 @@ RealizationSummary summary_of(RealizationId id, const PartState& part) {
           .status = part.status,
           .rows = part.state ? part.state->rows : 0,
           .reason = part.reason,
-          .seconds = part.seconds,
-          .trials = part.trials,
-          .distance_tests = part.distance_tests};
+          .work = part.work};
 }
 
 std::map<RealizationId, RealizationSummary> verify_parts(const std::string& results_path,
@@ -158,9 +156,7 @@ RealizationRecord join(RealizationRecord base, const std::string& results_path,
   });
   base.status = part.status;
   base.reason = part.reason;
-  base.seconds = part.seconds;
-  base.trials = part.trials;
-  base.distance_tests = part.distance_tests;
+  base.work = part.work;
   base.state = std::move(part.state);
   return base;
 }

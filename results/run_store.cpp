@@ -152,9 +152,7 @@ PartState RunStore::Impl::last_checkpoint(RealizationId id) const {
   part.state = file->restart_state(id);
   if (!part.state) return part;
   part.base_rows = last.rows;
-  part.seconds = last.seconds;
-  part.trials = last.trials;
-  part.distance_tests = last.distance_tests;
+  part.work = last.work;
   return part;
 }
 

@@ -52,6 +52,8 @@ class Cost(Case):
             for name, start in zip(names, starts):
                 if name != "half the footprint":
                     self.assertTrue((start == starts[0]).all(), name)
+            timing = stored["timing/point_0000"]
+            self.assertAlmostEqual(table["start_seconds"][0], timing["start_seconds"][:].mean())
             sweeps = table["sweeps_per_tap"][:]
             self.assertGreater(sweeps[names.index("eta = 1e-06")], sweeps[0])
         self.assertIn("set output 'c.svg'", (self.folder / "c.gp").read_text())

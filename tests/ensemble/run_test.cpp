@@ -246,9 +246,11 @@ TEST_CASE("No more realizations are alive than threads, and progress counts the 
 
   std::uint64_t trials = 0, tests = 0;
   for (const auto& [id, record] : sink.records()) {
-    trials += record.outcome->trials;
-    tests += record.outcome->distance_tests;
-    CHECK(record.outcome->trials == record.state->move.next_trial);
+    trials += record.outcome->work.trials;
+    tests += record.outcome->work.distance_tests;
+    CHECK(record.outcome->work.trials == record.state->move.next_trial);
+    CHECK(record.outcome->work.start_seconds > 0);
+    CHECK(record.outcome->work.start_seconds < record.outcome->work.seconds);
   }
   CHECK(progress.trials_done == trials);
   CHECK(progress.distance_tests == tests);

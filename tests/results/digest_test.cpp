@@ -86,8 +86,8 @@ TEST_CASE("a digest depends on values, shape, name and attributes") {
 TEST_CASE("a study's digest ignores who computed it and how long it took") {
   const std::string expected = digest_with(nothing, nothing);
   CHECK(digest_with(nothing, nothing, "b") == expected);
-  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.seconds = 5; }) == expected);
-  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.trials = 5; }) == expected);
+  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.work.seconds = 5; }) == expected);
+  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.work.trials = 5; }) == expected);
   // Between relaxations nothing of the last one matters.
   CHECK(digest_with(nothing, [](RealizationRecord& r) { r.state->relaxation.trials = 5; }) ==
         expected);

@@ -68,7 +68,8 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   }
   const RealizationRecord record = file.record({1, 2});
   CHECK(record.status == RealizationStatus::done);
-  CHECK(record.seconds == 0.5);
+  CHECK(record.work.seconds == 0.5);
+  CHECK(record.work.start_seconds == 0.25);
   REQUIRE(record.state);
   CHECK(record.state->rows == 7);
   CHECK(record.state->stop_window == HeightWindow{0.25, 4});

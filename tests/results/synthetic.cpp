@@ -106,10 +106,11 @@ void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduc
   std::uint64_t steps = 0;
   while (state.rows <= point.taps) {
     if (state.rows == conduct.fail_at_tap)
-      return sink.end(id, state, {RealizationStatus::failed, "it was told to", 0.5, steps, 0});
+      return sink.end(id, state,
+                      {RealizationStatus::failed, "it was told to", {0.5, 0.25, steps, 0}});
     if (steps == conduct.steps) {
       if (conduct.leave_without_end) return;
-      return sink.end(id, state, {RealizationStatus::running, "", 0.5, steps, 0});
+      return sink.end(id, state, {RealizationStatus::running, "", {0.5, 0.25, steps, 0}});
     }
     if (!state.relaxing) {
       state.relaxing = true;
@@ -119,7 +120,7 @@ void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduc
     if (state.relaxation.trials == steps_a_tap) record(sink, point, id, state);
     if (++steps % conduct.checkpoint_every == 0) sink.checkpoint(id, state);
   }
-  sink.end(id, state, {RealizationStatus::done, "", 0.5, steps, 2 * steps});
+  sink.end(id, state, {RealizationStatus::done, "", {0.5, 0.25, steps, 2 * steps}});
 }
 
 TapRow expected_row(const Study& study, RealizationId id, std::uint64_t tap) {
