@@ -49,7 +49,7 @@ class Kill(Case):
                 with self.subTest(item=item):
                     outcome.result()
 
-    def test_sigkill_at_twenty_random_moments(self):
+    def test_sigkill_at_a_hundred_random_moments(self):
         straight, duration = self.straight_digest(LONGER)
         moments = random.Random(20010222)
 
@@ -63,7 +63,7 @@ class Kill(Case):
             process.communicate()
             self.finish(folder, straight)
 
-        self.in_parallel(kill_and_resume, [(n, moments.uniform(0, 1)) for n in range(20)])
+        self.in_parallel(kill_and_resume, [(n, moments.uniform(0, 1)) for n in range(100)])
 
     def faulty_run(self, folder, environment):
         """A run of SHORT, single-threaded so that its calls come in one order; its exit code."""
