@@ -102,12 +102,12 @@ class Rounds {
          RunStore& store, std::size_t longest)
       : arguments_(arguments), pilot_(pilot), study_(study), store_(store), longest_(longest) {}
 
-  /// Whether they were completed, not stopped.
+  /// Whether they were completed, not stopped. None is added where all so far failed.
   bool run(int threads) {
     while (complete(threads)) {
       const std::uint32_t wanted =
           arguments_.rounds > 0 ? arguments_.rounds : affordable(study_.realizations);
-      if (wanted <= study_.realizations) return true;
+      if (wanted <= study_.realizations || (failed_ > 0 && computed_ == 0)) return true;
       study_.realizations = wanted;
       store_.extend(wanted);
     }
@@ -143,6 +143,7 @@ class Rounds {
     }
     store_.finish();
     computed_ += summary.done;
+    failed_ += summary.failed;
     return summary.done + summary.failed == pending.size();
   }
 
@@ -153,7 +154,7 @@ class Rounds {
   std::size_t longest_;
   StopRequest stop_;
   Progress progress_;
-  std::uint64_t computed_ = 0;  // realizations
+  std::uint64_t computed_ = 0, failed_ = 0;  // realizations
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
@@ -208,6 +209,7 @@ int run_cost(const CostArguments& arguments) {
     std::optional<CostStudy> found;
     found.emplace(ResultsFile(output), rungs, taps);
     write_reports(arguments, *found, scene, output, observable, by);
+    if (!found->failed().empty()) return exit_failed_realizations;
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {

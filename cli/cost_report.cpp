@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "cli/durations.hpp"
 #include "cli/text_table.hpp"
@@ -39,6 +41,52 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost) {
   return table.text();
 }
 
+/// What failed, with the first reason of each rung, and the rungs of which it is so.
+std::string failures(const CostStudy& study) {
+  std::map<std::string, std::string> rungs;
+  for (std::size_t p = 0; p < study.rungs().size(); ++p) {
+    const auto is_here = [p](const RealizationSummary& one) { return one.id.point == p; };
+    const auto n = std::ranges::count_if(study.failed(), is_here);
+    if (n == 0) continue;
+    std::string& names =
+        rungs[fmt::format("{} of {} rounds failed, and are not in the numbers: {}", n,
+                          study.rounds(), std::ranges::find_if(study.failed(), is_here)->reason)];
+    names.append(names.empty() ? "" : ", ").append(study.rungs()[p].name);
+  }
+  std::string text;
+  for (const auto& [what, names] : rungs) text += what + "\n  (" + names + ")\n";
+  return text;
+}
+
+/// A reference that ends its relaxations before a rougher setting does is none.
+std::string doubt_of_the_reference(const CostStudy& study) {
+  const double sweeps = study.times()[study.reference().last].sweeps;
+  for (std::size_t p = 0; p < study.rungs().size(); ++p) {
+    const Rung& rung = study.rungs()[p];
+    if (rung.part != Rung::Part::scene && rung.part != Rung::Part::stop) continue;
+    if (!(study.times()[p].sweeps > 1.1 * sweeps)) continue;
+    return fmt::format(
+        "DOUBTFUL: the reference takes {:.0f} sweeps a tap, and \"{}\" takes {:.0f}. It does not "
+        "relax more completely, and biases against it mean little: does its step die away "
+        "(\"reset_each_tap\": false), or are relaxations capped (\"max_sweeps\")?\n",
+        sweeps, rung.name, study.times()[p].sweeps);
+  }
+  return "";
+}
+
+std::string shortfall_of_the_reference(const CostOfObservable& cost) {
+  const PairedBias& step = cost.last_step;
+  const std::string text =
+      fmt::format("The step to the most complete setting: {}; ", with_error(step.bias, step.error));
+  if (!is_seen(step)) return text + "what it may itself lack is below what these rounds see.\n";
+  if (!std::isfinite(cost.remainder.error)) {
+    return text +
+           "steps are not seen to shrink, so that it may itself be short by more than this step.\n";
+  }
+  return text + fmt::format("if steps go on to shrink, it is itself short by {}.\n",
+                            with_error(cost.remainder.value, cost.remainder.error));
+}
+
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
   const auto choice = cheapest(cost.settings, target);
   const std::string& name = cost.label.name;
@@ -69,12 +117,7 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());
-  text += fmt::format("The step to the most complete setting: {}; ",
-                      with_error(cost.last_step.bias, cost.last_step.error));
-  text += std::isfinite(cost.remainder)
-              ? fmt::format("if steps go on to shrink, it is itself short by {:.2g}.\n",
-                            cost.remainder)
-              : "what it may itself lack is below what these rounds see.\n";
+  text += shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study);
   if (study.pilot_taps() < study.taps()) {
     text += fmt::format("Biases are those after tap {} of {}: they may grow with further taps.\n",
                         study.pilot_taps(), study.taps());

@@ -12,6 +12,8 @@ namespace jostle {
 
 namespace {
 
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
 double deviation(std::span<const double> values) {
   Moments moments;
   for (const double value : values) moments.add(value);
@@ -50,8 +52,16 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint
 }
 
 void CostStudy::read_times(const ResultsFile& file) {
-  std::vector<Work> work(rungs_.size());  // of all rounds
-  for (const RealizationSummary& one : file.realizations()) work[one.id.point] += one.work;
+  std::vector<Work> work(rungs_.size());  // of all realizations that did not fail
+  std::vector<double> done(rungs_.size());
+  for (const RealizationSummary& one : file.realizations()) {
+    if (one.status == RealizationStatus::failed) {
+      failed_.push_back(one);
+      continue;
+    }
+    work[one.id.point] += one.work;
+    ++done[one.id.point];
+  }
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
   for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
     const std::vector<double> sweeps =
@@ -62,8 +72,8 @@ void CostStudy::read_times(const ResultsFile& file) {
       if (1 + i / rounds_ >= first) late.add(sweeps[i]);
     }
     const double of_a_tap =
-        (work[p].seconds - work[p].start_seconds) / (static_cast<double>(pilot_taps_) * rounds_);
-    times_.push_back({.start_seconds = work[p].start_seconds / rounds_,
+        (work[p].seconds - work[p].start_seconds) / (static_cast<double>(pilot_taps_) * done[p]);
+    times_.push_back({.start_seconds = work[p].start_seconds / done[p],
                       .tap_seconds = of_a_tap * late.mean() / all.mean(),
                       .sweeps = late.mean()});
   }
@@ -85,7 +95,6 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file,
     return std::span(values[rung]).subspan((tap - 1) * rounds_, rounds_);
   };
   const MostComplete best = most_complete(rungs_);
-  std::vector<double> means;
   for (std::size_t p = 0; p < rungs_.size(); ++p) {
     for (std::uint64_t tap = 1; tap <= pilot_taps_; ++tap) {
       const PairedBias bias = paired_bias(at(p, tap), at(best.last, tap));
@@ -93,18 +102,16 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file,
       cost.bias_error_by_tap.push_back(bias.error);
       if (tap == pilot_taps_) cost.biases.push_back(bias);
     }
-    Moments moments;
-    for (const double value : at(p, pilot_taps_)) moments.add(value);
-    means.push_back(moments.mean());
     cost.settings.push_back({.bias = cost.biases.back().bias,
                              .bias_error = cost.biases.back().error,
                              .sigma = deviation(at(p, pilot_taps_)),
                              .realization_seconds = realization_seconds(p)});
   }
   cost.last_step = paired_bias(at(best.last, pilot_taps_), at(best.before, pilot_taps_));
-  const bool seen = std::abs(cost.last_step.bias) > 2 * cost.last_step.error;
-  cost.remainder = seen ? remainder(means[best.two_before], means[best.before], means[best.last])
-                        : std::numeric_limits<double>::quiet_NaN();
+  cost.remainder =
+      is_seen(cost.last_step)
+          ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
+          : Remainder{not_a_number, not_a_number};
   return cost;
 }
 
@@ -159,9 +166,15 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
         {"last_step_error", {}, std::vector{cost.last_step.error}, units, "standard error", ""},
         {"remainder",
          {},
-         std::vector{cost.remainder},
+         std::vector{cost.remainder.value},
          units,
          "that the most complete rung still lacks, extrapolated where the last step is seen",
+         ""},
+        {"remainder_error",
+         {},
+         std::vector{cost.remainder.error},
+         units,
+         "jackknife over rounds",
          ""}};
     table.notes = {{"observable", cost.label.name},
                    {"reference", rungs_[most_complete(rungs_).last].name},

@@ -24,7 +24,7 @@ struct CostOfObservable {
   std::vector<PairedBias> biases;  // [n_rungs]
   std::vector<Setting> settings;   // [n_rungs], for the whole run of the scene
   PairedBias last_step{};          // the most complete rung less the one before
-  double remainder = 0;            // that it still lacks, extrapolated; NaN where the step is noise
+  Remainder remainder;             // what it still lacks; only where that step is seen
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_rungs, n_taps], taps 1 .. n_taps
 };
 
@@ -39,6 +39,8 @@ class CostStudy {
   std::uint64_t pilot_taps() const { return pilot_taps_; }
   std::uint64_t taps() const { return taps_; }
   const std::vector<RungTime>& times() const { return times_; }
+  /// Realizations that failed, which are in no number of the study.
+  const std::vector<RealizationSummary>& failed() const { return failed_; }
   const std::vector<CostOfObservable>& observables() const { return observables_; }
   MostComplete reference() const { return most_complete(rungs_); }
   /// Core seconds of a whole realization.
@@ -55,6 +57,7 @@ class CostStudy {
   std::uint64_t taps_ = 0, pilot_taps_ = 0;
   std::uint32_t rounds_ = 0;
   std::vector<RungTime> times_;
+  std::vector<RealizationSummary> failed_;
   std::vector<CostOfObservable> observables_;
 };
 

@@ -66,7 +66,9 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
 
   estimate.trials = before.trials + loop->tally().trials;
   estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
-  estimate.settled = tap.status != RelaxationStatus::running;
+  const bool start_settled =
+      !relaxes_before_recording(plan.start) || before.status != RelaxationStatus::running;
+  estimate.settled = start_settled && tap.status != RelaxationStatus::running;
   estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;
   const double scale = static_cast<double>(plan.n_spheres) / estimate.n_spheres;
   estimate.realization = scale * (start_time + tap_time * static_cast<double>(total_taps(plan)));

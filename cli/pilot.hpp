@@ -14,7 +14,7 @@ struct PilotEstimate {
   std::uint64_t trials = 0;      // made by the pilot
   double trials_per_second = 0;  // on one core
   double sweeps_per_tap = 0;     // a lower bound where `settled` is false
-  bool settled = false;          // whether the tap met its stop rule within the pilot's budget
+  bool settled = false;          // whether start and tap met their stop rules within the budget
   Seconds realization{0};        // a whole one on one core; a lower bound likewise
   std::size_t bytes = 0;         // held by one running realization
 };

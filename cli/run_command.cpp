@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,7 +88,8 @@ struct OpenedRun {
   Study study;
   std::string output;
   std::unique_ptr<RunStore> store;
-  std::uint64_t taps_recorded = 0;  // of pending realizations, by earlier processes
+  std::uint64_t taps_recorded = 0;    // of pending realizations, by earlier processes
+  std::vector<std::string> tables{};  // that the file had before
 };
 
 std::uint64_t recorded_taps(const std::string& output, const std::vector<RealizationId>& pending) {
@@ -119,6 +121,7 @@ OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int
     require_same_scene(run.output, loaded, arguments.shard);
     run.study.realizations =
         std::max(run.study.realizations, ResultsFile(run.output).study().realizations);
+    run.tables = table_names(run.output);
     run.store =
         RunStore::resume(run.output, run.study, arguments.shard, provenance, arguments.force);
     run.taps_recorded = recorded_taps(run.output, run.store->pending(arguments.retry_failed));
@@ -234,6 +237,19 @@ void print_results(const OpenedRun& run, const ProcessWork& work, int threads) {
   std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
 }
 
+/// Derived tables do not outlive the data they were made of: names those that are gone.
+void say_which_tables_are_gone(const OpenedRun& run) {
+  std::vector<std::string> gone;
+  std::ranges::set_difference(run.tables, table_names(run.output), std::back_inserter(gone));
+  if (gone.empty()) return;
+  std::string lines;
+  for (const std::string& name : gone) lines.append("\n  ").append(name);
+  print_to_standard_error(
+      fmt::format("jostle: these tables were made of the data before this run, and are no longer "
+                  "in {}; make them again where they are wanted:{}\n",
+                  run.output, lines));
+}
+
 /// What a complete run ends with.
 void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
                  const std::string& output, int threads) {
@@ -268,12 +284,14 @@ int run(const RunArguments& arguments) {
     const bool stopped = compute_enough(arguments, loaded, run, threads, work);
     if (!arguments.quiet) print_results(run, work, threads);
     if (stopped) {
+      say_which_tables_are_gone(run);
       print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n",
                                           work.stop.reason(), resume_command(arguments)));
       return exit_stopped;
     }
     run.store.reset();  // gives the lock back
     make_tables(arguments, loaded, run.output, threads);
+    say_which_tables_are_gone(run);
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {

@@ -186,7 +186,7 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
                         .realizations = file.study().realizations,
                         .read = {},
                         .seed = scene.seed,
-                        .sweep_point = point};
+                        .sweep_point = file.study().points[point].id};
   ensemble.read = [&file, &container, point](std::uint32_t r) {
     std::vector<KeptPacking> packings;
     for (SnapshotRecord& snapshot : file.snapshots({point, r})) {

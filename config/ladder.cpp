@@ -149,9 +149,9 @@ std::vector<Rung> ladder(const Scene& scene) {
 }
 
 MostComplete most_complete(const std::vector<Rung>& rungs) {
-  MostComplete found;  // the scene's own comes before the more complete ones
+  MostComplete found;
   for (std::size_t i = 0; i < rungs.size(); ++i) {
-    if (rungs[i].part == Rung::Part::stop) found = {0, found.last, i};
+    if (rungs[i].part == Rung::Part::stop) found = {found.last, i};
   }
   return found;
 }

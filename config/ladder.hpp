@@ -24,10 +24,10 @@ struct Rung {
 /// the footprint, where the start fills any. Caps on sweeps are raised with the stops.
 std::vector<Rung> ladder(const Scene& scene);
 
-/// The rungs whose stops are most complete, the last three: two before, before, last. The last is
-/// what the others are compared with.
+/// The rungs whose stops are most complete. The last is what the others are compared with; the
+/// scene's own, rung 0, stands before both.
 struct MostComplete {
-  std::size_t two_before = 0, before = 0, last = 0;
+  std::size_t before = 0, last = 0;
 };
 MostComplete most_complete(const std::vector<Rung>& rungs);
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "ensemble/jackknife.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {
@@ -13,6 +16,14 @@ namespace {
 double variance(const Moments& moments) {
   const double error = moments.standard_error();
   return error * error * static_cast<double>(moments.count());
+}
+
+// Of steps that go on to shrink alike; NaN where they do not shrink.
+double rest_of_steps(double step, double step_before) {
+  constexpr double slowest = 0.9;
+  const double ratio = step / step_before;
+  return ratio > 0 && ratio < slowest ? step * ratio / (1 - ratio)
+                                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 double largest_bias(const Setting& setting) {
@@ -36,10 +47,30 @@ PairedBias paired_bias(std::span<const double> values, std::span<const double> r
           .variance_reduction = (variance(own) + variance(others)) / variance(difference)};
 }
 
-double remainder(double two_before, double before, double last) {
-  constexpr double slowest = 0.9;
-  const double step = last - before, ratio = step / (before - two_before);
-  return ratio > 0 && ratio < slowest ? step * ratio / (1 - ratio) : step;
+bool is_seen(const PairedBias& bias) {
+  return std::abs(bias.bias) > 2 * bias.error;
+}
+
+Remainder remainder(std::span<const double> two_before, std::span<const double> before,
+                    std::span<const double> last) {
+  std::vector<double> steps, steps_before;  // of realizations that all three have
+  for (std::size_t r = 0; r < last.size(); ++r) {
+    const double step = last[r] - before[r], step_before = before[r] - two_before[r];
+    if (std::isnan(step) || std::isnan(step_before)) continue;
+    steps.push_back(step);
+    steps_before.push_back(step_before);
+  }
+  const std::size_t n = steps.size();
+  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0),
+               sum_before = std::accumulate(steps_before.begin(), steps_before.end(), 0.0);
+  std::vector<double> left_out;
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto others = static_cast<double>(n - 1);
+    left_out.push_back(
+        rest_of_steps((sum - steps[r]) / others, (sum_before - steps_before[r]) / others));
+  }
+  const auto all = static_cast<double>(n);
+  return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
 }
 
 double total_error(const Setting& setting, std::uint64_t realizations) {

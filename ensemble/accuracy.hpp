@@ -23,11 +23,20 @@ struct PairedBias {
 /// values and reference: one a realization, NaN where it is missing.
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference);
 
-/// What a ladder's last rung still lacks, from the last three, each more complete than the one
-/// before: if steps go on to shrink as the last two did, X_inf - X_last = d r / (1 - r) with
-/// d = X_last - X_before and r the ratio of the two steps. Where they do not shrink (r outside
-/// 0 .. 0.9) the last step itself, which bounds nothing.
-double remainder(double two_before, double before, double last);
+/// Whether it is told from noise: more than two standard errors.
+bool is_seen(const PairedBias& bias);
+
+/// What a ladder's last rung still lacks.
+struct Remainder {
+  double value = 0;  // NaN where steps do not shrink: r outside 0 .. 0.9
+  double error = 0;  // jackknife over realizations; NaN where it is not defined without one of them
+};
+
+/// From three rungs, each more complete than the one before, one value a realization, NaN where it
+/// is missing: if steps between the means go on to shrink as the last two did,
+/// X_inf - X_last = d r / (1 - r) with d = X_last - X_before and r the ratio of the two steps.
+Remainder remainder(std::span<const double> two_before, std::span<const double> before,
+                    std::span<const double> last);
 
 /// A setting as a choice.
 struct Setting {

@@ -120,8 +120,9 @@ void Realization::record(Slice& slice) {
   ++state_.rows;
   state_.dropped_offsets = 0;
   if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
-    state_.move = plan_.relax_start ? MoveState{} : loop_->state();
-    state_.sampler = plan_.relax_start ? SamplerState{} : loop_->sampler_state();
+    const bool by_one_rule = !plan_.relax_start || *plan_.relax_start == plan_.relax;
+    state_.move = by_one_rule ? loop_->state() : MoveState{};
+    state_.sampler = by_one_rule ? loop_->sampler_state() : SamplerState{};
     loop_.reset();
   }
 }

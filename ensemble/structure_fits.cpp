@@ -139,7 +139,7 @@ void add_law(const FittedLaw& law, const PartPackings& part, Table& table) {
     table.quantities.push_back({std::move(name),
                                 {"tap"},
                                 std::move(errors[j]),
-                                "1",
+                                law.units[j],
                                 "standard error by the jackknife over realizations",
                                 ""});
   }

@@ -83,7 +83,6 @@ std::vector<std::vector<std::vector<double>>> SweepCurve::left_out() const {
     return groups;
   }
   for (std::size_t i = 0; i < realizations_.size(); ++i) {
-    if (count_[i] < 2) continue;
     groups.emplace_back();
     for (std::size_t r = 0; r < realizations_[i].size(); ++r) {
       if (std::isnan(realizations_[i][r])) continue;

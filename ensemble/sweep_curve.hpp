@@ -33,7 +33,7 @@ class SweepCurve {
   bool errors_known() const;  // of every point, and positive
 
   /// The curve's y with one realization left out, [n_groups][n_left_out][n_points]: one group of
-  /// all realizations where streams are matched, else one a point with two or more of them.
+  /// all realizations where streams are matched, else one a point.
   std::vector<std::vector<std::vector<double>>> left_out() const;
 
  private:

@@ -29,6 +29,13 @@ std::vector<double> weights_of(const SweepCurve& curve) {
   return weights;
 }
 
+// Of a group's estimates without one of its realizations each. A lone realization says nothing of
+// its scatter: the error is known only where the estimate does without it.
+double error_of_group(std::span<const double> left_out) {
+  if (left_out.size() == 1) return std::isnan(left_out[0]) ? not_a_number : 0;
+  return jackknife_error(left_out);
+}
+
 // Leaving out one of a group of n, the groups being independent of each other.
 Pair jackknife_errors(const SweepCurve& curve, const Estimator& estimator) {
   Pair variance = {0, 0};
@@ -41,7 +48,7 @@ Pair jackknife_errors(const SweepCurve& curve, const Estimator& estimator) {
       for (std::size_t k = 0; k < 2; ++k) estimates[k].push_back(found[k]);
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      const double error = jackknife_error(estimates[k]);
+      const double error = error_of_group(estimates[k]);
       variance[k] += error * error;
     }
   }

@@ -244,7 +244,8 @@ void RunStore::end(RealizationId id, const RealizationState& state, const Outcom
 void RunStore::finish() {
   const std::lock_guard guard(impl_->mutex);
   impl_->recorders.clear();
-  impl_->fold();
+  // A file to which nothing is added stays as it is, with its derived tables.
+  if (!impl_->in_parts.empty() || impl_->file->state() != RunState::complete) impl_->fold();
   remove_parts(impl_->path);
   impl_->in_parts.clear();
 }

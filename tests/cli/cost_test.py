@@ -5,7 +5,7 @@ import unittest
 
 import h5py
 
-from support import BAD_INPUT, OK, TINY, Case, changed
+from support import BAD_INPUT, FAILED, OK, TINY, Case, changed
 
 SCENE = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
                 relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}})
@@ -77,6 +77,27 @@ class Cost(Case):
         self.assertIn("after 2 taps, 2 rounds", done.stdout)
         done = self.cost("--budget", "1s", "--taps", "2", "--resume")
         self.assertNotIn(" 2 rounds", done.stdout)
+
+    def test_failures_are_told_and_no_round_follows_where_all_fail(self):
+        self.write(changed(SCENE, container={"sides": "walls", "width": 4},
+                           start={"pour": {"fitted": {"max_sweeps": 1}}}))
+        done = self.cost("--budget", "60s", "--taps", "2", expect=FAILED)
+        self.assertRegex(done.stdout, r"2 of 2 rounds failed, and are not in the numbers: .+\n  \(as the scene, ")
+
+    def test_a_reference_that_relaxes_less_is_called_doubtful(self):
+        relax = {"metropolis": {"max_step": 0.1, "adapt": {"reset_each_tap": False}},
+                 "stop": {"mean_height": {"eta": 1e-5, "every_sweeps": 100}}}
+        self.write(changed(SCENE, start={"random_settle": {}}, relax=relax, snapshots={},
+                           protocol=[{"tap": {"lift": 0.25}, "count": 3}]))
+        self.assertIn("DOUBTFUL: the reference takes", self.cost("--rounds", "3").stdout)
+        # The pilot's scene is the scene: its step is what the start's relaxation left.
+        self.run_scene("-o", "whole.h5")
+        with h5py.File(self.folder / "whole.h5") as whole, \
+                h5py.File(self.folder / "tiny-cost.h5") as pilot:
+            self.assertTrue((whole["observables/point_0000/mean_height"][0]
+                             == pilot["observables/point_0000/mean_height"][0]).all())
+            sweeps = [file["observables/point_0000/sweeps"][1:].mean() for file in (whole, pilot)]
+            self.assertLess(abs(sweeps[0] / sweeps[1] - 1), 0.5)
 
     def test_what_cannot_be_costed_is_refused(self):
         refused = self.cost("--observable", "bulk_fraction", expect=BAD_INPUT)

@@ -4,6 +4,8 @@ import signal
 import time
 import unittest
 
+import h5py
+
 from support import FAILED, STOPPED, TINY, Case, changed
 
 # Relaxations of 2e7 trials, so that a stop falls inside one; two seconds on one core.
@@ -95,6 +97,30 @@ class Retry(Case):
         again = self.run_scene("--retry-failed", expect=FAILED)
         self.assertIn("3 realizations of 6 to do", again.stderr)
         self.assertEqual(self.digest("tiny.h5"), digest)
+
+
+class Tables(Case):
+    def names(self):
+        with h5py.File(self.folder / "tiny.h5") as file:
+            return [name for name in ("analysis", "fits", "structure") if name in file]
+
+    def test_a_resume_with_nothing_to_do_leaves_tables_and_file_alone(self):
+        self.write(TINY)
+        self.run_scene()
+        self.jostle("structure", "tiny.h5", "--part", "profile")
+        before = (self.folder / "tiny.h5").read_bytes()
+        self.run_scene("--resume")
+        self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
+
+    def test_tables_of_fewer_data_are_dropped_by_name(self):
+        self.write(TINY)
+        self.run_scene()
+        self.jostle("structure", "tiny.h5", "--part", "profile")
+        self.write(changed(TINY, realizations=4))
+        more = self.run_scene("--resume")
+        self.assertIn("no longer in tiny.h5", more.stderr)
+        self.assertIn("structure/point_0000/profile", more.stderr)
+        self.assertEqual(self.names(), [])
 
 
 if __name__ == "__main__":

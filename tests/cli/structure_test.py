@@ -124,6 +124,21 @@ class Structure(Case):
         self.write(changed(scene, name="none"))
         self.assertIn("no structure", self.run_scene(expect=FAILED).stderr)
 
+    def test_a_point_that_is_inserted_changes_no_other(self):
+        drawn = {"void_probability": {"points": 200}, "region": SMALL["region"]}
+        self.write(changed(TINY, structure=drawn))
+        self.run_scene()
+        before = self.stored()
+        self.write(changed(TINY, structure=drawn, name="more",
+                           sweep={"/protocol/0/tap/dilate": [0.02, 0.05, 0.1]}))
+        self.run_scene()
+        after = self.stored("more.h5")
+        of_point = {path.replace("point_0001", "point_0002"): values
+                    for path, values in before.items() if path.startswith("point_0001")}
+        self.assertTrue(of_point)
+        for path, values in of_point.items():
+            self.assertEqual(repr(values.tolist()), repr(after[path].tolist()), path)
+
     def test_packings_of_several_containers_have_no_mean(self):
         cell = 'Lattice="{0} 0 0 0 {0} 0 0 0 9" Properties=species:S:1:pos:R:3 pbc="T T F"'
         for width in (4, 5):

@@ -34,7 +34,6 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
   const MostComplete best = most_complete(rungs);
   CHECK(rungs[best.last].name == "eta = 1e-07");
   CHECK(rungs[best.before].name == "eta = 1e-06");
-  CHECK(best.two_before == 0);
   const Stop& complete = rungs[best.last].relax.stop;
   CHECK(std::get<MeanHeightStop>(complete.rule).eta == 1e-7);
   CHECK(complete.max_sweeps == 100 * scene.relax.stop.max_sweeps);

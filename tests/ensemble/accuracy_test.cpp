@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ensemble/moments.hpp"
+#include "tests/ensemble/noise.hpp"
+
 namespace jostle {
 
 TEST_CASE("A bias is the mean of the pairs' differences") {
@@ -27,9 +30,36 @@ TEST_CASE("Without two pairs there is no error, and equal differences need no ot
 
 TEST_CASE("What a geometric ladder lacks is the rest of the series") {
   // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
-  CHECK(remainder(0.5, 0.75, 0.875) == Approx(0.125));
-  CHECK(remainder(0, 1, 2) == 1);       // steps that do not shrink
-  CHECK(remainder(0, 1, 0.5) == -0.5);  // steps of changing sign
+  const auto of = [](std::vector<double> two_before, std::vector<double> before,
+                     std::vector<double> last) { return remainder(two_before, before, last); };
+  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).value == Approx(0.125));
+  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).error == 0);
+  CHECK(std::isnan(of({0}, {1}, {2}).value));    // steps that do not shrink
+  CHECK(std::isnan(of({0}, {1}, {0.5}).value));  // steps of changing sign
+  CHECK(std::isnan(of({}, {}, {}).value));
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  CHECK(of({0.5, 9, 1.5}, {0.75, missing, 1.75}, {0.875, 9, 1.875}).value == Approx(0.125));
+}
+
+TEST_CASE("The error of what a ladder lacks is its deviation between ensembles") {
+  RandomStream random = test_stream(7);
+  const auto scatter = [&] { return 0.02 * noise(random); };
+  constexpr int n = 40, repetitions = 400;
+  Moments values, errors;
+  for (int k = 0; k < repetitions; ++k) {
+    std::vector<double> two_before, before, last;
+    for (int r = 0; r < n; ++r) {
+      const double bed = 10 * scatter();
+      two_before.push_back(bed + scatter());
+      before.push_back(bed + 0.5 + scatter());
+      last.push_back(bed + 0.7 + scatter());
+    }
+    const Remainder found = remainder(two_before, before, last);
+    values.add(found.value);
+    errors.add(found.error);
+  }
+  CHECK(values.mean() == Approx(0.2 * 0.4 / 0.6).epsilon(0.05));
+  CHECK(errors.mean() == Approx(values.sigma()).epsilon(0.15));
 }
 
 TEST_CASE("The cheapest setting trades bias against realizations") {

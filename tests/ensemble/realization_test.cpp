@@ -138,6 +138,22 @@ TEST_CASE("A start can settle in a way of its own, and taps then begin as after 
   CHECK(straight(given).snapshots[1].centres == record.snapshots[1].centres);
 }
 
+TEST_CASE(
+    "A start relaxed by the rule of the taps hands its step on, whether the rule is named or not") {
+  Plan plan = small_plan();
+  plan.start = RandomSettle{};
+  plan.relax = {.move = MetropolisMove{.max_step = 0.2,
+                                       .adaptation = StepAdaptation{.every_trials = 50,
+                                                                    .reset_each_tap = false}},
+                .stop = {.rule = SweepsStop{.sweeps = 300}}};
+  Plan named = plan;
+  named.relax_start = plan.relax;
+  const RecordedRealization one = straight(plan), other = straight(named);
+  REQUIRE(one.rows.size() == other.rows.size());
+  CHECK(one.state->move.step < 0.2);
+  CHECK(bits(one) == bits(other));
+}
+
 TEST_CASE("While a start settles, quantiles are those of the bed to come, then those of the bed") {
   Plan plan = small_plan();
   plan.start = RandomSettle{};

@@ -96,6 +96,17 @@ TEST_CASE("With matched streams, what shifts a packing at all points leaves its 
   CHECK(maximum(SweepCurve(strengths, values, Streams::independent)).x_error > 1e-3);
 }
 
+TEST_CASE("A lone realization that an estimate uses leaves it without an error") {
+  auto values = noisy_bell(11, 8, 0.002);
+  values.front().resize(1);  // at 0.05, outside the three points about the largest
+  const SweepCurve curve(strengths, values, Streams::independent);
+  CHECK(maximum(curve, 3).x_error > 0);
+  CHECK(std::isnan(maximum(curve, 6).x_error));
+  CHECK(std::isfinite(maximum(curve, 6).x));
+  CHECK(std::isnan(straight_line(curve).slope_error));
+  CHECK(std::isnan(maximum(SweepCurve(strengths, values, Streams::matched), 6).x_error));
+}
+
 TEST_CASE("What is no maximum is not called one") {
   const std::vector<double> x = {1, 2, 3, 4, 5}, error(5, 0.1);
   const SweepMaximum rising = maximum(SweepCurve(x, {1, 2, 3, 4, 5}, error));

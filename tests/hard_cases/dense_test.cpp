@@ -88,9 +88,9 @@ TEST_CASE("a disordered packing pressed from 0.60 to 0.64 keeps every sphere apa
     packing = shrunk_to_touch(packing);
   }
   CHECK(n * sphere_volume / std::pow(width_x(packing.container), 3) > 0.64);
-  for (const double step : {1e-9, 1e-3, 0.5, 2.0}) {
-    CAPTURE(step);
-    run_trials(packing, MetropolisMove{step, 0.0}, 200'000);
+  for (const double longest : {1e-9, 1e-3, 0.5, 2.0}) {
+    CAPTURE(longest);
+    run_trials(packing, MetropolisMove{longest, 0.0}, 200'000);
   }
 }
 
