@@ -63,7 +63,8 @@ double steinhardt(std::span<const Neighbour> neighbours, int l) {
       const Vec3 way = neighbour.way;
       const double theta = std::acos(way.z / std::sqrt(norm_squared(way)));
       const double phi = std::atan2(way.y, way.x);
-      q += std::polar(std::sph_legendre(static_cast<unsigned>(l), std::abs(m), theta), m * phi);
+      q += std::sph_legendre(static_cast<unsigned>(l), std::abs(m), theta) *
+           std::polar(1.0, m * phi);
     }
     sum += std::norm(q / static_cast<double>(neighbours.size()));
   }

@@ -64,7 +64,9 @@ double volume_by_lenses(double d, double s, double low, double high) {
     ends.push_back(disc_radius(std::min(r, 0.5)));
     ends.push_back(-ends.back());
   }
-  for (double& end : ends) end = std::clamp(end, std::max(low, -0.5), std::min(high, 0.5));
+  const double bottom = std::max(low, -0.5), top = std::min(high, 0.5);
+  if (bottom >= top) return 0;
+  for (double& end : ends) end = std::clamp(end, bottom, top);
   std::ranges::sort(ends);
   double volume = 0;
   for (std::size_t i = 1; i < ends.size(); ++i) volume += integral(ends[i - 1], ends[i], area);
