@@ -6,6 +6,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "cli/scene_file.hpp"
@@ -14,20 +15,41 @@ namespace jostle {
 
 namespace {
 
-std::vector<std::string> cells(std::string line) {
-  for (char& c : line) {
-    if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
-  }
-  std::istringstream words(line);
+constexpr const char* blanks = " \t\r";
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// What semicolons, else commas, else blanks divide: never two of them, so that a decimal comma is
+/// no number and not two.
+std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> found;
-  for (std::string word; words >> word;) found.push_back(word);
+  const char divider = line.find(';') != std::string::npos   ? ';'
+                       : line.find(',') != std::string::npos ? ','
+                                                             : ' ';
+  std::istringstream words(line);
+  if (divider == ' ') {
+    for (std::string word; words >> word;) found.push_back(word);
+    return found;
+  }
+  for (std::string word; std::getline(words, word, divider);) found.push_back(trimmed(word));
+  while (!found.empty() && found.back().empty()) found.pop_back();
   return found;
 }
 
 std::optional<double> number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  return end == text.c_str() + text.size() ? std::optional(value) : std::nullopt;
+  const bool whole = !text.empty() && end == text.c_str() + text.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+/// So that a first line that is wrong is not taken for one of names.
+bool begins_as_number(const std::string& text) {
+  return !text.empty() && std::string_view("+-.0123456789").find(text[0]) != std::string_view::npos;
 }
 
 std::optional<std::vector<double>> numbers(const std::vector<std::string>& words) {
@@ -51,19 +73,21 @@ Curve read_curve(const std::string& path) {
   for (std::string line; std::getline(file, line);) {
     ++line_number;
     const std::vector<std::string> words = cells(line);
-    if (words.empty() || words.front().front() == '#') continue;
+    if (words.empty() || words.front().starts_with('#')) continue;
     const auto values = numbers(words);
-    if (!values && curve.t.empty() && !named) {
+    if (!values && curve.t.empty() && !named && !begins_as_number(words.front())) {
       named = true;
       continue;
     }
     if (!values || values->size() < 2 || values->size() > 3 ||
         (columns != 0 && values->size() != columns)) {
-      throw BadInput(fmt::format("{}: line {} is not {} (\"{}\")", path, line_number,
-                                 columns == 3   ? "three numbers t, X, sigma"
-                                 : columns == 2 ? "two numbers t, X like those before"
-                                                : "two numbers t, X or three t, X, sigma",
-                                 line));
+      throw BadInput(
+          fmt::format("{}: line {} is not {}, with decimal points and one kind of divider (\"{}\")",
+                      path, line_number,
+                      columns == 3   ? "three numbers t, X, sigma"
+                      : columns == 2 ? "two numbers t, X like those before"
+                                     : "two numbers t, X or three t, X, sigma",
+                      line));
     }
     columns = values->size();
     curve.t.push_back((*values)[0]);

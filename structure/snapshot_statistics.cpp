@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
+#include <string>
 
 #include "structure/neighbours.hpp"
 
@@ -59,8 +61,16 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
 
 std::vector<double> height_histogram(const Packing& packing, double bin_width) {
   assert(bin_width > 0 && !packing.centres.empty());
+  constexpr double most_bins = 1e7;
+  const double top = top_height(packing);
+  if (!(top / bin_width < most_bins)) {
+    throw std::length_error("height_histogram: centres up to " + std::to_string(top) +
+                            " diameters make more than ten million bins of " +
+                            std::to_string(bin_width) +
+                            "; widen bin_width, or keep no height_histogram");
+  }
   const auto bin = [&](double z) { return static_cast<std::size_t>(z / bin_width); };
-  std::vector<std::uint64_t> counts(bin(top_height(packing)) + 1, 0);
+  std::vector<std::uint64_t> counts(bin(top) + 1, 0);
   for (const Vec3& centre : packing.centres) ++counts[bin(centre.z)];
   std::vector<double> fractions;
   fractions.reserve(counts.size());

@@ -35,7 +35,8 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
 std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers);
 
 /// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
-/// highest centre. Sums to 1. Requires a sphere. Rosato et al. 2010, fig. 6.
+/// highest centre. Sums to 1. Requires a sphere. Throws std::length_error above ten million bins.
+/// Rosato et al. 2010, fig. 6.
 std::vector<double> height_histogram(const Packing& packing, double bin_width = 0.1);
 
 }  // namespace jostle

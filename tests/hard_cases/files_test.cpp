@@ -81,6 +81,22 @@ TEST_CASE("a curve file changed at random is refused with its line or read") {
   CHECK(read < 3000);
 }
 
+TEST_CASE("a decimal comma is refused, not read as two numbers") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.csv";
+  for (const char* line : {"1;2,5", "1,5;2,5", "1 2,5", "1,5 2,5", "1\t2,5", "1,,2", "1;2;;3"}) {
+    CAPTURE(line);
+    write(path, std::string(line) + "\n2;3\n");
+    CHECK_THROWS_AS(read_curve(path), BadInput);
+  }
+  for (const char* lines :
+       {"1;2.5\n2;3\n", "1, 2.5\n2 ,3,\n", "1\t2.5\r\n2 3\r\n", "t;x,y\n1;2.5\n2;3"}) {
+    CAPTURE(lines);
+    write(path, lines);
+    CHECK(read_curve(path).x == std::vector<double>{2.5, 3});
+  }
+}
+
 TEST_CASE("a results file with any byte changed is refused by every reader, with path and reason") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";

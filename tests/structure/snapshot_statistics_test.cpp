@@ -118,4 +118,6 @@ TEST_CASE("The height histogram counts centres in half-open bins up to the highe
   // Every sphere on the floor lies in the bin from 0.5 d.
   CHECK(deposit[5] * 4096 >= reference_measurements().at("floor_spheres").get<double>());
   CHECK(deposit[4] == 0);
+
+  CHECK_THROWS_AS(height_histogram({PeriodicBox{5, 5}, {{1, 1, 2e8}}}, 0.1), std::length_error);
 }
