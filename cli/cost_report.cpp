@@ -106,6 +106,8 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
 std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
                       std::uint32_t scene_realizations, std::optional<double> target) {
   const Setting& own = cost.settings.front();
+  if (std::isnan(own.realization_seconds))
+    return failures(study);  // every round of the scene's own
   std::string text =
       fmt::format("{}: after {} tap{}, {} rounds, against {}\n{}", cost.label.name,
                   study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.rounds(),

@@ -82,6 +82,7 @@ class Cost(Case):
         self.write(changed(SCENE, container={"sides": "walls", "width": 4},
                            start={"pour": {"fitted": {"max_sweeps": 1}}}))
         done = self.cost("--budget", "60s", "--taps", "2", expect=FAILED)
+        self.assertNotIn("nan", done.stdout)
         self.assertRegex(done.stdout, r"2 of 2 rounds failed, and are not in the numbers: .+\n  \(as the scene, ")
 
     def test_a_reference_that_relaxes_less_is_called_doubtful(self):
