@@ -17,7 +17,7 @@ struct ControlOf {
   Control operator()(const DilateFloorHeld& tap) const {
     return {"sqrt_delta", "1", std::sqrt(tap.delta)};
   }
-  Control operator()(const Lift& tap) const { return {"gamma", "diameters", tap.gamma}; }
+  Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
   Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
 };
 

@@ -71,6 +71,7 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
   }
   table.quantities.push_back(
       {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
+  if (!quantity.with_error) return;
   name.append("_error");
   table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
                               "standard error over realizations", ""});

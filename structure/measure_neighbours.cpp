@@ -73,7 +73,7 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
   const std::vector<double> histogram = shares(neighbour_histogram(in_region));
   Measurement out;
   out.places = {
-      {"cut", curve.cuts, "diameters", "centres at most so far away count"},
+      {"cut", curve.cuts, "diameter", "centres at most so far away count"},
       {"neighbours", whole_numbers(histogram.size()), "1", "other centres within the first cut"}};
   out.quantities = {{.name = "n_c_of_cut",
                      .places = "cut",
@@ -102,7 +102,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
   const PairCorrelation pairs =
       pair_correlation(in.packing, {.r_max = settings.r_max, .bin_width = settings.bin_width});
   Measurement out;
-  out.places = {{"r", pairs.r, "diameters", "distance of centres, middle of a bin"}};
+  out.places = {{"r", pairs.r, "diameter", "distance of centres, middle of a bin"}};
   out.quantities = {{.name = "g",
                      .places = "r",
                      .values = pairs.g(),
@@ -132,7 +132,7 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
     }
   }
   Measurement out;
-  out.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameters",
+  out.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameter",
                  "height above the floor, middle of a bin"}};
   for (std::size_t c = 0; c < n_order_columns; ++c) {
     const auto& [name, at_height, long_name, source] = order_columns[c];
@@ -142,10 +142,8 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                               .long_name = long_name,
                               .source = source,
                               .beyond = nan});
-    out.quantities.push_back({.name = name,
-                              .values = of_region[c].values(),
-                              .long_name = long_name,
-                              .source = source});
+    out.quantities.push_back(
+        {.name = name, .values = of_region[c].values(), .long_name = long_name, .source = source});
   }
   return out;
 }

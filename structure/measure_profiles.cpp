@@ -22,7 +22,7 @@ std::vector<double> middles(const Profile& profile) {
 }
 
 Places heights(std::vector<double> values) {
-  return {"height", std::move(values), "diameters", "height above the floor, middle of a bin"};
+  return {"height", std::move(values), "diameter", "height above the floor, middle of a bin"};
 }
 
 /// A quantity at the middles of a profile's bins.
@@ -42,7 +42,7 @@ void add_along(Axis axis, const Packing& packing, HeightWindow window, double bi
   const double width = x ? width_x(packing.container) : width_y(packing.container);
   const Profile profile =
       transverse_profile(packing, axis, even_edges(0, width, bin_width), window);
-  into.places.push_back({places, middles(profile), "diameters", "middle of a bin"});
+  into.places.push_back({places, middles(profile), "diameter", "middle of a bin"});
   add_profile(places, profile, x ? "phi_x" : "phi_y",
               "packing fraction of slabs parallel to a side", "Philippe & Bideau 2001, fig. 7",
               into);
@@ -71,13 +71,13 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
     const double half = 0.5 * std::min(width_x(packing.container), width_y(packing.container));
     const Profile walls = wall_profile(packing, even_edges(0, half, settings.bin_width), window);
     into.places.push_back(
-        {"wall_distance", middles(walls), "diameters", "distance to the nearest wall"});
+        {"wall_distance", middles(walls), "diameter", "distance to the nearest wall"});
     add_profile("wall_distance", walls, "phi_wall", "packing fraction against the nearest wall",
                 "Philippe & Bideau 2001, fig. 7", into);
   } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
     const Profile rings =
         radial_profile(packing, even_edges(0, 0.5 * tube->diameter, settings.bin_width), window);
-    into.places.push_back({"radius", middles(rings), "diameters", "distance from the axis"});
+    into.places.push_back({"radius", middles(rings), "diameter", "distance from the axis"});
     add_profile("radius", rings, "phi_radial", "packing fraction of rings around the axis", "",
                 into);
   } else {
@@ -135,7 +135,8 @@ Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
   out.quantities.push_back({.name = "alpha_line_error",
                             .values = {found.error},
                             .units = "1/R",
-                            .long_name = "of alpha, from the scatter about the line"});
+                            .long_name = "of alpha, from the scatter about the line",
+                            .with_error = false});
   if (!found.reason.empty()) out.notes.emplace_back("alpha", found.reason);
   if (in.region.high > in.region.low) {
     out.quantities.push_back({.name = "phi_region",
@@ -172,7 +173,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
   }
   Measurement out;
   out.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
-                {"layer_height", at, "diameters", "hcp layers, 1/2 + k sqrt(2/3)"}};
+                {"layer_height", at, "diameter", "hcp layers, 1/2 + k sqrt(2/3)"}};
   out.quantities = {{.name = "n",
                      .places = "height",
                      .values = n,
@@ -181,7 +182,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
                     {.name = "found_height",
                      .places = "layer_height",
                      .values = where,
-                     .units = "diameters",
+                     .units = "diameter",
                      .long_name = "mean height of the centres near that place of the layer",
                      .beyond = nan},
                     {.name = "filling",

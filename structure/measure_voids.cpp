@@ -194,7 +194,8 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
                     {.name = "p0_points_error",
                      .places = "sigma",
                      .values = found.error,
-                     .long_name = "of one packing's p0, from its random points"},
+                     .long_name = "of one packing's p0, from its random points",
+                     .with_error = false},
                     {.name = "p0_gotoh",
                      .places = "sigma",
                      .values = theory,
@@ -219,22 +220,24 @@ Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
     published_volume.push_back(canonical_holes[k].volume_fraction);
   }
   const auto column = [](const char* name, std::vector<double> values, const char* long_name,
-                         const char* source) {
+                         const char* source, bool measured) {
     return MeasuredQuantity{.name = name,
                             .places = "hole",
                             .values = std::move(values),
                             .long_name = long_name,
                             .source = source,
-                            .beyond = nan};
+                            .beyond = nan,
+                            .with_error = measured};
   };
   constexpr const char* table_one = "Philippe & Bideau 2001, table I";
   Measurement out;
   out.places = {{"hole", names, "1", "Bernal's canonical holes"}};
   out.quantities = {
-      column("number_fraction", number, "of the classified holes", ""),
-      column("volume_fraction", volume, "of the classified holes' volume", ""),
-      column("number_fraction_published", published_number, "in Bernal's models", table_one),
-      column("volume_fraction_published", published_volume, "in Bernal's models", table_one)};
+      column("number_fraction", number, "of the classified holes", "", true),
+      column("volume_fraction", volume, "of the classified holes' volume", "", true),
+      column("number_fraction_published", published_number, "in Bernal's models", table_one, false),
+      column("volume_fraction_published", published_volume, "in Bernal's models", table_one,
+             false)};
   add_single("unclassified", table.unclassified_fraction(),
              "part of the volume in no canonical hole", out);
   return out;

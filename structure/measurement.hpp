@@ -35,6 +35,8 @@ struct MeasuredQuantity {
   double beyond = 0;
   /// Whether its change since the first tap is of interest too.
   bool with_change = false;
+  /// Whether its mean over packings has an error: not so where it is itself one, or a constant.
+  bool with_error = true;
 
   double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
 };

@@ -12,7 +12,7 @@ namespace {
 
 struct Label {
   ObservableLabel operator()(const MeanHeight&) const {
-    return {"mean_height", "d", "mean height of the sphere centres <Z>",
+    return {"mean_height", "diameter", "mean height of the sphere centres <Z>",
             "Philippe & Bideau 2001, sec. II"};
   }
   ObservableLabel operator()(const BottomFraction&) const {

@@ -34,7 +34,7 @@ class Analysed(Case):
             self.assertEqual(table["notes"]["realizations"], "3")
             self.assertRegex(table["notes"]["verdict"], "^(reached$|not reached: )")
             value = table["quantities"]["value"]
-            self.assertEqual(value["units"], "d")
+            self.assertEqual(value["units"], "diameter")
             self.assertGreater(table["quantities"]["value_error"]["values"], 0)
             blocks = table["quantities"]["blocks"]["values"]
             self.assertEqual(blocks, [192, 96, 48, 24, 12, 6])
@@ -56,7 +56,7 @@ class Analysed(Case):
         asked = ["tiny.h5", "spectrum", "--observable", "mean_height", "--last", "128",
                  "--segment", "128", "--window", "boxcar", "--sweep-point", "0"]
         table = self.analyse(*asked)["tables"][0]
-        self.assertEqual(table["quantities"]["density"]["units"], "d^2 taps")
+        self.assertEqual(table["quantities"]["density"]["units"], "diameter^2 taps")
         lines = table["quantities"]["lines"]["values"]
         self.assertEqual(sum(lines), 64)
         density = table["quantities"]["density"]["values"]

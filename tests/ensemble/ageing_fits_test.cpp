@@ -46,7 +46,7 @@ std::vector<std::uint64_t> numbers(const Table& table) {
   return bits;
 }
 
-const ObservableLabel height = {"mean_height", "diameters", "mean height", ""};
+const ObservableLabel height = {"mean_height", "diameter", "mean height", ""};
 
 double scalar(const Table& table, const std::string& name) {
   for (const Quantity& quantity : table.quantities) {

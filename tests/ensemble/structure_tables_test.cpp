@@ -30,7 +30,7 @@ Measurement measurement(const std::vector<double>& along, double value) {
   Measurement one{.part = "layers"};
   std::vector<double> heights;
   for (std::size_t k = 0; k < along.size(); ++k) heights.push_back(static_cast<double>(k + 1));
-  one.places = {{"height", heights, "diameters", "height"}};
+  one.places = {{"height", heights, "diameter", "height"}};
   one.quantities = {
       {.name = "n", .places = "height", .values = along, .long_name = "ends in nothing"},
       {.name = "share",

@@ -79,7 +79,7 @@ TEST_CASE("Labels name every observable, with its units and source") {
   for (const Observable& observable : observables) {
     const ObservableLabel text = label(observable);
     names.insert(text.name);
-    CHECK(text.units == (std::holds_alternative<MeanHeight>(observable) ? "d" : "1"));
+    CHECK(text.units == (std::holds_alternative<MeanHeight>(observable) ? "diameter" : "1"));
     CHECK_FALSE(text.long_name.empty());
     CHECK_FALSE(text.source.empty());
   }
