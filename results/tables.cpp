@@ -231,6 +231,7 @@ std::vector<std::string> table_names(const std::string& path) {
     const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
     for (const std::string group : derived_groups)
       if (exists(file, group)) for_each_table(open_group(file, group), group, name);
+    std::ranges::sort(names);
     return names;
   });
 }
