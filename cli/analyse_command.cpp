@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
+#include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/sweep_analysis.hpp"
@@ -21,7 +22,7 @@ namespace {
 struct AnalyseArguments {
   std::vector<std::string> inputs, observables;
   std::string point, csv;
-  bool json = false, not_stored = false;
+  bool json = false, not_stored = false, force = false;
   int threads = 0;
   // Of single analyses.
   std::uint64_t last = 0, segment = 0;
@@ -99,7 +100,9 @@ class Output {
   bool any_ = false;
 };
 
-void require_results(const AnalyseArguments& arguments) {
+/// Of what is read and what is written.
+void require_files(const AnalyseArguments& arguments) {
+  require_text_output("--csv", arguments.csv, arguments.inputs, arguments.force);
   for (const std::string& input : arguments.inputs) {
     if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
   }
@@ -107,7 +110,7 @@ void require_results(const AnalyseArguments& arguments) {
 
 /// All files, each with its tables stored in itself.
 int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
-  require_results(arguments);
+  require_files(arguments);
   const Provenance by = provenance_of_this_run("");
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   Output output(arguments);
@@ -125,7 +128,7 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
 
 /// All files together; stored where they are one.
 int run_sweep(const AnalyseArguments& arguments) {
-  require_results(arguments);
+  require_files(arguments);
   const Provenance by = provenance_of_this_run("");
   SweepSettings settings{.quantity = arguments.quantity, .against = arguments.against};
   if (arguments.last > 0) settings.last = arguments.last;
@@ -254,6 +257,7 @@ void add_analyse(CLI::App& app, int& code) {
                       "Its number, or POINTER=VALUE of the sweep (default: every point)");
   command->add_flag("--json", a.json, "Print JSON, for programs");
   command->add_option("--csv", a.csv, "Also write the tables to this file");
+  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results files as they are");
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))

@@ -72,9 +72,9 @@ std::string observable_name(const Scene& scene, const std::string& wanted) {
 std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const LoadedScene& pilot,
                                      Study& study, const std::string& output,
                                      const Provenance& by) {
-  require_replaceable(output, pilot.scene.name + ".h5");
   const bool exists = std::filesystem::exists(output);
   if (!exists || (arguments.force && !arguments.resume)) {
+    require_results_or_empty(output);
     return RunStore::create(output, study, Shard{}, by, arguments.force);
   }
   if (!arguments.resume) {
@@ -92,6 +92,18 @@ std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const Loade
   }
   study.realizations = std::max(study.realizations, file.study().realizations);
   return RunStore::resume(output, study, Shard{}, by);
+}
+
+/// Nothing that is written may replace what is read, nor one another.
+void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
+                     const std::string& output) {
+  std::vector<std::string> taken = pilot.files;
+  require_replaceable(output, pilot.scene.name + ".h5");
+  require_not_read("-o", output, taken);
+  taken.push_back(output);
+  require_text_output("--csv", arguments.csv, taken, arguments.force);
+  if (!arguments.csv.empty()) taken.push_back(arguments.csv);
+  require_text_output("--figure", arguments.figure, taken, arguments.force);
 }
 
 /// Runs whole rounds: one realization of every rung. The longest first, so that threads end
@@ -194,6 +206,7 @@ int run_cost(const CostArguments& arguments) {
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   const Provenance by = provenance_of_this_run(fmt::to_string(threads));
   const std::string output = arguments.output.empty() ? pilot.scene.name + ".h5" : arguments.output;
+  require_outputs(arguments, pilot, output);
   Study study = study_of(pilot);
   study.realizations = fewest_rounds;
   if (arguments.rounds > 0) study.realizations = std::min(study.realizations, arguments.rounds);
@@ -259,7 +272,9 @@ void add_cost(CLI::App& app, int& code) {
       ->envname("JOSTLE_THREADS");
   command->add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)");
   command->add_flag("--resume", a.resume, "Go on with the output file");
-  command->add_flag("--force", a.force, "Replace an existing output file");
+  command->add_flag(
+      "--force", a.force,
+      "Replace existing output files; with --resume, only those of --csv and --figure");
   command->add_option("--csv", a.csv, "Also write the tables to this file");
   command->add_option("--figure", a.figure, "Also write a gnuplot script to this file");
   command->add_flag("--no-progress", a.no_progress, "Print no progress")

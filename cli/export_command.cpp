@@ -62,21 +62,6 @@ RealizationId wanted(const ExportArguments& arguments) {
   return {chosen_points(file.study(), arguments.point).front(), arguments.realization};
 }
 
-/// Nothing is written where one of the files may not be.
-void require_free(const std::vector<ExportedFile>& files, const ExportArguments& arguments) {
-  for (const ExportedFile& file : files) {
-    if (!std::filesystem::exists(file.path)) continue;
-    if (std::filesystem::equivalent(file.path, arguments.input)) {
-      throw BadInput(fmt::format("{} is the input: write elsewhere with -o FILE", arguments.input));
-    }
-    if (!arguments.force) {
-      throw BadInput(fmt::format(
-          "{} exists and is kept. Write elsewhere with -o FILE, or replace it with --force.",
-          file.path));
-    }
-  }
-}
-
 int export_packings(const ExportArguments& arguments) {
   const ExportFormat format = formats.at(arguments.format);
   const std::string output =
@@ -86,10 +71,11 @@ int export_packings(const ExportArguments& arguments) {
   const RealizationId id = wanted(arguments);
   const auto frames = kept_frames(arguments.input, id, tap_choice(arguments.taps));
   const auto files = exported_files(format, output, frames);
+  // Nothing is written where one of the files may not be.
   for (const ExportedFile& file : files) {
     require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
+    require_text_output("-o", file.path, std::span(&arguments.input, 1), arguments.force);
   }
-  require_free(files, arguments);
   std::vector<std::uint64_t> taps;
   for (const ExportedFrame& frame : frames) taps.push_back(frame.tap);
   for (const ExportedFile& file : files) publish(file.path, std::as_bytes(std::span(file.text)));

@@ -12,6 +12,7 @@
 #include "cli/fit_run.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
+#include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
 #include "fitting/models.hpp"
@@ -27,7 +28,7 @@ struct FitArguments {
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
   int threads = 0;
-  bool json = false;
+  bool json = false, force = false;
 };
 
 std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
@@ -97,6 +98,7 @@ nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome
 }
 
 int run_fits(const FitArguments& arguments) {
+  require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
   const auto models = chosen_models(arguments.model);
   const std::vector<FitSource> sources = read_sources(arguments);
   if (!arguments.csv.empty() && sources.size() > 1) {
@@ -161,6 +163,7 @@ void add_fit(CLI::App& app, int& code) {
       ->envname("JOSTLE_THREADS");
   command->add_flag("--json", a.json, "Print JSON, for programs");
   command->add_option("--csv", a.csv, "Also write the curve with its fits to this file");
+  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->footer(
       "Examples:\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"

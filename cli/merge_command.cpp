@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/scene_file.hpp"
 #include "cli/scene_tables.hpp"
 #include "cli/standard_streams.hpp"
 #include "results/merge.hpp"
@@ -21,6 +23,18 @@ struct MergeArguments {
   std::string output;
   bool force = false;
 };
+
+void require_output(const MergeArguments& arguments) {
+  require_replaceable(arguments.output, "merged.h5");
+  require_not_read("-o", arguments.output, arguments.inputs);
+  if (arguments.force) return require_results_or_empty(arguments.output);
+  if (std::filesystem::exists(arguments.output)) {
+    throw BadInput(
+        fmt::format("{} exists and is kept. Write elsewhere with -o FILE, or replace it with "
+                    "--force.",
+                    arguments.output));
+  }
+}
 
 }  // namespace
 
@@ -39,7 +53,7 @@ void add_merge(CLI::App& app, int& code) {
       "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
       "different scenes, naming which.");
   command->callback([arguments, &code] {
-    require_replaceable(arguments->output, "merged.h5");
+    require_output(*arguments);
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"),
                 arguments->force);
     outlive_readers();

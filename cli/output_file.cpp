@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/fit_source.hpp"
 #include "cli/scene_file.hpp"
 
 namespace jostle {
@@ -16,6 +17,14 @@ bool is_descriptor(const fs::path& path) {
   std::error_code ignored;
   const fs::path named = fs::is_symlink(path, ignored) ? fs::read_symlink(path, ignored) : path;
   return fs::weakly_canonical(named.parent_path(), ignored).string().starts_with("/proc/");
+}
+
+/// Whether or not there are such files yet.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  if (fs::equivalent(a, b, ignored)) return true;
+  return fs::weakly_canonical(fs::absolute(a), ignored) ==
+         fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
 }  // namespace
@@ -33,6 +42,41 @@ void require_replaceable(const std::string& output, const std::string& example) 
                     "whole. Name one with -o, as {}",
                     output, example));
   }
+}
+
+void require_not_read(const std::string& option, const std::string& output,
+                      std::span<const std::string> read) {
+  for (const std::string& input : read) {
+    if (!is_same_file(output, input)) continue;
+    throw BadInput(
+        fmt::format("{} {}: this command works with that file and would destroy it. "
+                    "Write elsewhere.",
+                    option, output));
+  }
+}
+
+void require_results_or_empty(const std::string& output) {
+  std::error_code ignored;
+  if (!fs::exists(output, ignored) || fs::is_empty(output, ignored)) return;
+  if (is_results_file(output)) return;
+  throw BadInput(
+      fmt::format("{} is no results file, and --force replaces nothing else. Write elsewhere with "
+                  "-o FILE, or remove it yourself.",
+                  output));
+}
+
+void require_text_output(const std::string& option, const std::string& output,
+                         std::span<const std::string> read, bool force) {
+  if (output.empty()) return;
+  require_not_read(option, output, read);
+  std::error_code ignored;
+  if (fs::is_directory(output, ignored)) {
+    throw BadInput(fmt::format("{} {}: it is a folder. Name a file in it.", option, output));
+  }
+  if (force || !fs::is_regular_file(output, ignored) || is_descriptor(output)) return;
+  throw BadInput(fmt::format(
+      "{} exists and is kept. Write elsewhere with {} FILE, or replace it with --force.", output,
+      option));
 }
 
 }  // namespace jostle

@@ -1,11 +1,27 @@
 #pragma once
 
+#include <span>
 #include <string>
 
+// What a command may write to. Each refuses with BadInput, and is called before any work is done.
 namespace jostle {
 
-/// Refuses, with BadInput, what no file can replace: a folder, a pipe, a device, a descriptor such
-/// as /dev/stdout. `example` is a file's name to choose instead.
+/// Refuses what no file can replace: a folder, a pipe, a device, a descriptor such as /dev/stdout.
+/// `example` is a file's name to choose instead.
 void require_replaceable(const std::string& output, const std::string& example);
+
+/// Refuses an output that is one of the files that the command reads, by whatever name. `option` is
+/// the one that names the output.
+void require_not_read(const std::string& option, const std::string& output,
+                      std::span<const std::string> read);
+
+/// Refuses to let --force replace a file that holds something, but no results.
+void require_results_or_empty(const std::string& output);
+
+/// Refuses, for a file of text: one that the command reads; one that exists, unless `force`; and a
+/// folder. Pipes, devices and descriptors can be written to. Nothing to refuse where no output is
+/// named.
+void require_text_output(const std::string& option, const std::string& output,
+                         std::span<const std::string> read, bool force);
 
 }  // namespace jostle

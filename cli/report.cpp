@@ -130,6 +130,11 @@ std::string cost_line(const PointCost& cost) {
   return line + "\n";
 }
 
+std::string failure_line(const RealizationSummary& failed, const StudyPoint& point) {
+  return fmt::format("realization {} failed (seed {}): {}\n", failed.id.realization, point.seed,
+                     failed.reason);
+}
+
 std::string point_report(const ResultsFile& file, std::uint32_t point,
                          const std::vector<RealizationSummary>& realizations) {
   const StudyPoint& study = file.study().points[point];
@@ -142,8 +147,7 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
       ++cost.done;
     } else if (one.status == RealizationStatus::failed) {
       ++cost.failed;
-      failures += fmt::format("realization {} failed (seed {}): {}\n", one.id.realization,
-                              study.seed, one.reason);
+      failures += failure_line(one, study);
     } else if (in_share(file.shard(), file.study(), one.id)) {
       ++cost.unfinished;
     }
@@ -158,6 +162,16 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
 }
 
 }  // namespace
+
+std::string failure_lines(const ResultsFile& file) {
+  std::string lines;
+  for (const RealizationSummary& one : file.realizations()) {
+    if (one.status != RealizationStatus::failed) continue;
+    if (file.study().points.size() > 1) lines += fmt::format("sweep point {}, ", one.id.point);
+    lines += failure_line(one, file.study().points[one.id.point]);
+  }
+  return lines;
+}
 
 std::vector<std::uint64_t> reported_taps(std::uint64_t last) {
   std::vector<std::uint64_t> taps{0};

@@ -15,6 +15,9 @@ namespace jostle {
 /// file's.
 std::string report(const ResultsFile& file, const std::vector<RealizationSummary>& realizations);
 
+/// A line for every realization that failed, with its seed and reason.
+std::string failure_lines(const ResultsFile& file);
+
 /// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.
 std::vector<std::uint64_t> reported_taps(std::uint64_t last);
 

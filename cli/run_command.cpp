@@ -115,6 +115,7 @@ std::string output_path(const RunArguments& arguments, const LoadedScene& loaded
 OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
   OpenedRun run{
       .study = study_of(loaded), .output = output_path(arguments, loaded), .store = nullptr};
+  require_not_read("-o", run.output, loaded.files);
   const bool exists = std::filesystem::exists(run.output);
   const Provenance provenance = provenance_of_this_run(fmt::to_string(threads));
   if (exists && (arguments.resume || arguments.retry_failed)) {
@@ -133,6 +134,7 @@ OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int
                     "FILE, or replace it with --force.",
                     run.output));
   }
+  require_results_or_empty(run.output);
   run.store = RunStore::create(run.output, run.study, arguments.shard, provenance, arguments.force);
   return run;
 }
@@ -301,7 +303,9 @@ int run(const RunArguments& arguments) {
                     failure_text(error), resume_command(arguments)));
     return exit_broken_surroundings;
   }
-  return exit_code_of(ResultsFile(run.output));
+  const ResultsFile file(run.output);
+  if (arguments.quiet) print_to_standard_error(failure_lines(file));
+  return exit_code_of(file);
 }
 
 void add_options(CLI::App& command, RunArguments& arguments) {

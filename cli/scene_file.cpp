@@ -38,6 +38,7 @@ std::vector<Vec3> load_packing(const fs::path& folder, const PackingFile& file) 
 LoadedScene load_text(std::string text, const std::string& path) {
   LoadedScene loaded;
   loaded.text = std::move(text);
+  loaded.files = {path};
   ParsedScene parsed = parse_scene(loaded.text);
   if (!parsed.scene) {
     const std::size_t n = parsed.faults.size();
@@ -48,8 +49,10 @@ LoadedScene load_text(std::string text, const std::string& path) {
   loaded.resolved = resolved(loaded.scene).dump(2);
   const fs::path folder = fs::path(path).parent_path();
   try {
-    loaded.plans = make_plans(loaded.scene,
-                              [&](const PackingFile& file) { return load_packing(folder, file); });
+    loaded.plans = make_plans(loaded.scene, [&](const PackingFile& file) {
+      loaded.files.push_back((folder / file.path).string());
+      return load_packing(folder, file);
+    });
   } catch (const StartError& error) {
     throw BadInput(fmt::format("{}: /start: {}", path, error.what()));
   } catch (const ResultsError& error) {

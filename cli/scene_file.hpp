@@ -22,6 +22,7 @@ struct LoadedScene {
   std::string text;      // the file, word for word
   std::string resolved;  // with every default written out
   std::vector<Plan> plans;
+  std::vector<std::string> files;  // what it was read from: the scene, packings it starts from
 };
 
 /// Reads a scene and the packings it starts from. Throws BadInput listing every fault.

@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
+#include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/structure_run.hpp"
@@ -25,7 +26,7 @@ struct StructureArguments {
   std::vector<std::string> inputs, parts;
   std::vector<std::uint64_t> taps;
   std::string point, settings, csv;
-  bool json = false, not_stored = false;
+  bool json = false, not_stored = false, force = false;
   int threads = 0;
 };
 
@@ -91,7 +92,15 @@ bool show(const StructureArguments& arguments, const std::vector<Table>& tables,
   return any;
 }
 
+/// What is read stays.
+void require_output(const StructureArguments& arguments) {
+  std::vector<std::string> read = arguments.inputs;
+  if (!arguments.settings.empty()) read.push_back(arguments.settings);
+  require_text_output("--csv", arguments.csv, read, arguments.force);
+}
+
 int measure_structure(const StructureArguments& arguments) {
+  require_output(arguments);
   const Provenance by = provenance_of_this_run("");
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   const bool results = is_results_file(arguments.inputs.front());
@@ -151,6 +160,7 @@ void add_structure(CLI::App& app, int& code) {
                       "Its number, or POINTER=VALUE of the sweep (default: every point)");
   command->add_flag("--json", a.json, "Print JSON, for programs");
   command->add_option("--csv", a.csv, "Also write the tables to this file");
+  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))

@@ -64,8 +64,10 @@ class Cost(Case):
         self.cost("--rounds", "2", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5")
         kept = self.cost("--rounds", "4", "--taps", "3", "-o", "b.h5", expect=BAD_INPUT)
         self.assertIn("b.h5 exists and is kept", kept.stderr)
-        self.cost("--rounds", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
-                  "--resume")
+        again = ("--rounds", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
+                 "--resume")
+        self.assertIn("b.csv exists and is kept", self.cost(*again, expect=BAD_INPUT).stderr)
+        self.cost(*again, "--force")
         self.assertEqual(self.rows("a.csv"), self.rows("b.csv"))
         self.assertEqual(self.digest("tiny-cost.h5"), self.digest("b.h5"))
         other = self.cost("--rounds", "4", "--taps", "4", "-o", "b.h5", "--resume", "--observable",

@@ -118,7 +118,7 @@ class Export(Case):
         self.assertFalse((self.folder / "tiny_tap0.vtp").exists())
         self.jostle(*refused, "--force")
         self.assertNotEqual((self.folder / "tiny.pvd").read_text(), "mine")
-        self.assertIn("is the input", self.jostle("export", "tiny.h5", "--format", "lammps", "-o",
+        self.assertIn("would destroy it", self.jostle("export", "tiny.h5", "--format", "lammps", "-o",
                                                   "tiny.h5", "--force", expect=BAD_INPUT).stderr)
 
     def test_what_is_not_there_is_answered_with_what_is(self):

@@ -50,7 +50,7 @@ class Shards(Case):
         parts = [self.shard(index, 4) for index in (1, 2, 3, 4)]
         self.jostle("merge", *reversed(parts), "-o", "all.h5")
         self.assertEqual(self.digest("all.h5"), self.digest("whole.h5"))
-        self.jostle("merge", *parts, "-o", "all.h5", expect=BROKEN)
+        self.jostle("merge", *parts, "-o", "all.h5", expect=BAD_INPUT)
         self.jostle("merge", *parts, "-o", "all.h5", "--force")
         self.assertEqual(self.digest("all.h5"), self.digest("whole.h5"))
 
