@@ -16,6 +16,7 @@ namespace jostle {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr int most_attempts = 5;  // to find a minimum that no profile undercuts
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
 bool inside(const Parameter& parameter, double value) {
@@ -96,6 +97,8 @@ class Fitter {
   void estimate_errors(const CurveResiduals& residuals, Fit& fit) const;
   /// False where a profile found a lower minimum; the search then goes on from there.
   bool find_intervals(Fit& fit);
+  void void_intervals(Fit& fit) const;
+  void remark_on_order(Fit& fit) const;
   bool has_intervals(const Fit& fit) const;
   SolverOptions solver_options(const CurveResiduals& residuals) const;
 
@@ -276,6 +279,34 @@ bool Fitter::find_intervals(Fit& fit) {
   return true;
 }
 
+// Profiles have found lower and lower costs: the minimum, if there is one, is somewhere else.
+void Fitter::void_intervals(Fit& fit) const {
+  for (std::size_t j = 0; j < free_.size(); ++j) {
+    if (!free_[j]) continue;
+    fit.estimates[j].identifiability = Identifiability::identified;  // until judged
+    for (Interval& interval : fit.estimates[j].intervals) interval = {-infinite, infinite};
+  }
+  fit.remarks.push_back(
+      "The least squares still fall where parameters are held elsewhere: no minimum was found, and "
+      "the intervals are open.");
+}
+
+// A parameter that is fixed keeps its name, whatever the others are.
+void Fitter::remark_on_order(Fit& fit) const {
+  const ParameterValues canonical = model_.canonical(values_);
+  if (canonical == values_) return;
+  std::ostringstream text;
+  text.precision(4);
+  text << "With a parameter fixed the others came out in another order than this law's: in its "
+          "order "
+          "the same curve reads";
+  for (std::size_t j = 0; j < canonical.size(); ++j) {
+    text << (j == 0 ? " " : ", ") << model_.parameters()[j].name << " = " << canonical[j];
+  }
+  text << ", and what names and meanings say of order does not hold here.";
+  fit.remarks.push_back(text.str());
+}
+
 std::variant<Fit, Refusal> Fitter::operator()() {
   if (!descend_from_all()) {
     return Refusal{RefusalKind::no_start, "the model has no finite value and slope at any start"};
@@ -291,13 +322,17 @@ std::variant<Fit, Refusal> Fitter::operator()() {
     }
     Fit fit;
     describe_fit(CurveResiduals(model_, curve_, values_, free_), fit);
-    if (has_intervals(fit) && !find_intervals(fit) && attempt < 3) continue;
+    if (has_intervals(fit) && !find_intervals(fit)) {
+      if (attempt < most_attempts) continue;
+      void_intervals(fit);
+    }
     if (!is_minimum(fit.reason)) {
       fit.remarks.push_back(std::string("The fit did not settle: ") + describe(fit.reason) + ".");
     }
     if (fit.dof == 0) {
       fit.remarks.push_back("As many parameters as points: there are no errors to estimate.");
     }
+    if (any_fixed) remark_on_order(fit);
     judge(curve_, fit);
     return fit;
   }

@@ -14,6 +14,11 @@ constexpr double poor_condition = 1e5;
 constexpr double wide_factor = 2;     // of a positive parameter
 constexpr double wide_share = 0.125;  // of the curve, for a place or a level
 
+// Where the curvature of the least squares is rounding and a minimum lies absurdly far from all
+// that was measured, whatever closed its interval was not the data.
+constexpr double singular_condition = 4.5e15;  // 1 / epsilon
+constexpr double absurd = 100;
+
 double span(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
@@ -69,6 +74,14 @@ std::string statement(const Estimate& estimate) {
       break;
   }
   return text.str();
+}
+
+bool is_absurd(const Estimate& estimate, const Curve& curve) {
+  const double size = std::abs(estimate.value);
+  if (!(estimate.standard_error > absurd * size)) return false;
+  if (estimate.parameter.unit != ParameterUnit::value) return estimate.parameter.lower == 0;
+  const auto [low, high] = std::minmax_element(curve.x.begin(), curve.x.end());
+  return size > absurd * std::max(std::abs(*low), std::abs(*high));
 }
 
 bool is_loose(const Estimate& estimate) {
@@ -131,6 +144,10 @@ bool Interval::closed() const {
 void judge(const Curve& curve, Fit& fit) {
   for (Estimate& estimate : fit.estimates) {
     const bool examined = estimate.identifiability == Identifiability::identified;
+    if (examined && fit.condition > singular_condition && is_absurd(estimate, curve)) {
+      const double infinite = std::numeric_limits<double>::infinity();
+      for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
+    }
     if (examined) estimate.identifiability = verdict(estimate, curve);
     estimate.statement = statement(estimate);
   }

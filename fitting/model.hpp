@@ -50,13 +50,14 @@ class Model {
   /// free of `faults`.
   virtual std::string refusal(const Curve& curve) const;
 
-  /// Candidates for each nonlinear parameter of a curve, [n_parameters][any]; entries of linear
-  /// ones are ignored. By default 13 decades about 1 for a positive parameter (times the range of t
-  /// for a time), and 0 and +-1 otherwise.
+  /// Candidates for each nonlinear parameter of a curve, [n_parameters][any], ascending; entries of
+  /// linear ones are ignored. By default 13 decades about 1 for a positive parameter (times the
+  /// range of t for a time), and 0 and +-1 otherwise.
   virtual std::vector<std::vector<double>> candidates(const Curve& curve) const;
-  /// Starting points, best first, at most `n`: by default the best of all combinations of
-  /// candidates, the linear parameters solved for (variable projection). A parameter with a
-  /// finite value in `fixed` [n_parameters] keeps it; NaN marks those that are free.
+  /// Starting points, at most `n`: by default those combinations of candidates that are better than
+  /// their neighbours, best first, then the best of the others; the linear parameters are solved
+  /// for (variable projection). A parameter with a finite value in `fixed` [n_parameters] keeps it;
+  /// NaN marks those that are free.
   virtual std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                               std::size_t n) const;
   /// The same curve with its parameters in standard order (as tau1 <= tau2).

@@ -20,7 +20,8 @@ class InverseLog final : public Model {
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
-  std::vector<std::vector<double>> candidates(const Curve& curve) const override;
+  std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
+                                      std::size_t n) const override;
 };
 
 /// Z(t) = Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau)): the inverse log for 1/Z, so
@@ -49,7 +50,8 @@ class TwoExponentials final : public Model {
   const std::vector<Parameter>& parameters() const override;
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
-  std::vector<std::vector<double>> candidates(const Curve& curve) const override;
+  std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
+                                      std::size_t n) const override;
   ParameterValues canonical(const ParameterValues& p) const override;
 };
 
@@ -64,7 +66,8 @@ class StretchedExponential final : public Model {
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
-  std::vector<std::vector<double>> candidates(const Curve& curve) const override;
+  std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
+                                      std::size_t n) const override;
 };
 
 /// A(t) = A_inf (1 - 1 / (1 + B ln(1 + t/tau))), t the lag. PB eq. 6.
@@ -77,7 +80,8 @@ class Ageing final : public Model {
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
-  std::vector<std::vector<double>> candidates(const Curve& curve) const override;
+  std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
+                                      std::size_t n) const override;
 };
 
 /// Phi(z) = (Phi_0 - alpha z) / (1 + exp(beta (z - z_star))), t = height z in R; beta > 0. PB

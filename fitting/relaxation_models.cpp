@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/grid.hpp"
 #include "fitting/models.hpp"
 
 namespace jostle {
@@ -23,14 +24,31 @@ std::pair<double, double> positive_range(const Curve& curve) {
   return last > 0 ? std::pair{first, last} : std::pair{1.0, 1.0};
 }
 
-// Of the inverse logs: tau from below the first time to beyond the last, B from a curve that hardly
-// leaves the linear regime to one that saturates.
-std::vector<double> log_times(const Curve& curve) {
+// Of the inverse logs with strength number `b` and time number `tau`. What a curve determines is
+// how far the logarithm has grown at its end, B ln(1 + last/tau): from hardly out of the linear
+// regime to saturated; and whether tau is below its first time, among its times, or beyond.
+Grid log_grid(const Curve& curve, std::span<const double> fixed, std::size_t b, std::size_t tau) {
   const auto [first, last] = positive_range(curve);
-  return geometric(0.03 * first, 3 * last, 14);
-}
-std::vector<double> log_strengths() {
-  return geometric(1e-2, 1e2, 9);
+  Grid grid;
+  grid.axes.assign(fixed.size(), {0});
+  const std::vector<double> times = geometric(0.03 * first, 100 * last, 18);
+  if (std::isnan(fixed[b])) {
+    grid.axes[b] = geometric(1e-2, 1e3, 11);
+    grid.axes[tau] = times;
+    grid.place = [b, tau, end = last](ParameterValues& p) {
+      p[b] /= std::log1p(end / p[tau]);
+      return true;
+    };
+    return grid;
+  }
+  // Where the strength is given, the growth sets the time.
+  grid.axes[tau] = times;
+  for (const double growth : geometric(1e-2, 1e3, 26)) {
+    const double time = last / std::expm1(growth / fixed[b]);
+    if (time > 1e-300) grid.axes[tau].push_back(time);
+  }
+  std::sort(grid.axes[tau].begin(), grid.axes[tau].end());
+  return grid;
 }
 
 }  // namespace
@@ -73,8 +91,10 @@ std::string InverseLog::refusal(const Curve& curve) const {
   return negative_time(curve);
 }
 
-std::vector<std::vector<double>> InverseLog::candidates(const Curve& curve) const {
-  return {{}, {}, log_strengths(), log_times(curve)};
+std::vector<ParameterValues> InverseLog::starts(const Curve& curve, std::span<const double> fixed,
+                                                std::size_t n) const {
+  const Curve sample = thinned(curve, 128);
+  return best_of_grid(*this, sample, fixed, log_grid(sample, fixed, 2, 3), n);
 }
 
 std::string InverseLogHeight::source() const {
@@ -145,8 +165,8 @@ std::vector<ParameterValues> InverseLogHeight::starts(const Curve& curve,
     if (p[0] > 0 && p[1] > 0 && starts.size() < n) starts.push_back(p);
   }
   if (starts.empty()) {
-    const double times = log_times(curve)[7];
-    ParameterValues p = {*low, *high, 1, times};
+    const auto [first, last] = positive_range(curve);
+    ParameterValues p = {*low, *high, 1, std::sqrt(first * last)};
     for (std::size_t j = 0; j < p.size(); ++j) p[j] = std::isnan(fixed[j]) ? p[j] : fixed[j];
     starts.push_back(p);
   }
@@ -195,12 +215,20 @@ double TwoExponentials::value_and_gradient(double t, const double* p, double* gr
   return p[0] + p[1] * fast + p[3] * slow;
 }
 
-std::vector<std::vector<double>> TwoExponentials::candidates(const Curve& curve) const {
-  const auto [first, last] = positive_range(curve);
-  const std::vector<double> times = geometric(0.5 * first, 3 * last, 14);
+// Up to times over which a curve is hardly more than a parabola.
+std::vector<ParameterValues> TwoExponentials::starts(const Curve& curve,
+                                                     std::span<const double> fixed,
+                                                     std::size_t n) const {
+  const Curve sample = thinned(curve, 128);
+  const auto [first, last] = positive_range(sample);
+  Grid grid;
+  grid.axes.assign(fixed.size(), {0});
   // Not the same times for both: equal ones make the amplitudes meaningless.
-  const std::vector<double> between = geometric(0.6 * first, 3.6 * last, 14);
-  return {{}, {}, times, {}, between};
+  grid.axes[2] = geometric(0.3 * first, 1000 * last, 20);
+  grid.axes[4] = geometric(0.4 * first, 1300 * last, 20);
+  const bool ordered = std::isnan(fixed[2]) && std::isnan(fixed[4]);
+  grid.place = [ordered](const ParameterValues& p) { return !ordered || p[2] < p[4]; };
+  return best_of_grid(*this, sample, fixed, std::move(grid), n);
 }
 
 ParameterValues TwoExponentials::canonical(const ParameterValues& p) const {
@@ -227,31 +255,47 @@ const std::vector<Parameter>& StretchedExponential::parameters() const {
   return list;
 }
 
+// As rho_0 + (rho_inf - rho_0) (1 - exp): where the law has hardly begun rho_inf can be any size.
 double StretchedExponential::value(double t, const double* p) const {
-  return p[0] - (p[0] - p[1]) * std::exp(-std::pow(t / p[2], p[3]));
+  return p[1] - (p[0] - p[1]) * std::expm1(-std::pow(t / p[2], p[3]));
 }
 
 double StretchedExponential::value_and_gradient(double t, const double* p, double* gradient) const {
   // At t = 0 the slope in t is infinite, but nothing depends on tau and beta.
   const double log = t > 0 ? std::log(t / p[2]) : 0;
   const double power = t > 0 ? std::exp(p[3] * log) : 0;
-  const double left = std::exp(-power);
+  const double gone = -std::expm1(-power), left = 1 - gone;
   // Far out left * power is 0, though power may be infinite.
   const double change = left > 0 ? (p[0] - p[1]) * left * power : 0;
-  gradient[0] = 1 - left;
+  gradient[0] = gone;
   gradient[1] = left;
   gradient[2] = -change * p[3] / p[2];
   gradient[3] = change * log;
-  return p[0] - (p[0] - p[1]) * left;
+  return p[1] + (p[0] - p[1]) * gone;
 }
 
 std::string StretchedExponential::refusal(const Curve& curve) const {
   return negative_time(curve);
 }
 
-std::vector<std::vector<double>> StretchedExponential::candidates(const Curve& curve) const {
-  const auto [first, last] = positive_range(curve);
-  return {{}, {}, geometric(0.1 * first, 30 * last, 16), {0.15, 0.25, 0.4, 0.6, 1, 1.6, 2.5}};
+// Stretched: any time. Compressed, the law is a step as wide as tau/beta: it may be at any point.
+std::vector<ParameterValues> StretchedExponential::starts(const Curve& curve,
+                                                          std::span<const double> fixed,
+                                                          std::size_t n) const {
+  const Curve sample = thinned(curve, 128);
+  const auto [first, last] = positive_range(sample);
+  std::vector<double> times = geometric(0.1 * first, 30 * last, 16);
+  std::vector<double> points = sample.t;
+  std::sort(points.begin(), points.end());
+  const std::size_t places =
+      std::isnan(fixed[3]) ? std::min<std::size_t>(24, points.size()) : points.size();
+  for (std::size_t i = 0; i < places; ++i) {
+    const double time = points[(2 * i + 1) * points.size() / (2 * places)];
+    if (time > 0) times.push_back(time);
+  }
+  std::sort(times.begin(), times.end());
+  Grid grid{.axes = {{0}, {0}, times, {0.15, 0.25, 0.4, 0.6, 1, 1.6, 2.5, 5, 10, 25}}};
+  return best_of_grid(*this, sample, fixed, std::move(grid), n);
 }
 
 std::string Ageing::source() const {
@@ -291,8 +335,10 @@ std::string Ageing::refusal(const Curve& curve) const {
   return negative_time(curve);
 }
 
-std::vector<std::vector<double>> Ageing::candidates(const Curve& curve) const {
-  return {{}, log_strengths(), log_times(curve)};
+std::vector<ParameterValues> Ageing::starts(const Curve& curve, std::span<const double> fixed,
+                                            std::size_t n) const {
+  const Curve sample = thinned(curve, 128);
+  return best_of_grid(*this, sample, fixed, log_grid(sample, fixed, 1, 2), n);
 }
 
 }  // namespace jostle
