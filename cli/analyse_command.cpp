@@ -5,12 +5,14 @@
 #include <memory>
 
 #include "cli/analyse_run.hpp"
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
 #include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
@@ -106,6 +108,7 @@ void require_files(const AnalyseArguments& arguments) {
   for (const std::string& input : arguments.inputs) {
     if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
   }
+  require_different(arguments.inputs);
 }
 
 /// All files, each with its tables stored in itself.
@@ -117,13 +120,24 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
     {
-      const ResultsFile file(input);
+      const ResultsFile file = open_results(input);
       tables = analyse(file, chosen_points(file.study(), arguments.point), analyses, threads);
     }
     output.show(tables, input);
     if (!arguments.not_stored) keep_tables(input, "analysis", tables, by);
   }
   return output.end(by);
+}
+
+/// Copies of a file hold the same run.
+void require_different_runs(const std::vector<ResultsFile>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[i].run_id() != files[j].run_id()) continue;
+      throw BadInput(fmt::format("{} and {} hold the same run, which counts once", files[j].path(),
+                                 files[i].path()));
+    }
+  }
 }
 
 /// All files together; stored where they are one.
@@ -135,7 +149,8 @@ int run_sweep(const AnalyseArguments& arguments) {
   std::vector<Table> tables;
   {
     std::vector<ResultsFile> files;
-    for (const std::string& input : arguments.inputs) files.emplace_back(input);
+    for (const std::string& input : arguments.inputs) files.push_back(open_results(input));
+    require_different_runs(files);
     std::vector<const ResultsFile*> all;
     for (const ResultsFile& file : files) all.push_back(&file);
     tables = sweep_tables(all, {}, requests(arguments, settings));
@@ -152,6 +167,30 @@ int run_sweep(const AnalyseArguments& arguments) {
   return output.end(by);
 }
 
+/// Refuses a tap that is there twice.
+std::vector<std::uint64_t> ascending(const char* option, std::vector<std::uint64_t> taps) {
+  std::ranges::sort(taps);
+  const auto twice = std::ranges::adjacent_find(taps);
+  if (twice == taps.end()) return taps;
+  throw BadInput(fmt::format("{}: {} is there twice", option, *twice));
+}
+
+/// The names of kinds stand among those of files.
+CLI::Validator existing_file() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        if (CLI::ExistingFile(std::string(text)).empty()) return {};
+        return fmt::format("{}: there is no such file, and no such analysis; there are {}", text,
+                           "steady, spectrum, ageing, hysteresis, sweep");
+      },
+      "FILE");
+}
+
+/// At every place that takes one.
+CLI::Option* add_last(CLI::App& kind, AnalyseArguments& arguments, const char* description) {
+  return kind.add_option("--last", arguments.last, description)->check(whole_from(1));
+}
+
 CLI::App* add_kind(CLI::App& command, const char* name, const char* description,
                    AnalyseArguments& arguments) {
   auto* kind = command.add_subcommand(name, description);
@@ -164,7 +203,7 @@ CLI::App* add_kind(CLI::App& command, const char* name, const char* description,
 void add_steady(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
   auto* kind =
       add_kind(command, "steady", "Value, deviation and memory of the last taps", *arguments);
-  kind->add_option("--last", arguments->last, "Taps at the end (default: a quarter)");
+  add_last(*kind, *arguments, "Taps at the end (default: a quarter)");
   kind->callback([arguments, &code] {
     Analyses analyses;
     analyses.steady = requests(*arguments, steady_settings(*arguments));
@@ -176,7 +215,7 @@ void add_spectrum(CLI::App& command, const std::shared_ptr<AnalyseArguments>& ar
                   int& code) {
   auto* kind =
       add_kind(command, "spectrum", "Power spectrum of the last taps, and its slope", *arguments);
-  kind->add_option("--last", arguments->last, "Taps at the end (default: half of them)");
+  add_last(*kind, *arguments, "Taps at the end (default: half of them)");
   kind->add_option("--segment", arguments->segment,
                    "Taps of a segment of Welch's average (default: about a quarter of them)")
       ->check(CLI::Range(16, 1000000000));
@@ -203,11 +242,8 @@ void add_ageing(CLI::App& command, const std::shared_ptr<AnalyseArguments>& argu
       ->delimiter(',')
       ->check(CLI::Range(1, 1000000000));
   kind->callback([arguments, &code] {
-    AgeingSettings settings{arguments->waiting_times, arguments->lags};
-    for (auto* taps : {&settings.waiting_times, &settings.lags}) {
-      std::ranges::sort(*taps);
-      taps->erase(std::unique(taps->begin(), taps->end()), taps->end());
-    }
+    const AgeingSettings settings{ascending("--waiting-times", arguments->waiting_times),
+                                  ascending("--lags", arguments->lags)};
     Analyses analyses;
     analyses.ageing = requests(*arguments, settings);
     code = run_analyses(*arguments, analyses);
@@ -219,8 +255,7 @@ void add_hysteresis(CLI::App& command, const std::shared_ptr<AnalyseArguments>& 
   auto* kind =
       add_kind(command, "hysteresis",
                "Steady value of every step of a protocol, branches, areas of loops", *arguments);
-  kind->add_option("--last", arguments->last,
-                   "Taps at the end of each step (default: a quarter of the shortest)");
+  add_last(*kind, *arguments, "Taps at the end of each step (default: a quarter of the shortest)");
   kind->callback([arguments, &code] {
     HysteresisSettings settings;
     if (arguments->last > 0) settings.last = arguments->last;
@@ -239,7 +274,7 @@ void add_sweep(CLI::App& command, const std::shared_ptr<AnalyseArguments>& argum
                    "fit: steady/sigma, kww/rho_inf");
   kind->add_option("--against", arguments->against,
                    "JSON pointer into the scene (default: the first of the sweep)");
-  kind->add_option("--last", arguments->last, "Taps at the end (default: a quarter)");
+  add_last(*kind, *arguments, "Taps at the end (default: a quarter)");
   kind->callback([arguments, &code] { code = run_sweep(*arguments); });
 }
 
@@ -252,11 +287,11 @@ void add_analyse(CLI::App& app, int& code) {
   AnalyseArguments& a = *arguments;
   command->add_option("input", a.inputs, "Results, one file or several")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   command->add_option("--sweep-point", a.point,
                       "Its number, or POINTER=VALUE of the sweep (default: every point)");
   command->add_flag("--json", a.json, "Print JSON, for programs");
-  command->add_option("--csv", a.csv, "Also write the tables to this file");
+  command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results files as they are");
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")

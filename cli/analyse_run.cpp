@@ -48,9 +48,18 @@ Table made(const ObservableSeries& series, const SpectrumSettings& settings, con
   return analysis.table();
 }
 
+/// A lag of a tap follows the last waiting time.
+void require_reached(const char* what, std::span<const std::uint64_t> taps, std::uint64_t last) {
+  const auto beyond = std::ranges::find_if(taps, [&](std::uint64_t tap) { return tap > last; });
+  if (beyond == taps.end()) return;
+  throw BadInput(fmt::format("{} {} is too late: the last possible is {}", what, *beyond, last));
+}
+
 Table made(const ObservableSeries& series, const AgeingSettings& settings,
            const Surroundings& around) {
   if (series.n_rows() < 3) throw BadInput("needs two taps");
+  require_reached("waiting time", settings.waiting_times, series.n_rows() - 2);
+  require_reached("lag", settings.lags, series.n_rows() - 1);
   AgeingGrid grid = ageing_grid(series.n_rows());
   if (!settings.waiting_times.empty()) grid.waiting_times = settings.waiting_times;
   if (!settings.lags.empty()) grid.lags = settings.lags;
@@ -118,9 +127,14 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
                          std::uint64_t divisor, std::uint64_t least) {
   const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
   const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
-  if (wanted > available || wanted < least) {
-    throw BadInput(fmt::format("asks for the last {} taps, at least {}; there are {}",
-                               std::max(wanted, least), least, available));
+  if (available < least) {
+    throw BadInput(fmt::format("needs at least {} taps; there are {}", least, available));
+  }
+  if (wanted < least) {
+    throw BadInput(fmt::format("asks for the last {} taps; at least {} are needed", wanted, least));
+  }
+  if (wanted > available) {
+    throw BadInput(fmt::format("asks for the last {} taps; there are {}", wanted, available));
   }
   return {.observable = series.label().name,
           .units = series.label().units,

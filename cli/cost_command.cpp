@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/cost_report.hpp"
@@ -15,6 +16,7 @@
 #include "cli/output_file.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/provenance.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
@@ -259,7 +261,7 @@ void add_cost(CLI::App& app, int& code) {
   command->add_option("--observable", a.observable,
                       "What is to be accurate (default: bottom_fraction, or the first observed)");
   command->add_option("--target", a.target, "Recommend the cheapest way to this total error")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   add_duration(*command, a);
   command->add_option("--rounds", a.rounds, "Run so many rounds instead: the same give the same")
       ->check(CLI::Range(1, 1000000));
@@ -270,13 +272,15 @@ void add_cost(CLI::App& app, int& code) {
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");
-  command->add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)");
+  command->add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
+      ->check(file_to_write());
   command->add_flag("--resume", a.resume, "Go on with the output file");
   command->add_flag(
       "--force", a.force,
       "Replace existing output files; with --resume, only those of --csv and --figure");
-  command->add_option("--csv", a.csv, "Also write the tables to this file");
-  command->add_option("--figure", a.figure, "Also write a gnuplot script to this file");
+  command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
+  command->add_option("--figure", a.figure, "Also write a gnuplot script to this file")
+      ->check(file_to_write());
   command->add_flag("--no-progress", a.no_progress, "Print no progress")
       ->envname("JOSTLE_NO_PROGRESS");
   command->footer(

@@ -5,9 +5,10 @@
 #include <map>
 #include <memory>
 
+#include "cli/arguments.hpp"
 #include "cli/commands.hpp"
-#include "cli/fit_source.hpp"
 #include "cli/output_file.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "results/export.hpp"
 #include "results/publish.hpp"
@@ -57,8 +58,8 @@ RealizationId wanted(const ExportArguments& arguments) {
     }
     return {};
   }
+  const ResultsFile file = open_results(arguments.input);
   if (arguments.point.empty()) return {0, arguments.realization};
-  const ResultsFile file(arguments.input);
   return {chosen_points(file.study(), arguments.point).front(), arguments.realization};
 }
 
@@ -100,9 +101,11 @@ void add_export(CLI::App& app, int& code) {
   command->add_option("--format", a.format, "extxyz, lammps (text dump), vtp (VTK points)")
       ->required()
       ->check(CLI::IsMember({"extxyz", "lammps", "vtp"}));
-  command->add_option("-o,--output", a.output,
-                      "The file to write (default: the input's name with .xyz, .dump or .vtp, in "
-                      "the current folder)");
+  command
+      ->add_option("-o,--output", a.output,
+                   "The file to write (default: the input's name with .xyz, .dump or .vtp, in "
+                   "the current folder)")
+      ->check(file_to_write());
   command->add_option("--sweep-point", a.point,
                       "Its number, or POINTER=VALUE of the sweep (default: the first)");
   auto* realization =

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/curve_file.hpp"
@@ -14,6 +16,7 @@
 #include "cli/keep_tables.hpp"
 #include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "fitting/models.hpp"
 
@@ -28,7 +31,8 @@ struct FitArguments {
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
   int threads = 0;
-  bool json = false, force = false;
+  bool json = false, force = false, not_stored = false;
+  bool resampling_asked_for = false;
 };
 
 std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
@@ -45,9 +49,13 @@ std::map<std::string, double> fixed_parameters(const std::vector<std::string>& t
     const auto equals = text.find('=');
     char* end = nullptr;
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    fixed[text.substr(0, equals)] = std::strtod(value.c_str(), &end);
-    if (value.empty() || *end != '\0') {
+    const double number = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0' || !std::isfinite(number)) {
       throw BadInput(fmt::format("--fix {}: not NAME=NUMBER", text));
+    }
+    const std::string name = text.substr(0, equals);
+    if (!fixed.emplace(name, number).second) {
+      throw BadInput(fmt::format("--fix {}: {} is fixed already", text, name));
     }
   }
   return fixed;
@@ -65,6 +73,12 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
   if (!arguments.observable.empty() || !arguments.point.empty()) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
                                arguments.input));
+  }
+  if (arguments.resampling_asked_for) {
+    throw BadInput(fmt::format(
+        "{}: not a results file, so without realizations that --resample, --resamples or --seed "
+        "could be of",
+        arguments.input));
   }
   const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
   FitSource source;
@@ -130,7 +144,7 @@ int run_fits(const FitArguments& arguments) {
         {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
     std::fputs((object.dump(2) + "\n").c_str(), stdout);
   }
-  if (!tables.empty()) keep_tables(arguments.input, "fits", tables, by);
+  if (!tables.empty() && !arguments.not_stored) keep_tables(arguments.input, "fits", tables, by);
   return any ? exit_ok : exit_bad_input;
 }
 
@@ -151,18 +165,21 @@ void add_fit(CLI::App& app, int& code) {
   command->add_option("--range", a.range,
                       "FIRST:LAST of t, either may be left out (default: results from tap 1)");
   command->add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
-  command
-      ->add_option("--resample", a.resample,
-                   "Errors from resampled realizations: jackknife (default), bootstrap, none")
-      ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
-  command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
-      ->check(CLI::Range(2, 1000000));
-  command->add_option("--seed", a.seed, "Of the bootstrap (default 1)");
+  auto* resample =
+      command
+          ->add_option("--resample", a.resample,
+                       "Errors from resampled realizations: jackknife (default), bootstrap, none")
+          ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
+  auto* count = command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
+                    ->check(CLI::Range(2, 1000000));
+  auto* seed = command->add_option("--seed", a.seed, "Of the bootstrap (default 1)");
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");
   command->add_flag("--json", a.json, "Print JSON, for programs");
-  command->add_option("--csv", a.csv, "Also write the curve with its fits to this file");
+  command->add_option("--csv", a.csv, "Also write the curve with its fits to this file")
+      ->check(file_to_write());
+  command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->footer(
       "Examples:\n"
@@ -172,7 +189,11 @@ void add_fit(CLI::App& app, int& code) {
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");
-  command->callback([arguments, &code] { code = run_fits(*arguments); });
+  command->callback([=, &code] {
+    arguments->resampling_asked_for = (resample->count() > 0 && arguments->resample != "none") ||
+                                      count->count() > 0 || seed->count() > 0;
+    code = run_fits(*arguments);
+  });
 }
 
 }  // namespace jostle

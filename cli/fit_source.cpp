@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 
 #include "cli/observable_series.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "ensemble/moments.hpp"
 #include "results/results_file.hpp"
@@ -23,18 +22,13 @@ double read_end(const std::string& text, double otherwise, const std::string& op
   if (text.empty()) return otherwise;
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
+  if (error != std::errc() || end != text.data() + text.size() || std::isnan(value)) {
     throw BadInput(
         fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left "
                     "out",
                     option, range));
   }
   return value;
-}
-
-bool has_value(const StudyPoint& point, const std::string& wanted) {
-  return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
-                     [&](const auto& value) { return value.first + "=" + value.second == wanted; });
 }
 
 // Taps of the range that all realizations have reached, up to the first without a finite value.
@@ -96,38 +90,15 @@ FitRange read_range(const std::string& option, const std::string& text) {
   const auto colon = text.find(':');
   const std::string first = text.substr(0, colon);
   const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
-  return {read_end(first, -infinite, option, text), read_end(last, infinite, option, text)};
-}
-
-std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
-  std::vector<std::uint32_t> chosen;
-  std::string known;
-  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
-    const StudyPoint& point = study.points[i];
-    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
-      chosen.push_back(i);
-    }
-    known += fmt::format("\n  {}", i);
-    for (const auto& [pointer, value] : point.sweep_values) {
-      known += fmt::format("  {}={}", pointer, value);
-    }
-  }
-  if (chosen.empty()) {
-    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
-  }
-  return chosen;
-}
-
-bool is_results_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  char signature[8] = {};
-  file.read(signature, sizeof signature);
-  return file && std::memcmp(signature, "\x89HDF\r\n\x1a\n", sizeof signature) == 0;
+  const FitRange range{read_end(first, -infinite, option, text),
+                       read_end(last, infinite, option, text)};
+  if (range.first <= range.last) return range;
+  throw BadInput(fmt::format("{} {}: FIRST:LAST, and no number is so", option, text));
 }
 
 std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
                                       const std::string& point, const FitRange& range) {
-  const ResultsFile file(path);
+  const ResultsFile file = open_results(path);
   std::vector<FitSource> sources;
   for (const std::uint32_t chosen : chosen_points(file.study(), point)) {
     sources.push_back(point_curve(file, chosen, observable, range));

@@ -27,12 +27,6 @@ struct FitRange {
 /// "1:4000", ":4000", "1:". Throws BadInput naming the option.
 FitRange read_range(const std::string& option, const std::string& text);
 
-/// The sweep points that `wanted` names, by number or as "pointer=value"; all where it is empty.
-/// Throws BadInput naming what there is.
-std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
-
-bool is_results_file(const std::string& path);
-
 /// The mean of an observable over realizations against taps, weighted by its standard errors, for
 /// one sweep point (its number, or "pointer=value" as in the scene's sweep) or, where `point` is
 /// empty, for all. Realizations that failed are left out; taps that not all others have reached

@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "cli/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
 #include "cli/scene_file.hpp"
@@ -48,9 +49,12 @@ int parse_and_run(int argc, char** argv) {
   add_analyse(app, code);
   add_structure(app, code);
   add_export(app, code);
+  refuse_negative_counts(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_command(app);
+    if (!unknown.empty()) throw BadInput(unknown);
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }
   return code;
@@ -67,13 +71,13 @@ int run_program(int argc, char** argv) {
     print_to_standard_error("jostle: cannot write to standard output\n");
     return exit_broken_surroundings;
   } catch (const BadInput& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
+    print_to_standard_error(fmt::format("jostle: {}\n", printable(error.what())));
     return exit_bad_input;
   } catch (const std::invalid_argument& error) {  // an environment variable, for one
-    print_to_standard_error(fmt::format("jostle: {}\n", error.what()));
+    print_to_standard_error(fmt::format("jostle: {}\n", printable(error.what())));
     return exit_bad_input;
   } catch (const std::exception& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", failure_text(error)));
+    print_to_standard_error(fmt::format("jostle: {}\n", printable(failure_text(error))));
     return exit_broken_surroundings;
   }
 }

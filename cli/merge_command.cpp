@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_file.hpp"
@@ -42,7 +43,9 @@ void add_merge(CLI::App& app, int& code) {
   auto* command = app.add_subcommand("merge", "Join the files of all shards of a run into one");
   auto arguments = std::make_shared<MergeArguments>();
   command->add_option("files", arguments->inputs, "The shards' results, in any order")->required();
-  command->add_option("-o,--output", arguments->output, "The file to write")->required();
+  command->add_option("-o,--output", arguments->output, "The file to write")
+      ->required()
+      ->check(file_to_write());
   command->add_flag("--force", arguments->force, "Replace the output file if it exists");
   command->footer(
       "Example:\n"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cli/scene_file.hpp"
+#include "config/json_text.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {
@@ -15,15 +16,36 @@ namespace {
 
 constexpr std::uint64_t piece_values = 128'000'000 / sizeof(double);
 
+/// "sweep points 1, 2"; empty where there is none.
+std::string points_with(const ResultsFile& file, const std::string& observable) {
+  std::vector<std::string> points;
+  for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
+    const auto labels = file.columns(point);
+    if (std::ranges::find(labels, observable, &ObservableLabel::name) != labels.end()) {
+      points.push_back(fmt::to_string(point));
+    }
+  }
+  if (points.empty()) return {};
+  return (points.size() == 1 ? "sweep point " : "sweep points ") + joined(points, ", ");
+}
+
 ObservableLabel label_named(const ResultsFile& file, std::uint32_t point,
                             const std::string& observable) {
-  std::string names;
-  for (const ObservableLabel& label : file.columns(point)) {
-    if (label.name == observable) return label;
-    names += (names.empty() ? "" : ", ") + label.name;
+  const std::vector<ObservableLabel> labels = file.columns(point);
+  const auto found = std::ranges::find(labels, observable, &ObservableLabel::name);
+  if (found != labels.end()) return *found;
+  std::vector<std::string> names;
+  for (const ObservableLabel& label : labels) names.push_back(label.name);
+  const std::string others = points_with(file, observable);
+  if (others.empty()) {
+    throw BadInput(fmt::format("--observable {}: there is none; {} has {}", observable, file.path(),
+                               joined(names, ", ")));
   }
   throw BadInput(
-      fmt::format("--observable {}: there is none; {} has {}", observable, file.path(), names));
+      fmt::format("--observable {}: there is none at sweep point {}, which has {}. It is at {}: "
+                  "choose one with "
+                  "--sweep-point",
+                  observable, point, joined(names, ", "), others));
 }
 
 }  // namespace

@@ -4,8 +4,9 @@
 
 #include <filesystem>
 
-#include "cli/fit_source.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "results/error.hpp"
 
 namespace jostle {
 namespace {
@@ -19,18 +20,18 @@ bool is_descriptor(const fs::path& path) {
   return fs::weakly_canonical(named.parent_path(), ignored).string().starts_with("/proc/");
 }
 
-/// Whether or not there are such files yet.
-bool is_same_file(const fs::path& a, const fs::path& b) {
+void require_folder(const std::string& output) {
   std::error_code ignored;
-  if (fs::equivalent(a, b, ignored)) return true;
-  return fs::weakly_canonical(fs::absolute(a), ignored) ==
-         fs::weakly_canonical(fs::absolute(b), ignored);
+  const fs::path folder = fs::path(output).parent_path();
+  if (folder.empty() || fs::is_directory(folder, ignored)) return;
+  throw ResultsError(output, fmt::format("there is no folder {}", folder.string()));
 }
 
 }  // namespace
 
 void require_replaceable(const std::string& output, const std::string& example) {
   std::error_code ignored;
+  require_folder(output);
   const fs::file_status status = fs::status(output, ignored);
   if (fs::is_directory(status)) {
     throw BadInput(fmt::format("{} is a folder: name a file in it with -o, as {}", output,
@@ -69,6 +70,7 @@ void require_text_output(const std::string& option, const std::string& output,
                          std::span<const std::string> read, bool force) {
   if (output.empty()) return;
   require_not_read(option, output, read);
+  require_folder(output);
   std::error_code ignored;
   if (fs::is_directory(output, ignored)) {
     throw BadInput(fmt::format("{} {}: it is a folder. Name a file in it.", option, output));

@@ -3,7 +3,8 @@
 #include <span>
 #include <string>
 
-// What a command may write to. Each refuses with BadInput, and is called before any work is done.
+// What a command may write to. Each refuses with BadInput, or with ResultsError where there is no
+// such folder, and is called before any work is done.
 namespace jostle {
 
 /// Refuses what no file can replace: a folder, a pipe, a device, a descriptor such as /dev/stdout.

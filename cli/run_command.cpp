@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/durations.hpp"
@@ -310,8 +311,10 @@ int run(const RunArguments& arguments) {
 
 void add_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("scene", arguments.scene, "The scene, a JSON file")->required();
-  command.add_option("-o,--output", arguments.output,
-                     "The results (default: the scene's name + .h5, here)");
+  command
+      .add_option("-o,--output", arguments.output,
+                  "The results (default: the scene's name + .h5, here)")
+      ->check(file_to_write());
   command
       .add_option("--threads", arguments.threads,
                   "Threads (default: the CPUs this process may use)")

@@ -7,12 +7,13 @@
 #include <memory>
 
 #include "cli/analyse_run.hpp"
+#include "cli/arguments.hpp"
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
-#include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
 #include "cli/output_file.hpp"
 #include "cli/provenance.hpp"
+#include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/structure_run.hpp"
 #include "cli/table_output.hpp"
@@ -114,9 +115,10 @@ int measure_structure(const StructureArguments& arguments) {
           fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
     }
   }
+  require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {
-    const ResultsFile file(arguments.inputs.front());
+    const ResultsFile file = open_results(arguments.inputs.front());
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
                           wanted(arguments, structure_asked_for(file)), arguments.taps, threads);
   } else {
@@ -159,7 +161,7 @@ void add_structure(CLI::App& app, int& code) {
   command->add_option("--sweep-point", a.point,
                       "Its number, or POINTER=VALUE of the sweep (default: every point)");
   command->add_flag("--json", a.json, "Print JSON, for programs");
-  command->add_option("--csv", a.csv, "Also write the tables to this file");
+  command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")

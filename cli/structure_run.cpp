@@ -242,6 +242,13 @@ std::vector<Table> structure_of(std::span<const std::string> files,
           "{}: its container is not that of {}: only packings of one container have a mean", path,
           files.front()));
     }
+    const auto twin = std::ranges::find_if(packings, [&](const std::vector<Packing>& other) {
+      return std::ranges::equal(other, packings.back(), {}, &Packing::centres, &Packing::centres);
+    });
+    if (twin != packings.end() - 1) {
+      throw BadInput(fmt::format("{}: the same packings as in {}, and not another realization",
+                                 path, files[static_cast<std::size_t>(twin - packings.begin())]));
+    }
   }
   KeptEnsemble ensemble{.name = joined({files.begin(), files.end()}, ", "),
                         .taps = {},

@@ -87,7 +87,8 @@ Scene read_scene(const Reader& in) {
   scene.observables = default_observables();
   if (!in.is_object_of({"$schema", "name", "description", "seed", "realizations", "streams",
                         "container", "spheres", "start", "protocol", "relax", "relax_start",
-                        "observe", "snapshots", "sweep", "until", "fits", "analyse", "structure"})) {
+                        "observe", "snapshots", "sweep", "until", "fits", "analyse",
+                        "structure"})) {
     return scene;
   }
   read_identity(in, scene);

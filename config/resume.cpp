@@ -128,8 +128,8 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
   }
   Json before = resolved(*was.scene), after = resolved(*is.scene);
   for (Json* scene : {&before, &after}) {
-    for (const char* free :
-         {"name", "description", "realizations", "protocol", "until", "fits", "analyse", "structure"}) {
+    for (const char* free : {"name", "description", "realizations", "protocol", "until", "fits",
+                             "analyse", "structure"}) {
       scene->erase(free);
     }
     (*scene)["snapshots"].erase("taps");

@@ -23,7 +23,8 @@ SpreadTarget read_target(const Reader& in) {
   }
   if (const auto taps = in.find("taps")) target.taps = chosen_taps(read_taps(*taps));
   const bool error = in.find("standard_error").has_value(), sigma = in.find("sigma").has_value();
-  if (error == sigma) in.fault("expected one of the keys standard_error, sigma");
+  if (error && sigma) in.fault("expected only one of the keys standard_error, sigma");
+  if (!error && !sigma) in.fault("expected one of the keys standard_error, sigma");
   in.read(sigma ? "sigma" : "standard_error", target.at_most, above(0, largest_spread));
   target.spread = sigma ? Spread::sigma : Spread::standard_error;
   return target;

@@ -129,8 +129,7 @@ class Folders(Faults):
 
     def test_a_folder_that_is_not_there_is_named(self):
         refused = self.run_scene("-o", "nowhere/tiny.h5", expect=BROKEN)
-        self.assertIn("nowhere/tiny.h5.lock: cannot create: No such file or directory; is its "
-                      "folder there", refused.stderr)
+        self.assertIn("nowhere/tiny.h5: there is no folder nowhere", refused.stderr)
 
     @needs_mounts
     def test_a_folder_that_becomes_read_only_costs_nothing_that_was_checkpointed(self):
@@ -324,6 +323,18 @@ class Streams(Faults):
 
 
 class Reading(Faults):
+    def test_a_killed_run_without_taps_in_its_file_is_said_to_be_unfinished(self):
+        process = self.paused()
+        process.kill()
+        process.communicate()
+        for command in (["analyse", "tiny.h5", "steady", "--observable", "mean_height"],
+                        ["analyse", "tiny.h5", "sweep", "--observable", "mean_height"],
+                        ["fit", "tiny.h5", "--observable", "mean_height"],
+                        ["structure", "tiny.h5"], ["export", "tiny.h5", "--format", "vtp"]):
+            with self.subTest(command=command):
+                self.assertIn("goes on or was killed, and its file has no taps yet. Finish it",
+                              self.jostle(*command, expect=BAD_INPUT).stderr)
+
     def test_info_of_a_live_run_says_how_far_its_parts_are(self):
         process = self.paused(at="350")  # the first two of four realizations end at about 270
         text, summary = self.jostle("info", "tiny.h5").stdout, self.info("tiny.h5")

@@ -174,6 +174,15 @@ class Kept(Case):
                          [f"fits/point_0001/mean_height/{law}" for law in laws])
         self.assertEqual(self.digest("tiny.h5"), digest)
 
+    def test_a_trial_leaves_what_is_kept(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
+        self.run_scene()
+        asked = ("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
+        self.jostle(*asked)
+        before = (self.folder / "tiny.h5").read_bytes()
+        self.jostle(*asked, "--range", "1:20", "--no-store")
+        self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
+
     def test_a_file_that_cannot_be_changed_still_gives_its_fits(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
         self.run_scene()

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+// What values options take, with messages of their own: the parser's wrap negative numbers and
+// print ranges in 309 digits.
+namespace jostle {
+
+/// Whole numbers from `least` to 2^64 - 1.
+CLI::Validator whole_from(std::uint64_t least);
+
+/// Finite numbers above 0.
+CLI::Validator positive_number();
+
+/// A file's name: neither empty nor "-", which stands for no stream here.
+CLI::Validator file_to_write();
+
+/// Has every option that holds unsigned numbers, of all commands, refuse negative ones.
+void refuse_negative_counts(CLI::App& app);
+
+/// For a command line that does not begin with a command: the word that should be one is named with
+/// those there are. Empty for others.
+std::string unknown_command(const CLI::App& app);
+
+}  // namespace jostle

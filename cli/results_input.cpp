@@ -1,0 +1,85 @@
+#include "cli/results_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/scene_file.hpp"
+#include "cli/standard_error.hpp"
+
+namespace jostle {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_value(const StudyPoint& point, const std::string& wanted) {
+  return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
+                     [&](const auto& value) { return value.first + "=" + value.second == wanted; });
+}
+
+}  // namespace
+
+bool is_results_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char signature[8] = {};
+  file.read(signature, sizeof signature);
+  return file && std::memcmp(signature, "\x89HDF\r\n\x1a\n", sizeof signature) == 0;
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (fs::equivalent(a, b, ignored)) return true;
+  return fs::weakly_canonical(fs::absolute(a), ignored) ==
+         fs::weakly_canonical(fs::absolute(b), ignored);
+}
+
+ResultsFile open_results(const std::string& path) {
+  ResultsFile file(path);
+  if (file.state() == RunState::running) {
+    throw BadInput(
+        fmt::format("{}: its run goes on or was killed, and its file has no taps yet. Finish it "
+                    "with jostle run SCENE --resume; jostle info {} says how far it is.",
+                    path, path));
+  }
+  if (file.state() == RunState::interrupted) {
+    print_to_standard_error(
+        fmt::format("jostle: {}: its run is unfinished: here are the taps of its last stop. Finish "
+                    "it with jostle run SCENE --resume.\n",
+                    path));
+  }
+  return file;
+}
+
+void require_different(std::span<const std::string> paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!is_same_file(paths[i], paths[j])) continue;
+      throw BadInput(fmt::format("{} is given twice, and counts once", paths[i]));
+    }
+  }
+}
+
+std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
+  std::vector<std::uint32_t> chosen;
+  std::string known;
+  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
+    const StudyPoint& point = study.points[i];
+    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
+      chosen.push_back(i);
+    }
+    known += fmt::format("\n  {}", i);
+    for (const auto& [pointer, value] : point.sweep_values) {
+      known += fmt::format("  {}={}", pointer, value);
+    }
+  }
+  if (chosen.empty()) {
+    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
+  }
+  return chosen;
+}
+
+}  // namespace jostle
