@@ -1,6 +1,7 @@
 #include "ensemble/ageing_fits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int reweightings = 3;
+// 1 / epsilon: the least squares lie where the law no longer changes with its parameters.
+constexpr double singular_condition = 4.5e15;
 
 const AgeingLaw no_law = {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number,
                           not_a_number, not_a_number, not_a_number, "not fitted"};
@@ -75,17 +78,21 @@ struct WeightedFit {
   RealizationCurves curves;  // with the weights of the fit
 };
 
-std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves,
-                                                  bool profiles) {
+std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves) {
   const double relative = relative_error(curves);
   curves.sigma = scaled(mean_curve(curves).x, relative);
   std::optional<Fit> last;
   for (int i = 0; i <= reweightings; ++i) {
-    FitOptions options{.profiles = profiles && i == reweightings};
+    // At a runaway there is nothing to profile.
+    const bool limited = !last || last->condition < singular_condition;
+    FitOptions options{.profiles = limited && i == reweightings};
     if (last) options.start = last->values();
     options.multi_start = !last;
     auto fitted = fit(model, mean_curve(curves), options);
-    if (auto* refusal = std::get_if<Refusal>(&fitted)) return *refusal;
+    if (auto* refusal = std::get_if<Refusal>(&fitted)) {
+      if (!last) return *refusal;
+      break;  // run so far that the law has no slope
+    }
     last = std::move(std::get<Fit>(fitted));
     const std::vector<double> sigma = scaled(last->fitted, relative);
     const bool positive = std::ranges::all_of(sigma, [](double s) { return s > 0; });
@@ -103,22 +110,59 @@ double misfit(std::span<const double> x, std::span<const double> fitted) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-std::string verdict(const Fit& fit) {
+// Whether the data limit a parameter on both sides.
+bool is_limited(const Estimate& estimate) {
+  return estimate.identifiability == Identifiability::identified ||
+         estimate.identifiability == Identifiability::wide;
+}
+
+void append(std::string& text, const std::string& sentence) {
+  text += (text.empty() ? "" : ", ") + sentence;
+}
+
+// What a fit says of the parameters in `indices`, [a_inf, b, tau], and of its refits.
+std::string verdict(const Fit& fit, const ResampledErrors& errors,
+                    const std::array<std::size_t, 3>& indices) {
   std::string text;
   if (!is_minimum(fit.reason)) text = std::string("did not settle: ") + describe(fit.reason);
-  for (const Estimate& estimate : fit.estimates) {
-    if (estimate.identifiability == Identifiability::identified ||
-        estimate.identifiability == Identifiability::not_examined) {
-      continue;
-    }
-    text += (text.empty() ? "" : ", ") + estimate.statement;
+  if (!(fit.condition < singular_condition)) {
+    append(text, "A_inf, B and tau are not identifiable: the least squares lie at infinity");
+    return text;
+  }
+  for (const std::size_t j : indices) {
+    const Estimate& estimate = fit.estimates[j];
+    if (estimate.identifiability == Identifiability::identified) continue;
+    append(text, estimate.statement);
+  }
+  if (errors.failed > 0) {
+    append(text, std::to_string(errors.failed) + " of " + std::to_string(errors.resamples) +
+                     " refits without a realization did not settle: no errors");
   }
   return text.empty() ? "identified" : text;
 }
 
+// A refit that fails, or a parameter that runs away with every refit, has no error.
+double error_of(std::size_t j, const Fit& fit, const ResampledErrors& errors) {
+  return errors.failed == 0 && is_limited(fit.estimates[j]) ? errors.errors[j] : not_a_number;
+}
+
+AgeingLaw law_of(const Fit& fit, const ResampledErrors& errors,
+                 const std::array<std::size_t, 3>& indices) {
+  const auto& [a_inf, b, tau] = indices;
+  return {.a_inf = fit.estimates[a_inf].value,
+          .a_inf_error = error_of(a_inf, fit, errors),
+          .b = fit.estimates[b].value,
+          .b_error = error_of(b, fit, errors),
+          .tau = fit.estimates[tau].value,
+          .tau_error = error_of(tau, fit, errors),
+          .reduced_chi2 = fit.reduced_chi2,
+          .misfit = not_a_number,
+          .verdict = verdict(fit, errors, indices)};
+}
+
 AgeingLaw own_law(const RealizationCurves& curves, int threads) {
   const Ageing model;
-  const auto found = reweighted_fit(model, curves, true);
+  const auto found = reweighted_fit(model, curves);
   if (const auto* refusal = std::get_if<Refusal>(&found)) {
     AgeingLaw law = no_law;
     law.verdict = refusal->message;
@@ -126,16 +170,9 @@ AgeingLaw own_law(const RealizationCurves& curves, int threads) {
   }
   const auto& [fit, weighted] = std::get<WeightedFit>(found);
   const ResampledErrors errors = resample(model, weighted, fit, {.threads = threads});
-  const std::vector<double> p = fit.values();
-  return {.a_inf = p[0],
-          .a_inf_error = errors.errors[0],
-          .b = p[1],
-          .b_error = errors.errors[1],
-          .tau = p[2],
-          .tau_error = errors.errors[2],
-          .reduced_chi2 = fit.reduced_chi2,
-          .misfit = misfit(mean_curve(weighted).x, fit.fitted),
-          .verdict = verdict(fit)};
+  AgeingLaw law = law_of(fit, errors, {0, 1, 2});
+  law.misfit = misfit(mean_curve(weighted).x, fit.fitted);
+  return law;
 }
 
 // All curves with at least as many points as a law has parameters, one after another.
@@ -161,37 +198,42 @@ JoinedCurves join(const std::vector<RealizationCurves>& all) {
   return joined;
 }
 
+// A statement in which parameters have the number of their curve, without it.
+std::string without_number(std::string text, const std::string& name, std::size_t number) {
+  const std::string numbered = name + "_" + std::to_string(number);
+  for (std::size_t at = text.find(numbered); at != std::string::npos; at = text.find(numbered)) {
+    text.replace(at, numbered.size(), name);
+  }
+  return text;
+}
+
 void fit_shared(const std::vector<RealizationCurves>& all, int threads,
                 std::vector<AgeingLaw>& laws) {
   const JoinedCurves joined = join(all);
   if (joined.waiting_times.empty()) return;
   const SharedAgeing model(joined.points);
-  const auto found = reweighted_fit(model, joined.curves, false);
+  const auto found = reweighted_fit(model, joined.curves);
   if (const auto* refusal = std::get_if<Refusal>(&found)) {
     for (AgeingLaw& law : laws) law.verdict = refusal->message;
     return;
   }
   const auto& [fit, weighted] = std::get<WeightedFit>(found);
-  const std::vector<double> errors = resample(model, weighted, fit, {.threads = threads}).errors;
-  const std::vector<double> p = fit.values();
+  const ResampledErrors errors = resample(model, weighted, fit, {.threads = threads});
   const std::vector<double> x = mean_curve(weighted).x;
   std::size_t first = 0;
   for (std::size_t curve = 0; curve < joined.waiting_times.size(); ++curve) {
     const std::size_t k = joined.waiting_times[curve], n = all[k].t.size();
-    const std::size_t a_inf = SharedAgeing::a_inf_index(curve),
-                      tau = SharedAgeing::tau_index(curve);
-    laws[k] = {
-        .a_inf = p[a_inf],
-        .a_inf_error = errors[a_inf],
-        .b = p[0],
-        .b_error = errors[0],
-        .tau = p[tau],
-        .tau_error = errors[tau],
-        .reduced_chi2 = fit.reduced_chi2,
-        .misfit = misfit(std::span(x).subspan(first, n), std::span(fit.fitted).subspan(first, n)),
-        .verdict = is_minimum(fit.reason) ? "settled"
-                                          : std::string("did not settle: ") + describe(fit.reason)};
+    const std::array<std::size_t, 3> indices = {SharedAgeing::a_inf_index(curve), 0,
+                                                SharedAgeing::tau_index(curve)};
+    AgeingLaw law = law_of(fit, errors, indices);
+    law.verdict = without_number(without_number(law.verdict, "A_inf", curve), "tau", curve);
+    law.misfit = misfit(std::span(x).subspan(first, n), std::span(fit.fitted).subspan(first, n));
     first += n;
+    const bool determined =
+        std::ranges::all_of(indices, [&](std::size_t j) { return is_limited(fit.estimates[j]); });
+    laws[k] = determined ? law : no_law;
+    laws[k].verdict = law.verdict;
+    if (!determined) laws[k].verdict += ": no shared law, nothing to scale by";
   }
 }
 

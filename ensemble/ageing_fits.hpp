@@ -9,8 +9,9 @@
 // curves. It is empirical: it starts like t, and in a steady state A is 2 sigma^2 (1 - C(t)).
 namespace jostle {
 
-/// The law at one waiting time. Errors are jackknife errors over realizations; a value without a
-/// fit is NaN, an error that could not be found infinite.
+/// The law at one waiting time. Errors are jackknife errors over realizations: NaN where a refit
+/// did not settle, or where the data set the parameter no limit on a side. A value without a fit is
+/// NaN.
 struct AgeingLaw {
   double a_inf, a_inf_error;
   double b, b_error;
@@ -22,8 +23,10 @@ struct AgeingLaw {
 
 /// Of realizations that reached every tap asked for, the same for all waiting times.
 struct AgeingFits {
-  std::vector<AgeingLaw> own;     // [n_waiting_times], each with a B of its own
-  std::vector<AgeingLaw> shared;  // [n_waiting_times], all with the same B
+  std::vector<AgeingLaw> own;  // [n_waiting_times], each with a B of its own
+  /// [n_waiting_times], all with the same B; NaN, with the reason as the verdict, where the data do
+  /// not limit B or the waiting time's own parameters: nothing is to be scaled by a runaway.
+  std::vector<AgeingLaw> shared;
   std::uint64_t realizations = 0;
 };
 

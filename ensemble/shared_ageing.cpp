@@ -1,6 +1,7 @@
 #include "ensemble/shared_ageing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fitting/fit.hpp"
@@ -52,8 +53,12 @@ std::vector<ParameterValues> SharedAgeing::starts(const Curve& curve, std::span<
   for (const double b : fixed[0] > 0 ? std::vector<double>{fixed[0]} : geometric(1e-3, 1e3, 7)) {
     ParameterValues start = {b};
     double sum = 0;
-    for (const Curve& part : own) {
-      const auto fitted = fit(Ageing(), part, {.fixed = {{"B", b}}, .profiles = false});
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      FitOptions options{.multi_start = false, .fixed = {{"B", b}}, .profiles = false};
+      const double a_inf = fixed[a_inf_index(k)], tau = fixed[tau_index(k)];
+      if (!std::isnan(a_inf)) options.fixed["A_inf"] = a_inf;
+      if (!std::isnan(tau)) options.fixed["tau"] = tau;
+      const auto fitted = fit(Ageing(), own[k], options);
       const Fit* good = std::get_if<Fit>(&fitted);
       if (!good) break;
       start.push_back(good->estimates[0].value);

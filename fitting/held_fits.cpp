@@ -204,6 +204,12 @@ HeldFit HeldFits::at(double distance, const HeldFit& from, const HeldFit* beyond
       beyond ? std::max(beyond->z, from.z) + noticeable_ : from.z + 0.75 * problem_.thresholds[1];
   HeldFit point =
       descend(distance, beyond ? between(distance, from, *beyond) : line(distance, from));
+  if (beyond) {
+    // The one beyond may be on another branch of z, which is the higher one here.
+    const double share = (distance - from.distance) / (beyond->distance - from.distance);
+    const double bend = (point.z - from.z) - (share + 0.1) * (beyond->z - from.z);
+    if (bend > 0) improve(point, beside(distance, from));
+  }
   const auto astray = [&] { return !better_ && (!point.settled || point.z > allowed); };
   if (astray()) improve(point, descend(distance, solved(distance, from.p)));
   if (astray()) improve(point, descend(distance, from.p));

@@ -1,5 +1,6 @@
 #include "ensemble/ageing_fits.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -86,6 +87,38 @@ TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]
   CHECK(scalar(table, "collapse") < 1.5);
   CHECK(scalar(table, "unscaled_collapse") > 3);
   CHECK(scalar(table, "collapse_relative") < 0.3);
+}
+
+TEST_CASE("Curves that nothing bounds have no shared law, and nothing is scaled by a runaway") {
+  // Changes whose spread grows with the lag itself: A goes with its square, and never bends.
+  RandomStream random = test_stream(6);
+  TapRows rows{.taps = taps_of(grid), .realizations = 20, .values = {}};
+  for (const std::uint64_t tap : rows.taps) {
+    const auto lag = static_cast<double>(tap % 1000000);
+    for (std::uint32_t r = 0; r < rows.realizations; ++r) {
+      rows.values.push_back(10 + lag * noise(random));
+    }
+  }
+  const AgeingFits fits = fit_ageing(rows, grid);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CAPTURE(k, fits.own[k].verdict, fits.shared[k].verdict);
+    CHECK(fits.own[k].verdict.find("not identifiable") != std::string::npos);
+    CHECK(std::isnan(fits.own[k].a_inf_error));
+    CHECK(fits.shared[k].verdict.find("not identifiable") != std::string::npos);
+    CHECK(fits.shared[k].verdict.find("nothing to scale by") != std::string::npos);
+    for (const double number : {fits.shared[k].a_inf, fits.shared[k].a_inf_error, fits.shared[k].b,
+                                fits.shared[k].tau, fits.shared[k].tau_error}) {
+      CHECK(std::isnan(number));
+    }
+  }
+  const Table table = ageing_table("ageing", height, rows, grid);
+  CHECK(std::isnan(scalar(table, "collapse")));
+  CHECK(std::isfinite(scalar(table, "unscaled_collapse")));
+  for (const Quantity& quantity : table.quantities) {
+    if (quantity.name != "scaled_lag" && quantity.name != "scaled_a") continue;
+    const auto& values = std::get<std::vector<double>>(quantity.values);
+    CHECK(std::ranges::all_of(values, [](double value) { return std::isnan(value); }));
+  }
 }
 
 TEST_CASE("Ageing tables do not depend on the number of threads") {
