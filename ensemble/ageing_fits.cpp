@@ -78,14 +78,18 @@ struct WeightedFit {
   RealizationCurves curves;  // with the weights of the fit
 };
 
-std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves) {
+// Whether a fit that has run to infinity is profiled: with many curves that takes minutes.
+enum class Runaways { profiled, left };
+
+std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves,
+                                                  Runaways runaways) {
   const double relative = relative_error(curves);
   curves.sigma = scaled(mean_curve(curves).x, relative);
   std::optional<Fit> last;
   for (int i = 0; i <= reweightings; ++i) {
-    // At a runaway there is nothing to profile.
     const bool limited = !last || last->condition < singular_condition;
-    FitOptions options{.profiles = limited && i == reweightings};
+    FitOptions options{.profiles =
+                           i == reweightings && (limited || runaways == Runaways::profiled)};
     if (last) options.start = last->values();
     options.multi_start = !last;
     auto fitted = fit(model, mean_curve(curves), options);
@@ -125,8 +129,12 @@ std::string verdict(const Fit& fit, const ResampledErrors& errors,
                     const std::array<std::size_t, 3>& indices) {
   std::string text;
   if (!is_minimum(fit.reason)) text = std::string("did not settle: ") + describe(fit.reason);
-  if (!(fit.condition < singular_condition)) {
-    append(text, "A_inf, B and tau are not identifiable: the least squares lie at infinity");
+  const bool examined = std::ranges::all_of(indices, [&](std::size_t j) {
+    return fit.estimates[j].identifiability != Identifiability::not_examined;
+  });
+  if (!examined && !(fit.condition < singular_condition)) {
+    append(text,
+           "A_inf, B and tau are not identifiable together: the least squares lie at infinity");
     return text;
   }
   for (const std::size_t j : indices) {
@@ -162,7 +170,7 @@ AgeingLaw law_of(const Fit& fit, const ResampledErrors& errors,
 
 AgeingLaw own_law(const RealizationCurves& curves, int threads) {
   const Ageing model;
-  const auto found = reweighted_fit(model, curves);
+  const auto found = reweighted_fit(model, curves, Runaways::profiled);
   if (const auto* refusal = std::get_if<Refusal>(&found)) {
     AgeingLaw law = no_law;
     law.verdict = refusal->message;
@@ -212,7 +220,7 @@ void fit_shared(const std::vector<RealizationCurves>& all, int threads,
   const JoinedCurves joined = join(all);
   if (joined.waiting_times.empty()) return;
   const SharedAgeing model(joined.points);
-  const auto found = reweighted_fit(model, joined.curves);
+  const auto found = reweighted_fit(model, joined.curves, Runaways::left);
   if (const auto* refusal = std::get_if<Refusal>(&found)) {
     for (AgeingLaw& law : laws) law.verdict = refusal->message;
     return;
