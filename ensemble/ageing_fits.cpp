@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "ensemble/moments.hpp"
@@ -82,7 +83,8 @@ struct WeightedFit {
 enum class Runaways { profiled, left };
 
 std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves,
-                                                  Runaways runaways) {
+                                                  Runaways runaways,
+                                                  const std::map<std::string, double>& fixed = {}) {
   const double relative = relative_error(curves);
   curves.sigma = scaled(mean_curve(curves).x, relative);
   std::optional<Fit> last;
@@ -90,6 +92,7 @@ std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, Realizatio
     const bool limited = !last || last->condition < singular_condition;
     FitOptions options{.profiles =
                            i == reweightings && (limited || runaways == Runaways::profiled)};
+    options.fixed = fixed;
     if (last) options.start = last->values();
     options.multi_start = !last;
     auto fitted = fit(model, mean_curve(curves), options);
@@ -114,10 +117,11 @@ double misfit(std::span<const double> x, std::span<const double> fitted) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-// Whether the data limit a parameter on both sides.
+// Whether a parameter is limited on both sides, by the data or by being held.
 bool is_limited(const Estimate& estimate) {
   return estimate.identifiability == Identifiability::identified ||
-         estimate.identifiability == Identifiability::wide;
+         estimate.identifiability == Identifiability::wide ||
+         estimate.identifiability == Identifiability::fixed;
 }
 
 void append(std::string& text, const std::string& sentence) {
@@ -139,7 +143,10 @@ std::string verdict(const Fit& fit, const ResampledErrors& errors,
   }
   for (const std::size_t j : indices) {
     const Estimate& estimate = fit.estimates[j];
-    if (estimate.identifiability == Identifiability::identified) continue;
+    if (estimate.identifiability == Identifiability::identified ||
+        estimate.identifiability == Identifiability::fixed) {
+      continue;
+    }
     append(text, estimate.statement);
   }
   if (errors.failed > 0) {
@@ -215,12 +222,30 @@ std::string without_number(std::string text, const std::string& name, std::size_
   return text;
 }
 
+// Where B has no limit from below, eq. 6 is as good as the logarithm that it becomes at B = 0,
+// A_inf B ln(1 + t/tau): with B held there the curves have scales, and only ratios of A_inf between
+// waiting times mean something.
+constexpr double logarithmic_b = 1e-3;  // 0.1 % off for every e-fold of 1 + t/tau
+constexpr const char* is_logarithmic =
+    "B may be 0, and is held at 0.001: a logarithm, of which A_inf B and tau mean something; ";
+
+bool may_be_logarithmic(const Fit& fit) {
+  const Estimate& b = fit.estimates[0];
+  return b.identifiability == Identifiability::bounded_above || b.value < logarithmic_b;
+}
+
 void fit_shared(const std::vector<RealizationCurves>& all, int threads,
                 std::vector<AgeingLaw>& laws) {
   const JoinedCurves joined = join(all);
   if (joined.waiting_times.empty()) return;
   const SharedAgeing model(joined.points);
-  const auto found = reweighted_fit(model, joined.curves, Runaways::left);
+  auto found = reweighted_fit(model, joined.curves, Runaways::left);
+  std::string limit;
+  if (const auto* free = std::get_if<WeightedFit>(&found);
+      free != nullptr && may_be_logarithmic(free->fit)) {
+    limit = is_logarithmic;
+    found = reweighted_fit(model, joined.curves, Runaways::left, {{"B", logarithmic_b}});
+  }
   if (const auto* refusal = std::get_if<Refusal>(&found)) {
     for (AgeingLaw& law : laws) law.verdict = refusal->message;
     return;
@@ -234,7 +259,7 @@ void fit_shared(const std::vector<RealizationCurves>& all, int threads,
     const std::array<std::size_t, 3> indices = {SharedAgeing::a_inf_index(curve), 0,
                                                 SharedAgeing::tau_index(curve)};
     AgeingLaw law = law_of(fit, errors, indices);
-    law.verdict = without_number(without_number(law.verdict, "A_inf", curve), "tau", curve);
+    law.verdict = limit + without_number(without_number(law.verdict, "A_inf", curve), "tau", curve);
     law.misfit = misfit(std::span(x).subspan(first, n), std::span(fit.fitted).subspan(first, n));
     first += n;
     const bool determined =

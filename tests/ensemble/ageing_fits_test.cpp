@@ -22,12 +22,12 @@ const AgeingGrid grid = {.waiting_times = {0, 1000000, 2000000},
                          .lags = logarithmic_taps(1, 100000, 8)};
 
 // Rows whose A follows eq. 6 at every waiting time, with changes independent at every lag.
-TapRows eq_6_rows(std::uint64_t seed, std::uint32_t realizations) {
+TapRows eq_6_rows(std::uint64_t seed, std::uint32_t realizations, double common_b = b) {
   RandomStream random = test_stream(seed);
   TapRows rows{.taps = taps_of(grid), .realizations = realizations, .values = {}};
   for (const std::uint64_t tap : rows.taps) {
     const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
-    const double p[] = {a_inf[k], b, tau[k]};
+    const double p[] = {a_inf[k] * b / common_b, common_b, tau[k]};
     const double spread = std::sqrt(Ageing().value(static_cast<double>(lag), p));
     for (std::uint32_t r = 0; r < realizations; ++r) {
       rows.values.push_back(10 + spread * noise(random));
@@ -87,6 +87,19 @@ TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]
   CHECK(scalar(table, "collapse") < 1.5);
   CHECK(scalar(table, "unscaled_collapse") > 3);
   CHECK(scalar(table, "collapse_relative") < 0.3);
+}
+
+TEST_CASE("Where B may be 0 curves are scaled by the logarithm", "[statistics]") {
+  const TapRows rows = eq_6_rows(7, 100, 1e-9);
+  const AgeingFits fits = fit_ageing(rows, grid);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CAPTURE(k, fits.shared[k].verdict);
+    const AgeingLaw& law = fits.shared[k];
+    CHECK(law.verdict.find("B may be 0") == 0);
+    check(law.a_inf * law.b, law.a_inf_error * law.b, a_inf[k] * b);
+    check(law.tau, law.tau_error, tau[k]);
+  }
+  CHECK(scalar(ageing_table("ageing", height, rows, grid), "collapse") < 1.5);
 }
 
 TEST_CASE("Curves that nothing bounds have no shared law, and nothing is scaled by a runaway") {

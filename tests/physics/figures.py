@@ -133,16 +133,19 @@ def ageing(run):
         for lag in shown:
             j = int(np.argmin(np.abs(lags - lag)))
             row.append(f"{1e4 * found['a'][i, j]:.2f} ± {1e4 * found['a_error'][i, j]:.2f}")
-        rows.append(row + [f"{1e4 * found['shared_a_inf'][i]:.3g} ± "
-                           f"{1e4 * found['shared_a_inf_error'][i]:.2g}",
-                           f"{found['shared_tau'][i]:.3g} ± {found['shared_tau_error'][i]:.2g}",
-                           f"{found['misfit'][i]:.2f}"])
+        shared = [f"{1e4 * found['shared_a_inf'][i]:.3g} ± "
+                  f"{1e4 * found['shared_a_inf_error'][i]:.2g}",
+                  f"{found['shared_tau'][i]:.3g} ± {found['shared_tau_error'][i]:.2g}"]
+        known = np.isfinite(found["shared_tau"][i])
+        rows.append(row + (shared if known else ["-", "-"]) + [f"{found['misfit'][i]:.2f}"])
     header = ["t_W"] + [f"10^4 A, lag {lags[int(np.argmin(np.abs(lags - lag)))]}" for lag in shown]
-    return (table(header + ["10^4 A_inf, common B", "tau", "misfit of its own fit"], rows) +
+    text = (table(header + ["10^4 A_inf, common B", "tau", "misfit of its own fit"], rows) +
             f"\n\nDifference between ages over its error: {found['unscaled_collapse'][()]:.1f} as "
-            f"measured, {found['collapse'][()]:.1f} for A/A_inf against t/tau (relative "
-            f"{found['unscaled_collapse_relative'][()]:.2f} and "
-            f"{found['collapse_relative'][()]:.2f}).")
+            f"measured (relative {found['unscaled_collapse_relative'][()]:.2f})")
+    if np.isfinite(found["collapse"][()]):
+        return (text + f", {found['collapse'][()]:.1f} for A/A_inf against t/tau (relative "
+                f"{found['collapse_relative'][()]:.2f}).")
+    return text + f". Of the fit with a common B: {found['shared_verdict'][0].decode()}."
 
 
 def against_taps(taps, law=None):
