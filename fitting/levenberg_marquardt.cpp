@@ -44,7 +44,6 @@ class Descent {
   Eigen::VectorXd scale_;
   double radius_ = 0;
   bool stepped_ = false;   // whether the last try_step moved
-  bool finished_ = false;  // whether it ended the descent
 };
 
 bool Descent::evaluate_all(const Eigen::VectorXd& x) {
