@@ -25,8 +25,8 @@ struct AgeingLaw {
 struct AgeingFits {
   std::vector<AgeingLaw> own;  // [n_waiting_times], each with a B of its own
   /// [n_waiting_times], all with the same B; NaN, with the reason as the verdict, where the data do
-  /// not limit the waiting time's own parameters or B: nothing is to be scaled by a runaway. Where B
-  /// may be 0 it is held at 0.001, which makes a logarithm of eq. 6, and the verdict says so.
+  /// not limit the waiting time's own parameters or B: nothing is to be scaled by a runaway. Where
+  /// B may be 0 it is held at 0.001, which makes a logarithm of eq. 6, and the verdict says so.
   std::vector<AgeingLaw> shared;
   std::uint64_t realizations = 0;
 };

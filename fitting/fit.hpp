@@ -30,8 +30,8 @@ struct FitOptions {
 inline constexpr double interval_levels[] = {0.682689492137086, 0.95};
 
 /// A confidence interval; an infinite end means that the data set no limit on this side (or not
-/// within a factor 10^6 for a bounded parameter, 10^4 ranges of X for a value, else 10^4 errors), or
-/// that no settled fit closes it.
+/// within a factor 10^6 for a bounded parameter, 10^4 ranges of X for a value, else 10^4 errors),
+/// or that no settled fit closes it.
 struct Interval {
   double lower = 0, upper = 0;
   bool closed() const;
