@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "bench/run_registered.hpp"
 #include "bench/standard_states.hpp"
 #include "config/scene.hpp"
 #include "ensemble/realization.hpp"
@@ -118,8 +119,5 @@ void register_all() {
 }  // namespace jostle::bench
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  jostle::bench::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  return jostle::bench::run_registered(argc, argv, jostle::bench::register_all);
 }

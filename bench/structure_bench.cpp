@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "bench/run_registered.hpp"
 #include "bench/standard_states.hpp"
 #include "structure/measure.hpp"
 #include "structure/voronoi.hpp"
@@ -56,8 +57,5 @@ void register_all() {
 }  // namespace jostle::bench
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  jostle::bench::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  return jostle::bench::run_registered(argc, argv, jostle::bench::register_all);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/rates.hpp"
+#include "bench/run_registered.hpp"
 #include "bench/standard_states.hpp"
 
 namespace jostle::bench {
@@ -67,8 +68,5 @@ void register_all() {
 }  // namespace jostle::bench
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  jostle::bench::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  return jostle::bench::run_registered(argc, argv, jostle::bench::register_all);
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <numeric>
 #include <vector>
 
 #include "engine/elementary.hpp"
+#include "engine/falling_trials.hpp"
 #include "engine/neighbour_lists.hpp"
 #include "engine/packed_geometry.hpp"
 #include "engine/proposals.hpp"
@@ -130,7 +130,7 @@ class TypedTrialLoop final : public TrialLoop {
     } else {
       kernels_.metropolis(origin, batch_);
     }
-    if constexpr (rise == Rise::refused) list_falling();
+    if constexpr (rise == Rise::refused) falling_.list(batch_);
     batch_valid_ = true;
   }
 
@@ -163,8 +163,8 @@ class TypedTrialLoop final : public TrialLoop {
     BatchCounts counts;
     std::uint32_t first = begin, last = end;
     if constexpr (rise == Rise::refused) {
-      first = falling_before(begin);
-      last = falling_before(end);
+      first = falling_.before(begin);
+      last = falling_.before(end);
       counts.rising = (end - begin) - (last - first);
     }
     // Rises at finite beta draw a number of their own: they are counted one by one.
@@ -343,22 +343,6 @@ class TypedTrialLoop final : public TrialLoop {
     for (std::uint32_t m = 1; m <= row[0]; ++m) __builtin_prefetch(&here.centres[row[m]]);
   }
 
-  // Trials that rise in the cold are refused unseen: the others of a batch, in order.
-  void list_falling() {
-    std::uint32_t count = 0;
-    for (std::uint32_t t = 0; t < ProposalBatch::size; ++t) {
-      falling_[count] = t;
-      count += !(batch_.dz[t] > 0);
-    }
-    n_falling_ = count;
-    std::iota(falling_.begin() + count, falling_.begin() + count + ProposalBatch::margin,
-              ProposalBatch::size);
-  }
-  std::uint32_t falling_before(std::uint32_t t) const {
-    const auto end = falling_.begin() + n_falling_;
-    return static_cast<std::uint32_t>(std::lower_bound(falling_.begin(), end, t) -
-                                      falling_.begin());
-  }
   // The trial of the batch that is looked at as the k-th.
   std::uint32_t looked_at(std::uint32_t k) const {
     if constexpr (rise == Rise::refused) return falling_[k];
@@ -402,8 +386,7 @@ class TypedTrialLoop final : public TrialLoop {
   bool rare_ = false;     // hardly any
   std::uint64_t watched_trials_ = 0, watched_accepted_ = 0;
   ProposalBatch batch_;
-  std::array<std::uint32_t, ProposalBatch::size + ProposalBatch::margin> falling_;
-  std::uint32_t n_falling_ = 0;
+  FallingTrials falling_;  // in the cold
 };
 
 }  // namespace jostle
