@@ -44,12 +44,12 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
                            rule.sampler);
   };
   RelaxationProgress before;
-  if (relaxes_before_recording(plan.start)) {
-    const Relaxation& rule = plan.relax_start ? *plan.relax_start : plan.relax;
-    const auto loop = make_loop(rule);
+  const Relaxation* of_start = relaxation_of_start(plan);
+  if (of_start != nullptr) {
+    const auto loop = make_loop(*of_start);
     loop->load(packing);
     loop->begin_tap();
-    relax(*loop, rule.stop, pilot_window(rule.stop, packing), before, budget / 2);
+    relax(*loop, of_start->stop, pilot_window(of_start->stop, packing), before, budget / 2);
     loop->store(packing);
   }
   const Seconds start_time = Clock::now() - began;
@@ -67,7 +67,7 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   estimate.trials = before.trials + loop->tally().trials;
   estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
   const bool start_settled =
-      !relaxes_before_recording(plan.start) || before.status != RelaxationStatus::running;
+      of_start == nullptr || before.status != RelaxationStatus::running;
   estimate.settled = start_settled && tap.status != RelaxationStatus::running;
   estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;
   const double scale = static_cast<double>(plan.n_spheres) / estimate.n_spheres;

@@ -74,8 +74,8 @@ class Check {
     const bool settles = is<RandomSettle>(scene_.start) || is<FittedPour>(scene_.start);
     if (all_sound({"/start"}) && !settles) {
       note("/relax_start",
-           "this start is at rest from the beginning: only random_settle and a fitted pour relax "
-           "before tap 0");
+           "this start is at rest from the beginning: only random_settle and a fitted pour can "
+           "be relaxed before tap 0");
     }
   }
 

@@ -172,8 +172,7 @@ Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint
     if (count > 0) out.protocol.push_back({stage.tap, std::nullopt, count});
     taps -= count;
   }
-  const bool relaxes = std::holds_alternative<RandomSettle>(scene.start) ||
-                       std::holds_alternative<FittedPour>(scene.start);
+  const bool relaxes = std::holds_alternative<RandomSettle>(scene.start);
   if (relaxes && !out.relax_start) out.relax_start = scene.relax;
   SweepAxis axis;
   axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};

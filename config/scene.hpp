@@ -131,7 +131,7 @@ struct Scene {
   StartChoice start;
   std::vector<ProtocolLine> protocol;
   Relaxation relax;
-  std::optional<Relaxation> relax_start;  // absent: as `relax`
+  std::optional<Relaxation> relax_start;  // absent: a random settle as `relax`, else none
 
   std::vector<Observable> observables;
   SnapshotChoice snapshots;

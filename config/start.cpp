@@ -16,12 +16,18 @@ StartChoice read_pour(const Reader& in) {
     pour->settings.is_object_of({});
     return SteepestDescentPour{};
   }
-  FittedPour fitted;
-  if (pour->settings.is_object_of({"max_step", "max_sweeps"})) {
-    pour->settings.read("max_step", fitted.max_step, between(1e-6, 0.5));
-    pour->settings.read_whole("max_sweeps", fitted.max_sweeps, 1, most_sweeps);
+  // Of the rule before: random moves of every sphere.
+  for (const std::string moves : {"max_step", "max_sweeps"}) {
+    if (const auto key = pour->settings.find(moves)) {
+      key->fault(
+          "a fitted pour has no settings any more: it pours the spheres that overlap a wall again "
+          "and moves no others, so there are no random moves to bound; write {\"pour\": "
+          "\"fitted\"}");
+      return FittedPour{};
+    }
   }
-  return fitted;
+  pour->settings.is_object_of({});
+  return FittedPour{};
 }
 
 StartChoice read_random_settle(const Reader& in) {
@@ -114,11 +120,7 @@ Json number_or_last(const std::optional<std::uint64_t>& number) {
 
 struct Writer {
   Json operator()(const SteepestDescentPour&) const { return {{"pour", "steepest_descent"}}; }
-  Json operator()(const FittedPour& pour) const {
-    return {{"pour",
-             {{"fitted",
-               {{"max_step", plain_number(pour.max_step)}, {"max_sweeps", pour.max_sweeps}}}}}};
-  }
+  Json operator()(const FittedPour&) const { return {{"pour", "fitted"}}; }
   Json operator()(const RandomSettle& settle) const {
     return {{"random_settle", {{"dilute_fraction", plain_number(settle.dilute_fraction)}}}};
   }

@@ -19,6 +19,17 @@ Vec3 draw_drop(const PourBed& bed, RandomStream& random) {
 
 }  // namespace
 
+Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, PourTally* tally) {
+  constexpr int max_redraws = 1000;
+  for (int draw = 0; draw < max_redraws; ++draw) {
+    if (const auto rest = descend(bed, draw_drop(bed, random))) return *rest;
+    if (tally != nullptr) ++tally->redrawn;
+  }
+  throw StartError("steepest-descent pour: sphere " + std::to_string(sphere) +
+                   " found no place to rest in " + std::to_string(max_redraws) +
+                   " drops; change the seed or the width by a little");
+}
+
 std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
                        const StopAsked& stop, PourTally* tally) {
   if (!has_gravity(container)) {
@@ -26,21 +37,10 @@ std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, Rand
         "steepest-descent pour: a fully periodic box has no floor to pour on; use the start grow "
         "or a crystal");
   }
-  constexpr int max_redraws = 1000;  // of one sphere
   PourBed bed(container, n_spheres);
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
     heed(stop);
-    std::optional<Vec3> rest;
-    for (int draw = 0; draw < max_redraws && !rest; ++draw) {
-      rest = descend(bed, draw_drop(bed, random));
-      if (!rest && tally != nullptr) ++tally->redrawn;
-    }
-    if (!rest) {
-      throw StartError("steepest-descent pour: sphere " + std::to_string(sphere) +
-                       " found no place to rest in " + std::to_string(max_redraws) +
-                       " drops; change the seed or the width by a little");
-    }
-    bed.add(*rest);
+    bed.add(pour_one(bed, sphere, random, tally));
   }
   return bed.centres();
 }

@@ -23,14 +23,12 @@ struct SteepestDescentPour {
 };
 
 /// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
-/// sides, then random moves that never increase the total overlap with the walls, until it is zero.
-/// During these moves the sides are walls already: spheres that touched through a seam no longer
-/// meet. The bed expands by about a tenth (at max_step 0.05) while the spheres near the walls push
-/// inwards; the relaxation that follows is the scene's own. max_step in (0, 1]. A residue after
-/// `max_sweeps` is an error, as are other containers and widths of 2 diameters or less.
+/// sides, fitted between walls. How, the paper does not say. Here the spheres that overlap a wall
+/// are taken out and poured again by the same steepest descent, between the walls and onto the
+/// others, in the order in which they were poured: so what lay low comes to lie low again. No other
+/// sphere moves, to the bit, not even one that has lost a support. Spheres that touched through a
+/// seam no longer meet. Other containers and widths of 2 diameters or less are an error.
 struct FittedPour {
-  double max_step = 0.05;
-  std::uint64_t max_sweeps = 100'000;
   bool operator==(const FittedPour&) const = default;
 };
 
@@ -92,11 +90,10 @@ using StopAsked = std::function<bool()>;
 
 /// Builds the starting packing, before any relaxation. Throws StartError where the start does not
 /// suit the container or the spheres do not fit, and StartStopped soon after `stop` says so, within
-/// a sweep or the pour of a sphere; never hangs.
+/// a sweep or the pour of a sphere; never hangs. A fitted pour leaves in `before_fitting`, where
+/// given, what was poured with periodic sides.
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
-                   RandomStream& random, const StopAsked& stop = {});
-
-/// Whether tap 0 is recorded only after a relaxation without a tap (RandomSettle and FittedPour).
-bool relaxes_before_recording(const Start& start);
+                   RandomStream& random, const StopAsked& stop = {},
+                   Packing* before_fitting = nullptr);
 
 }  // namespace jostle

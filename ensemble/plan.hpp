@@ -61,7 +61,7 @@ struct Plan {
   Start start;
   std::vector<Stage> protocol;
   Relaxation relax;                                      // after every tap
-  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself; absent: the same
+  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself
 
   std::vector<Observable> observables;
   Snapshots snapshots;
@@ -69,6 +69,10 @@ struct Plan {
 
 /// Taps of the whole protocol.
 std::uint64_t total_taps(const Plan& plan);
+
+/// How the start is relaxed before tap 0 is recorded: as the plan's `relax_start` says; without it a
+/// random settle as after a tap, any other start not at all (null).
+const Relaxation* relaxation_of_start(const Plan& plan);
 
 /// The tap with number t in 1 .. total_taps(plan).
 const Tap& tap_number(const Plan& plan, std::uint64_t t);

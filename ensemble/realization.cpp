@@ -80,7 +80,7 @@ bool Realization::start(const StopAsked& stop) {
   } catch (const StartStopped&) {
     return false;
   }
-  if (!relaxes_before_recording(plan_.start)) return true;
+  if (relaxation_of_start(plan_) == nullptr) return true;
   state_.stop_window = start_stop_window(relaxation().stop, packing_);
   begin_relaxation();
   return true;
@@ -170,7 +170,8 @@ RealizationState Realization::state() const {
 }
 
 const Relaxation& Realization::relaxation() const {
-  return state_.rows == 0 && plan_.relax_start ? *plan_.relax_start : plan_.relax;
+  const Relaxation* of_start = relaxation_of_start(plan_);
+  return state_.rows == 0 && of_start != nullptr ? *of_start : plan_.relax;
 }
 
 // A new loop is a resumed one: it takes over the centres and where the trials stand.

@@ -81,8 +81,8 @@ class Cost(Case):
         self.assertNotIn(" 2 rounds", done.stdout)
 
     def test_failures_are_told_and_no_round_follows_where_all_fail(self):
-        self.write(changed(SCENE, container={"sides": "walls", "width": 4},
-                           start={"pour": {"fitted": {"max_sweeps": 1}}}))
+        self.write(changed(SCENE, container={"sides": "periodic", "width": 4},
+                           start={"crystal": "hcp"}))
         done = self.cost("--budget", "60s", "--taps", "2", expect=FAILED)
         self.assertNotIn("nan", done.stdout)
         self.assertRegex(done.stdout, r"2 of 2 rounds failed, and are not in the numbers: .+\n  \(as the scene, ")

@@ -118,8 +118,7 @@ class Results(Kept):
 
 class Quiet(Case):
     def test_reasons_of_failures_are_errors(self):
-        self.write(changed(TINY, container={"sides": "walls", "width": 4},
-                           start={"pour": {"fitted": {"max_sweeps": 1}}}))
+        self.write(changed(TINY, start={"crystal": "hcp"}))
         done = self.jostle("run", "scene.json", "--quiet", expect=FAILED)
         self.assertEqual(done.stdout, "")
         self.assertEqual(len(done.stderr.splitlines()), 6)

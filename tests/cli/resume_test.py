@@ -85,10 +85,9 @@ class Stops(Case):
 
 class Retry(Case):
     def test_failed_realizations_are_run_again_only_when_asked(self):
-        # Walls need more than one sweep of agitation: the first point fails, the second does not.
-        self.write(changed(TINY, start={"pour": {"fitted": {"max_sweeps": 1}}},
-                           container={"sides": "walls", "width": 4},
-                           sweep={"/start/pour/fitted/max_sweeps": [1, 100000]}))
+        # No crystal fits 4 x 4 unless it is stretched: the first point fails, the second does not.
+        self.write(changed(TINY, start={"crystal": "hcp"},
+                           sweep={"/start/crystal/stretch": [False, True]}))
         first = self.run_scene(expect=FAILED)
         self.assertRegex(first.stdout, r"realization 0 failed \(seed 4711\): \S")
         self.assertIn("3 done, 0 failed", first.stdout)

@@ -110,17 +110,16 @@ class Structure(Case):
         self.assert_same(straight, self.stored("all.h5"))
 
     def test_a_point_whose_realizations_failed_says_so_and_others_are_measured(self):
-        # Walls need more than one sweep of agitation: the first point fails, the second does not.
-        scene = changed(TINY, start={"pour": {"fitted": {"max_sweeps": 1}}}, structure=SMALL,
-                        container={"sides": "walls", "width": 4},
-                        sweep={"/start/pour/fitted/max_sweeps": [1, 100000]})
+        # No crystal fits 4 x 4 unless it is stretched: the first point fails, the second does not.
+        scene = changed(TINY, start={"crystal": "hcp"}, structure=SMALL,
+                        sweep={"/start/crystal/stretch": [False, True]})
         self.write(scene)
         self.run_scene(expect=FAILED)
         with h5py.File(self.folder / "tiny.h5") as file:
             refused, measured = (file[f"structure/point_000{p}/profile"] for p in (0, 1))
             self.assertIn("no realization has a packing", refused.attrs["note_refused"])
             self.assertEqual(measured["realizations"][:].tolist(), [3, 3])
-        scene["sweep"] = {"/start/pour/fitted/max_sweeps": [1, 2]}
+        scene["sweep"] = {"/start/crystal/stretch": [False]}
         self.write(changed(scene, name="none"))
         self.assertIn("no structure", self.run_scene(expect=FAILED).stderr)
 

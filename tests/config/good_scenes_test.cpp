@@ -43,7 +43,7 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(scene.streams == Streams::matched);
   CHECK(scene.container == Container{WalledBox{12, 16.5}});
   CHECK(scene.n_spheres == 4096);
-  CHECK(scene.start == StartChoice{FittedPour{.max_step = 0.04, .max_sweeps = 5000}});
+  CHECK(scene.start == StartChoice{FittedPour{}});
   REQUIRE(scene.protocol.size() == 7);
   CHECK(scene.protocol[0] == ProtocolLine{Dilate{0.02}, std::nullopt, 100});
   CHECK(scene.protocol[3] == ProtocolLine{Shake{0.02, 0.1, 3}, std::nullopt, 0});
@@ -114,9 +114,6 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(adapt["threshold"]["default"] == StepAdaptation{}.threshold);
   CHECK(adapt["reset_each_tap"]["default"] == StepAdaptation{}.reset_each_tap);
   const auto& start = schema["definitions"]["start"]["properties"];
-  const auto& fitted = start["pour"]["anyOf"][1]["properties"]["fitted"]["properties"];
-  CHECK(fitted["max_step"]["default"] == FittedPour{}.max_step);
-  CHECK(fitted["max_sweeps"]["default"] == FittedPour{}.max_sweeps);
   CHECK(start["random_settle"]["properties"]["dilute_fraction"]["default"] ==
         RandomSettle{}.dilute_fraction);
   CHECK(start["grow"]["properties"]["max_sweeps"]["default"] == Grow{}.max_sweeps);

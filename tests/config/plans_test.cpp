@@ -16,7 +16,7 @@ TEST_CASE("A plan holds what the scene says") {
   CHECK(plan.streams == Streams::matched);
   CHECK(plan.container == Container{WalledBox{12, 16.5}});
   CHECK(plan.n_spheres == 4096);
-  CHECK(plan.start == Start{FittedPour{.max_step = 0.04, .max_sweeps = 5000}});
+  CHECK(plan.start == Start{FittedPour{}});
   REQUIRE(plan.protocol.size() == 3 + 16 + 4 + 1);
   CHECK(plan.protocol[3] == Stage{Dilate{0.025 * 0.025}, 2});
   CHECK(plan.protocol[22] == Stage{Dilate{0.1}, 2});

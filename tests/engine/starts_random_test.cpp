@@ -38,13 +38,4 @@ TEST_CASE("A random settle that cannot be is refused") {
                     Catch::Contains("lower dilute_fraction"));
 }
 
-TEST_CASE("Only starts whose bed is in mid-air are relaxed before tap 0 is recorded") {
-  CHECK(relaxes_before_recording(RandomSettle{}));
-  CHECK(relaxes_before_recording(FittedPour{}));
-  CHECK_FALSE(relaxes_before_recording(SteepestDescentPour{}));
-  CHECK_FALSE(relaxes_before_recording(Crystal{}));
-  CHECK_FALSE(relaxes_before_recording(Grow{}));
-  CHECK_FALSE(relaxes_before_recording(GivenPacking{}));
-}
-
 }  // namespace jostle
