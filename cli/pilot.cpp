@@ -66,8 +66,7 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
 
   estimate.trials = before.trials + loop->tally().trials;
   estimate.trials_per_second = static_cast<double>(estimate.trials) / relax_time.count();
-  const bool start_settled =
-      of_start == nullptr || before.status != RelaxationStatus::running;
+  const bool start_settled = of_start == nullptr || before.status != RelaxationStatus::running;
   estimate.settled = start_settled && tap.status != RelaxationStatus::running;
   estimate.sweeps_per_tap = static_cast<double>(tap.trials) / estimate.n_spheres;
   const double scale = static_cast<double>(plan.n_spheres) / estimate.n_spheres;

@@ -9,6 +9,7 @@
 
 #include "cli/durations.hpp"
 #include "cli/text_table.hpp"
+#include "ensemble/moments.hpp"
 
 namespace jostle {
 namespace {
@@ -111,6 +112,25 @@ std::string dropped_offsets_line(const EnsembleSeries& dropped) {
                      100 * share / taps);
 }
 
+/// Means over realizations; nothing of a start that is no fitted pour.
+std::string fitting_line(const ResultsFile& file, std::uint32_t point) {
+  FittingReport mean;
+  for (const RealizationValues& column : file.fittings(point)) {
+    Moments moments;
+    for (const double value : column.values) moments.add(value);
+    for (const FittingColumn& field : fitting_columns) {
+      if (column.label.name == field.name) mean.*field.field = moments.mean();
+    }
+  }
+  if (!(mean.spheres_moved > 0)) return "";
+  return fmt::format(
+      "fitting between the walls moved {:.0f} of {} spheres, up by {:.2f} d on average: "
+      "corrected fraction {:.4f} -> {:.4f}, away from the walls {:.4f} -> {:.4f}\n",
+      mean.spheres_moved, file.study().points[point].n_spheres, mean.mean_rise,
+      mean.corrected_fraction_before, mean.corrected_fraction_after, mean.central_fraction_before,
+      mean.central_fraction_after);
+}
+
 /// Realizations of one point by how they ended, and what they cost.
 struct PointCost {
   std::uint64_t done = 0, unfinished = 0, failed = 0;
@@ -156,7 +176,7 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
   const PointSeries series = point_series(file, point);
   if (const auto last = last_tap(series.sweeps)) {
     text += tap_table(series, *last) + capped_line(series.capped, series.sweeps) +
-            dropped_offsets_line(series.dropped_offsets);
+            dropped_offsets_line(series.dropped_offsets) + fitting_line(file, point);
   }
   return text + cost_line(cost) + failures;
 }

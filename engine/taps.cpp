@@ -1,5 +1,9 @@
 #include "engine/taps.hpp"
 
+#include <numeric>
+#include <utility>
+#include <vector>
+
 #include "engine/cell_grid.hpp"
 #include "engine/geometry.hpp"
 
@@ -16,6 +20,16 @@ Vec3 random_in_disc(double radius, RandomStream& random) {
   }
 }
 
+// The numbers 0 .. n - 1 in random order, every order alike (Fisher & Yates).
+std::vector<std::uint32_t> random_order(std::size_t n, RandomStream& random) {
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t left = n; left > 1; --left) {
+    std::swap(order[left - 1], order[random.below(left)]);
+  }
+  return order;
+}
+
 // Lateral offsets, one sphere after another; each sees the spheres as they then stand.
 class LateralOffsets {
  public:
@@ -30,7 +44,7 @@ class LateralOffsets {
   template <class Box>
   std::uint64_t operator()(const Box& box, RandomStream& random) const {
     std::uint64_t dropped = 0;
-    for (std::uint32_t i = 0; i < packing_.centres.size(); ++i) {
+    for (const std::uint32_t i : random_order(packing_.centres.size(), random)) {
       dropped += !offset(box, i, random);
     }
     return dropped;

@@ -27,9 +27,9 @@ struct Lift {
   bool operator==(const Lift&) const = default;
 };
 
-/// z -> z (1 + lambda), then each centre is offset laterally by a vector uniform in a disc of the
-/// given radius; an offset that would overlap is drawn again up to `retries` times, then dropped.
-/// After Barker & Mehta, as quoted by Rosato et al. 2010, sec. II.
+/// z -> z (1 + lambda), then each centre, in random order, is offset laterally by a vector uniform
+/// in a disc of the given radius; an offset that would overlap is drawn again up to `retries`
+/// times, then dropped. After Barker & Mehta, as quoted by Rosato et al. 2010, sec. II.
 struct Shake {
   double lambda = 0.02;
   double lateral_radius = 0.05;

@@ -70,8 +70,8 @@ struct Plan {
 /// Taps of the whole protocol.
 std::uint64_t total_taps(const Plan& plan);
 
-/// How the start is relaxed before tap 0 is recorded: as the plan's `relax_start` says; without it a
-/// random settle as after a tap, any other start not at all (null).
+/// How the start is relaxed before tap 0 is recorded: as the plan's `relax_start` says; without it
+/// a random settle as after a tap, any other start not at all (null).
 const Relaxation* relaxation_of_start(const Plan& plan);
 
 /// The tap with number t in 1 .. total_taps(plan).

@@ -75,11 +75,13 @@ Slice Realization::advance(std::uint64_t trials, const StopAsked& stop) {
 // Returns whether it was finished, not stopped.
 bool Realization::start(const StopAsked& stop) {
   RandomStream random(key_of(plan_, index_, Purpose::start));
+  Packing poured;
   try {
-    packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random, stop);
+    packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random, stop, &poured);
   } catch (const StartStopped&) {
     return false;
   }
+  if (!poured.centres.empty()) state_.fitting = fitting_report(poured, packing_);
   if (relaxation_of_start(plan_) == nullptr) return true;
   state_.stop_window = start_stop_window(relaxation().stop, packing_);
   begin_relaxation();

@@ -8,6 +8,7 @@
 #include "engine/relaxation.hpp"
 #include "engine/trial_loop.hpp"
 #include "engine/vec3.hpp"
+#include "ensemble/fitting_report.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.
 namespace jostle {
@@ -58,6 +59,7 @@ struct RealizationState {
   std::uint64_t dropped_offsets = 0;      // of the tap that is being relaxed
   HeightWindow stop_window{0, 0};
   std::vector<HeightWindow> observable_windows;
+  std::optional<FittingReport> fitting;  // of a fitted pour
   std::vector<Vec3> centres;
 };
 

@@ -24,6 +24,9 @@ inline std::string particles_name(RealizationId id) {
   return point_name(id.point) + "_" + realization_name(id.realization);
 }
 
+/// What fitting did to the pours of points that start from one.
+inline constexpr const char* fitting_folder = "fitting";
+
 /// The datasets of /provenance, one text a process that worked on the file.
 struct ProvenanceField {
   const char* name;

@@ -8,7 +8,7 @@ namespace {
 
 // Leads the bytes of a state; counts up when they change, from a number that no older state, which
 // began with its rows, can begin with.
-constexpr std::uint32_t state_format = 0xf0000002;
+constexpr std::uint32_t state_format = 0xf0000003;
 
 }  // namespace
 
@@ -46,6 +46,10 @@ void put(ByteWriter& writer, const RealizationState& state) {
   writer.put(state.stop_window.low);
   writer.put(state.stop_window.high);
   writer.put(state.observable_windows);
+  writer.put(state.fitting.has_value());
+  for (const FittingColumn& column : fitting_columns) {
+    if (state.fitting) writer.put((*state.fitting).*column.field);
+  }
   writer.put(state.centres);
 }
 
@@ -77,6 +81,11 @@ RealizationState get_realization_state(ByteReader& reader) {
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
   state.observable_windows = reader.get_vector<HeightWindow>();
+  if (reader.get<bool>()) {
+    state.fitting.emplace();
+    for (const FittingColumn& column : fitting_columns)
+      (*state.fitting).*column.field = reader.get<double>();
+  }
   state.centres = reader.get_vector<Vec3>();
   return state;
 }

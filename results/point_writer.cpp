@@ -59,6 +59,7 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       rows_(n_realizations_, 0),
       reasons_(n_realizations_),
       work_(n_realizations_),
+      fittings_(n_realizations_),
       coordination_(point_.snapshots.taps.size() * n_realizations_, nan),
       histograms_(coordination_.size()) {
   for (const char* folder : {"observables", "ensemble", "snapshots", "restart", "timing"})
@@ -79,7 +80,10 @@ RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationR
   reasons_[realization] = record.reason;
   work_[realization] = record.work;
   take_snapshots(realization, record);
-  if (record.state) write_restart(realization, record);
+  if (record.state) {
+    fittings_[realization] = record.state->fitting;
+    write_restart(realization, record);
+  }
   return status;
 }
 
@@ -121,6 +125,7 @@ void PointWriter::finish() {
   write_observables();
   write_ensemble();
   write_snapshots();
+  write_fittings();
   write_timing();
 }
 
@@ -166,6 +171,24 @@ void PointWriter::write_snapshots() {
   if (point_.snapshots.taps.empty()) return;
   write_snapshot_statistics(group_under("snapshots"), point_.snapshots, n_realizations_,
                             coordination_, histograms_);
+}
+
+// Only of points that start from a fitted pour.
+void PointWriter::write_fittings() {
+  const auto is_known = [](const auto& fitting) { return fitting.has_value(); };
+  if (std::none_of(fittings_.begin(), fittings_.end(), is_known)) return;
+  create_group(file_, std::string(fitting_folder) + "/" + point_name(number_));
+  const Hdf5Handle group = group_under(fitting_folder);
+  const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
+  const Hdf5Handle* const axes[] = {&realizations};
+  for (const FittingColumn& column : fitting_columns) {
+    std::vector<double> values;
+    for (const auto& fitting : fittings_)
+      values.push_back(fitting ? canonical((*fitting).*column.field) : nan);
+    const Hdf5Handle written = write_numbers(group, column.name, values);
+    write_label(written, {column.name, column.units, column.long_name, "jostle"});
+    attach_axes(written, axes);
+  }
 }
 
 void PointWriter::write_timing() {

@@ -34,6 +34,7 @@ class PointWriter {
   void write_observables();
   void write_ensemble();
   void write_snapshots();
+  void write_fittings();
   void write_timing();
   Hdf5Handle group_under(const char* folder) const;
 
@@ -48,8 +49,9 @@ class PointWriter {
   std::vector<std::uint64_t> rows_;
   std::vector<std::string> reasons_;
   std::vector<Work> work_;
-  std::vector<double> coordination_;             // [n_snapshot_taps, n_realizations]
-  std::vector<std::vector<double>> histograms_;  // likewise
+  std::vector<std::optional<FittingReport>> fittings_;  // [n_realizations]
+  std::vector<double> coordination_;                    // [n_snapshot_taps, n_realizations]
+  std::vector<std::vector<double>> histograms_;         // likewise
 };
 
 }  // namespace jostle

@@ -200,6 +200,19 @@ std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
   });
 }
 
+std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const {
+  return naming_file(impl_->path, [&] {
+    std::vector<RealizationValues> all;
+    const std::string folder = std::string(fitting_folder) + "/" + point_name(point);
+    if (!exists(impl_->file, folder)) return all;
+    const Hdf5Handle group = open_group(impl_->file, folder);
+    for (const FittingColumn& column : fitting_columns)
+      all.push_back({{column.name, column.units, column.long_name, "jostle"},
+                     read_numbers<double>(group, column.name)});
+    return all;
+  });
+}
+
 std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
   if (!impl_->has_points) return {};
   return naming_file(impl_->path, [&] {

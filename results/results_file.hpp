@@ -44,6 +44,12 @@ struct EnsembleSeries {
   std::vector<std::uint32_t> count;        // realizations that have a value
 };
 
+/// A number a realization: [n_realizations], NaN where there is none.
+struct RealizationValues {
+  ObservableLabel label;
+  std::vector<double> values;
+};
+
 struct RealizationSummary {
   RealizationId id;
   RealizationStatus status = RealizationStatus::missing;
@@ -80,6 +86,8 @@ class ResultsFile {
   std::vector<double> block(std::uint32_t point, const std::string& column, const TapRange& taps,
                             const RealizationRange& chosen) const;
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
+  /// What fitting did to each pour between walls (fitting_columns); nothing of another start.
+  std::vector<RealizationValues> fittings(std::uint32_t point) const;
   /// Everything stored of one realization.
   RealizationRecord record(RealizationId id) const;
   /// Where it goes on; nothing for missing and failed ones.

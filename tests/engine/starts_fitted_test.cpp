@@ -38,8 +38,8 @@ TEST_CASE("A fitted pour moves only the spheres that straddle a wall, and these 
   std::size_t moved = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 r = before.centres[i];
-    const bool straddles = r.x < 0.5 || r.y < 0.5 || r.x > box.width_x - 0.5 ||
-                           r.y > box.width_y - 0.5;
+    const bool straddles =
+        r.x < 0.5 || r.y < 0.5 || r.x > box.width_x - 0.5 || r.y > box.width_y - 0.5;
     CAPTURE(i, r.x, r.y, r.z);
     CHECK((after.centres[i] == r) == !straddles);
     if (!straddles) continue;

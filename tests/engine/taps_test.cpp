@@ -1,6 +1,9 @@
 #include "engine/taps.hpp"
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "engine/starts.hpp"
 #include "sample_packings.hpp"
@@ -79,4 +82,59 @@ TEST_CASE("a shake offsets spheres inside its disc and counts those it could not
   // A sphere held by a tube of its own width can go nowhere.
   Packing column{Cylinder{1}, {{0.5, 0.5, 0.5}}};
   CHECK(excite(column, Shake{0, 0.2, 3}, random).lateral_offsets_dropped == 1);
+}
+
+TEST_CASE("a shake takes spheres in random order, so that their numbers decide nothing") {
+  // One sphere at a wall, one just beside it with room beyond: if that goes first, the one at the
+  // wall finds room more often. In the order of numbers its share of dropped offsets is 0.955 as
+  // the first and 0.646 as the second; in random order it is 0.80 either way.
+  constexpr int shakes = 20'000;
+  const std::array<Vec3, 2> held{Vec3{0.5, 1.5, 0.5}, Vec3{1.5001, 1.5, 0.5}};
+  std::array<double, 2> dropped{};
+  RandomStream random(stream_key(11, 0, 0, Purpose::tap));
+  for (const std::size_t number : {0u, 1u}) {
+    for (int shake = 0; shake < shakes; ++shake) {
+      Packing packing{WalledBox{4, 3}, {held[number], held[1 - number]}};
+      excite(packing, Shake{0, 0.2, 1}, random);
+      dropped[number] += packing.centres[number] == held[0] ? 1.0 / shakes : 0;
+    }
+  }
+  const double share = 0.5 * (dropped[0] + dropped[1]);
+  const double error = std::sqrt(2 * share * (1 - share) / shakes);
+  CAPTURE(dropped[0], dropped[1], error);
+  CHECK(std::abs(dropped[0] - dropped[1]) <= 3 * error);
+}
+
+TEST_CASE("a shake drops as many offsets at any height, in whatever order spheres were poured") {
+  constexpr std::size_t n = 300, quarters = 4;
+  constexpr std::uint64_t beds = 50;
+  // Dropped offsets by height, of beds numbered from below less the same numbered from above.
+  std::array<std::array<double, beds>, quarters> differences{};
+  for (std::uint64_t bed = 0; bed < beds; ++bed) {
+    RandomStream start(stream_key(5, 0, bed, Purpose::start));
+    Packing packing = make_start(SteepestDescentPour{}, PeriodicBox{6, 6}, n, start);
+    std::ranges::sort(packing.centres, {}, &Vec3::z);
+    for (const bool from_below : {true, false}) {
+      Packing shaken = packing;
+      if (!from_below) std::ranges::reverse(shaken.centres);
+      const Packing before = shaken;
+      RandomStream tap(stream_key(5, 0, bed, Purpose::tap));
+      excite(shaken, Shake{0.02, 0.1, 3}, tap);
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool dropped = shaken.centres[i].x == before.centres[i].x;
+        const std::size_t quarter = (from_below ? i : n - 1 - i) * quarters / n;
+        differences.at(quarter).at(bed) += (from_below ? 1.0 : -1.0) * (dropped ? 1 : 0);
+      }
+    }
+  }
+  for (const auto& of_beds : differences) {
+    double sum = 0, squares = 0;
+    for (const double difference : of_beds) {
+      sum += difference;
+      squares += difference * difference;
+    }
+    const double mean = sum / beds, error = std::sqrt((squares / beds - mean * mean) / (beds - 1));
+    CAPTURE(mean, error);
+    CHECK(std::abs(mean) <= 3 * error);
+  }
 }

@@ -63,6 +63,9 @@ class Bits {
       add(window.low);
       add(window.high);
     }
+    for (const FittingColumn& column : fitting_columns) {
+      if (state.fitting) add((*state.fitting).*column.field);
+    }
     add(state.centres);
   }
 

@@ -103,8 +103,7 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
   for (std::uint64_t realization = 0; realization < 6; ++realization) {
     const Fitted bed = fitted(realization);
     const std::vector<double> edges = even_edges(0, walls.width_x, 0.1);
-    const Profile profile =
-        mean_transverse_profile(bed.after, edges, transverse_window(bed.after));
+    const Profile profile = mean_transverse_profile(bed.after, edges, transverse_window(bed.after));
     for (std::size_t k = 0; k < slabs.size(); ++k) {
       const double near = profile.values.at(slabs[k]);
       const double far = profile.values.at(profile.size() - 1 - slabs[k]);

@@ -102,6 +102,18 @@ TEST_CASE("any part of a column can be read by itself") {
   CHECK_THROWS_AS(file.block(0, "no_such_column", {0, 1}, {0, 1}), ResultsError);
 }
 
+TEST_CASE("what fitting did to a pour is given back by realization") {
+  const TemporaryFolder folder;
+  straight_digest(folder);
+  const ResultsFile file(folder / "straight.h5");
+  const std::vector<RealizationValues> columns = file.fittings(1);
+  REQUIRE(columns.size() == std::size(fitting_columns));
+  CHECK(columns[0].label.name == "spheres_moved");
+  CHECK(columns[0].values == std::vector<double>{3, 4, 5});
+  CHECK(columns[1].values == std::vector<double>{1.5, 1.5, 1.5});
+  CHECK(std::isnan(columns[4].values.at(0)));
+}
+
 TEST_CASE("means, deviations and errors are over realizations") {
   const TemporaryFolder folder;
   straight_digest(folder);

@@ -24,6 +24,12 @@ RealizationState begin_state(const StudyPoint& point, RealizationId id) {
   state.move.step = 0.1;
   state.stop_window = {0.25, 4};
   state.observable_windows = {{0, 0}, {1, 3}};
+  state.fitting = {.spheres_moved = 3.0 + id.realization,
+                   .mean_rise = 1.5,
+                   .corrected_fraction_before = 0.58,
+                   .corrected_fraction_after = 0.51,
+                   .central_fraction_before = std::nan(""),
+                   .central_fraction_after = noise(id.realization, point.id)};
   return state;
 }
 
