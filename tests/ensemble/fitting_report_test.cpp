@@ -15,11 +15,11 @@ double corrected_fraction(const Packing& packing) {
 }
 
 // Its first row, and what it then says of a fitting.
-struct Start {
+struct FirstRow {
   TapRow row;
   std::optional<FittingReport> fitting;
 };
-Start start_of(const Plan& plan) {
+FirstRow start_of(const Plan& plan) {
   Realization realization(plan, 0);
   Slice slice;
   while (!slice.row) slice = realization.advance(1'000'000);
@@ -63,7 +63,7 @@ TEST_CASE("A realization reports the fitting of its start, and of no other start
   CHECK_FALSE(start_of(plan).fitting);
   plan.container = WalledBox{4.5, 4.2};
   plan.start = FittedPour{};
-  const Start start = start_of(plan);
+  const FirstRow start = start_of(plan);
   RandomStream random(stream_key(plan.seed, plan.point_id, 0, Purpose::start));
   Packing poured;
   const Packing fitted =
@@ -73,7 +73,7 @@ TEST_CASE("A realization reports the fitting of its start, and of no other start
 
   // A relaxation before tap 0 on request, and the report is that of the fitting still.
   plan.relax_start = Relaxation{.move = PolarMove{}, .stop = {.rule = SweepsStop{.sweeps = 11}}};
-  const Start relaxed = start_of(plan);
+  const FirstRow relaxed = start_of(plan);
   CHECK(relaxed.row.relaxation.sweeps == 11);
   CHECK(relaxed.fitting == start.fitting);
 }
