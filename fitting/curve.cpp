@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 namespace jostle {
 
@@ -21,7 +22,52 @@ void report(const std::vector<double>& values, const char* what, Bad bad,
   faults.push_back(text.str());
 }
 
+// The points of these numbers, in this order.
+Curve chosen(const Curve& curve, const std::vector<std::size_t>& points) {
+  Curve part{.t = {}, .x = {}, .n_realizations = curve.n_realizations};
+  for (const std::size_t i : points) {
+    part.t.push_back(curve.t[i]);
+    part.x.push_back(curve.x[i]);
+    if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
+    for (std::size_t r = 0; r < curve.n_realizations; ++r) {
+      part.values.push_back(curve.values[i * curve.n_realizations + r]);
+    }
+  }
+  return part;
+}
+
 }  // namespace
+
+// Differences from the first realization keep the digits of small fluctuations.
+Curve mean_curve(std::vector<double> t, std::vector<double> values, std::size_t n_realizations) {
+  Curve curve{.t = std::move(t), .x = {}};
+  for (std::size_t i = 0; i < curve.t.size(); ++i) {
+    const double* row = values.data() + i * n_realizations;
+    double sum = 0;
+    for (std::size_t r = 0; r < n_realizations; ++r) sum += row[r] - row[0];
+    curve.x.push_back(row[0] + sum / static_cast<double>(n_realizations));
+  }
+  if (n_realizations < 2) return curve;
+  curve.values = std::move(values);
+  curve.n_realizations = n_realizations;
+  return curve;
+}
+
+Curve with_pooled_errors(Curve curve, bool relative) {
+  if (curve.n_realizations == 0 || !curve.sigma.empty()) return curve;
+  const std::size_t m = curve.n_realizations;
+  double sum = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    for (std::size_t r = 0; r < m; ++r) {
+      const double deviation = curve.values[i * m + r] - curve.x[i];
+      sum += std::pow(relative ? deviation / curve.x[i] : deviation, 2);
+    }
+  }
+  const double error = std::sqrt(sum / static_cast<double>(curve.x.size() * m * (m - 1)));
+  if (!(error > 0) || !std::isfinite(error)) return curve;
+  for (const double x : curve.x) curve.sigma.push_back(relative ? error * std::abs(x) : error);
+  return curve;
+}
 
 std::vector<std::string> faults(const Curve& curve) {
   std::vector<std::string> found;
@@ -34,24 +80,29 @@ std::vector<std::string> faults(const Curve& curve) {
     found.push_back(text.str());
     return found;
   }
+  if (curve.n_realizations == 1 || curve.values.size() != n * curve.n_realizations) {
+    std::ostringstream text;
+    text << curve.values.size() << " values of " << curve.n_realizations << " realizations at " << n
+         << " points: two or more realizations need a value each at every point";
+    found.push_back(text.str());
+    return found;
+  }
   const auto not_finite = [](double value) { return !std::isfinite(value); };
   report(curve.t, "t is not finite", not_finite, found);
   report(curve.x, "X is not finite", not_finite, found);
   report(curve.sigma, "sigma is not finite", not_finite, found);
+  report(curve.values, "a realization is not finite", not_finite, found);
   report(
       curve.sigma, "sigma is not positive", [](double value) { return value <= 0; }, found);
   return found;
 }
 
 Curve within(const Curve& curve, double first, double last) {
-  Curve part;
+  std::vector<std::size_t> points;
   for (std::size_t i = 0; i < curve.t.size(); ++i) {
-    if (!(curve.t[i] >= first && curve.t[i] <= last)) continue;
-    part.t.push_back(curve.t[i]);
-    part.x.push_back(curve.x[i]);
-    if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
+    if (curve.t[i] >= first && curve.t[i] <= last) points.push_back(i);
   }
-  return part;
+  return chosen(curve, points);
 }
 
 Curve thinned(const Curve& curve, std::size_t n) {
@@ -62,7 +113,7 @@ Curve thinned(const Curve& curve, std::size_t n) {
                    [&](std::size_t a, std::size_t b) { return curve.t[a] < curve.t[b]; });
   const double first = curve.t[order.front()], last = curve.t[order.back()];
   const bool logarithmic = first > 0 && last > 100 * first;
-  Curve part;
+  std::vector<std::size_t> points;
   std::size_t taken = order.size();  // the rank taken last
   for (std::size_t k = 0; k < n; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(n - 1);
@@ -75,12 +126,9 @@ Curve thinned(const Curve& curve, std::size_t n) {
     }
     if (rank == taken) continue;
     taken = rank;
-    const std::size_t i = order[rank];
-    part.t.push_back(curve.t[i]);
-    part.x.push_back(curve.x[i]);
-    if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
+    points.push_back(order[rank]);
   }
-  return part;
+  return chosen(curve, points);
 }
 
 }  // namespace jostle

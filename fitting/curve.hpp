@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,13 +8,28 @@ namespace jostle {
 
 /// A measured or simulated curve X(t).
 struct Curve {
-  std::vector<double> t;      // [n]
-  std::vector<double> x;      // [n]
-  std::vector<double> sigma;  // [n], error of each x; or empty: all alike, size unknown
+  std::vector<double> t;           // [n]
+  std::vector<double> x;           // [n]
+  std::vector<double> sigma = {};  // [n], error of each x; or empty: all alike, size unknown
+  /// The independent realizations that x is the mean of, [n, n_realizations], or empty. Errors of
+  /// a fit then come from how they scatter as whole curves, whatever the memory of each.
+  std::vector<double> values = {};
+  std::size_t n_realizations = 0;  // 0, or at least 2
 };
 
+/// The mean of realizations, in their order. values: [n, n_realizations], n_realizations >= 1; one
+/// alone is the curve itself, without realizations behind it.
+Curve mean_curve(std::vector<double> t, std::vector<double> values, std::size_t n_realizations);
+
+/// The curve with errors of its means over realizations, where it has realizations and no errors of
+/// its own: their variance pooled over all points, of x or, where `relative`, of ln x. The scatter
+/// of a few values at one point would be no weight: fits would follow the points where realizations
+/// agree by accident.
+Curve with_pooled_errors(Curve curve, bool relative = false);
+
 /// What makes a curve unfit for any fit: lengths that differ, values that are not finite, errors
-/// that are not positive. One sentence a fault, the first place named; empty for a good curve.
+/// that are not positive, a lone realization. One sentence a fault, the first place named; empty
+/// for a good curve.
 std::vector<std::string> faults(const Curve& curve);
 
 /// The points with first <= t <= last.

@@ -66,4 +66,8 @@ double student_two_sided(double level, double dof) {
   return solve_tails(1 - level, [dof](double t) { return student_tails(t, dof); });
 }
 
+double two_sided(double level, double dof) {
+  return std::isfinite(dof) ? student_two_sided(level, dof) : normal_two_sided(level);
+}
+
 }  // namespace jostle

@@ -7,6 +7,8 @@ double normal_two_sided(double level);
 /// The same for Student's t with dof > 0 degrees of freedom. Its square is the quantile of
 /// F(1, dof), as the square of the former is that of chi2 with one degree of freedom.
 double student_two_sided(double level, double dof);
+/// Student's t, or the normal where dof is infinite.
+double two_sided(double level, double dof);
 /// Probability that |z| of a standard normal variable exceeds |z|.
 double normal_tails(double z);
 /// Probability that Student's |t| exceeds |t|.

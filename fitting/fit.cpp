@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 #include <utility>
 
+#include "fitting/binned_curve.hpp"
 #include "fitting/curve_residuals.hpp"
 #include "fitting/distributions.hpp"
+#include "fitting/fit_errors.hpp"
 #include "fitting/fit_statistics.hpp"
 #include "fitting/profile.hpp"
+#include "fitting/refusal.hpp"
 
 namespace jostle {
 
@@ -18,66 +20,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int most_attempts = 5;  // to find a minimum that no profile undercuts
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-
-bool inside(const Parameter& parameter, double value) {
-  return std::isfinite(value) && value > parameter.lower && value < parameter.upper;
-}
-
-// "B = -1 is outside its range (0, inf)"
-std::string out_of_range(const Parameter& parameter, double value) {
-  std::ostringstream text;
-  text << parameter.name << " = " << value << " is outside its range (" << parameter.lower << ", "
-       << parameter.upper << ")";
-  return text.str();
-}
-
-std::optional<Refusal> refuse_options(const Model& model, const FitOptions& options) {
-  const std::vector<Parameter>& parameters = model.parameters();
-  for (const auto& [name, value] : options.fixed) {
-    const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                    [&](const Parameter& p) { return p.name == name; });
-    if (found == parameters.end()) {
-      std::string names;
-      for (const Parameter& p : parameters) names += (names.empty() ? "" : ", ") + p.name;
-      return Refusal{RefusalKind::bad_options,
-                     model.name() + " has no parameter " + name + " (it has " + names + ")"};
-    }
-    if (!inside(*found, value))
-      return Refusal{RefusalKind::bad_options, out_of_range(*found, value)};
-  }
-  if (!options.start) return std::nullopt;
-  if (options.start->size() != parameters.size()) {
-    return Refusal{RefusalKind::bad_options, "a start needs one value for each parameter"};
-  }
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    if (!inside(parameters[j], (*options.start)[j])) {
-      return Refusal{RefusalKind::bad_options, out_of_range(parameters[j], (*options.start)[j])};
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std::size_t n_free) {
-  std::string text;
-  for (const std::string& fault : faults(curve)) text += (text.empty() ? "" : "; ") + fault;
-  if (!text.empty()) return Refusal{RefusalKind::bad_curve, text};
-  const std::size_t places = std::set<double>(curve.t.begin(), curve.t.end()).size();
-  if (places < n_free) {
-    std::ostringstream few;
-    few << curve.t.size() << " points at " << places << " different t cannot determine " << n_free
-        << " parameters: fix some, or use a wider range";
-    return Refusal{RefusalKind::too_few_points, few.str()};
-  }
-  const auto [low, high] = std::minmax_element(curve.x.begin(), curve.x.end());
-  if (*high - *low <= 1e-14 * std::max(std::abs(*low), std::abs(*high))) {
-    std::ostringstream constant;
-    constant << "X is constant (" << *low << "): it determines no law, only its own value";
-    return Refusal{RefusalKind::constant_curve, constant.str()};
-  }
-  text = model.refusal(curve);
-  if (!text.empty()) return Refusal{RefusalKind::bad_domain, text};
-  return std::nullopt;
-}
 
 // One fit in the making.
 class Fitter {
@@ -93,18 +35,19 @@ class Fitter {
   std::vector<ParameterValues> starts() const;
   bool descend_from_all();
   bool descend(const ParameterValues& start, int number);
-  void describe_fit(const CurveResiduals& residuals, Fit& fit) const;
-  void estimate_errors(const CurveResiduals& residuals, Fit& fit) const;
+  ParameterValues refined() const;
+  Eigen::VectorXd describe_fit(Fit& fit) const;
   /// False where a profile found a lower minimum; the search then goes on from there.
-  bool find_intervals(Fit& fit);
+  bool find_intervals(const Eigen::VectorXd& inflation, Fit& fit);
   void void_intervals(Fit& fit) const;
   void remark_on_order(Fit& fit) const;
   bool has_intervals(const Fit& fit) const;
   SolverOptions solver_options(const CurveResiduals& residuals) const;
 
   const Model& model_;
-  const Curve& curve_;
   const FitOptions& options_;
+  Curve curve_;     // with errors, where its realizations give them
+  Curve searched_;  // what is descended on and profiled: the same, or its means over 1 % of t
   ParameterValues fixed_;  // [n_parameters], NaN where free
   std::vector<bool> free_;
   Minimum best_;
@@ -113,7 +56,10 @@ class Fitter {
 };
 
 Fitter::Fitter(const Model& model, const Curve& curve, const FitOptions& options)
-    : model_(model), curve_(curve), options_(options) {
+    : model_(model), options_(options) {
+  const bool logarithmic = model.residual_scale() == ResidualScale::logarithmic;
+  curve_ = with_pooled_errors(curve, logarithmic);
+  searched_ = logarithmic ? curve_ : binned(curve_);
   for (const Parameter& parameter : model.parameters()) {
     const auto found = options.fixed.find(parameter.name);
     fixed_.push_back(found == options.fixed.end() ? unset : found->second);
@@ -126,7 +72,7 @@ std::vector<ParameterValues> Fitter::starts() const {
   if (options_.start) all.push_back(*options_.start);
   if (options_.multi_start || !options_.start) {
     const std::size_t wanted = options_.multi_start ? 8 : 1;
-    for (ParameterValues& p : model_.starts(curve_, fixed_, wanted)) all.push_back(std::move(p));
+    for (ParameterValues& p : model_.starts(searched_, fixed_, wanted)) all.push_back(std::move(p));
   }
   for (ParameterValues& p : all) {
     for (std::size_t j = 0; j < p.size(); ++j) p[j] = free_[j] ? p[j] : fixed_[j];
@@ -142,7 +88,7 @@ SolverOptions Fitter::solver_options(const CurveResiduals& residuals) const {
 
 // Keeps the better minimum; true where this one agrees with the best so far.
 bool Fitter::descend(const ParameterValues& start, int number) {
-  const CurveResiduals residuals(model_, curve_, start, free_);
+  const CurveResiduals residuals(model_, searched_, start, free_);
   Minimum minimum;
   if (residuals.n_variables() > 0) {
     minimum = minimise(residuals, residuals.to_variables(start), solver_options(residuals));
@@ -177,34 +123,18 @@ bool Fitter::descend_from_all() {
   return !values_.empty();
 }
 
-void Fitter::estimate_errors(const CurveResiduals& residuals, Fit& fit) const {
-  const auto n = static_cast<Eigen::Index>(free_.size());
-  fit.covariance = Eigen::MatrixXd::Zero(n, n);
-  fit.correlation = Eigen::MatrixXd::Zero(n, n);
-  if (fit.n_free == 0) return;
-  const InverseNormal inverse = inverse_normal(best_.jacobian);
-  fit.condition = inverse.condition;
-  const Eigen::VectorXd slopes = residuals.slopes(best_.x);
-  const double variance = fit.sigma_given ? 1 : fit.reduced_chi2;
-  Eigen::Index a = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!free_[static_cast<std::size_t>(i)]) continue;
-    Eigen::Index b = 0;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      if (!free_[static_cast<std::size_t>(j)]) continue;
-      const double entry = inverse.matrix(a, b);
-      const double scale = std::sqrt(inverse.matrix(a, a)) * std::sqrt(inverse.matrix(b, b));
-      const double sign = slopes[a] * slopes[b] < 0 ? -1 : 1;
-      fit.covariance(i, j) = entry * slopes[a] * slopes[b] * variance;
-      if (std::isnan(fit.covariance(i, j))) fit.covariance(i, j) = 0;  // 0 times infinity
-      fit.correlation(i, j) = i == j ? 1 : std::clamp(sign * entry / scale, -1.0, 1.0);
-      ++b;
-    }
-    ++a;
-  }
+// The minimum over all points, where a long curve was searched as means.
+ParameterValues Fitter::refined() const {
+  if (searched_.t.size() == curve_.t.size() || n_free() == 0) return values_;
+  const CurveResiduals residuals(model_, curve_, values_, free_);
+  const Minimum minimum =
+      minimise(residuals, residuals.to_variables(values_), solver_options(residuals));
+  return is_minimum(minimum.reason) ? residuals.to_parameters(minimum.x) : values_;
 }
 
-void Fitter::describe_fit(const CurveResiduals& residuals, Fit& fit) const {
+// All but intervals and words, over all points. Returns by how much dependence inflates the
+// variance of every variable, [n_variables].
+Eigen::VectorXd Fitter::describe_fit(Fit& fit) const {
   fit.model = model_.name();
   fit.formula = model_.formula();
   fit.source = model_.source();
@@ -213,6 +143,7 @@ void Fitter::describe_fit(const CurveResiduals& residuals, Fit& fit) const {
   fit.n_free = n_free();
   fit.dof = fit.n_points - fit.n_free;
   fit.sigma_given = !curve_.sigma.empty();
+  fit.n_bins = searched_.t.size() < fit.n_points ? searched_.t.size() : 0;
   fit.reason = best_.reason;
   fit.iterations = best_.iterations;
   fit.evaluations = best_.evaluations;
@@ -220,43 +151,54 @@ void Fitter::describe_fit(const CurveResiduals& residuals, Fit& fit) const {
   fit.fallback = best_.fallback;
   fit.start = best_start_;
   fit.starts_tried = tried_;
+  const ParameterValues values = refined();
   for (std::size_t i = 0; i < fit.n_points; ++i) {
-    fit.fitted.push_back(model_.value(curve_.t[i], values_.data()));
+    fit.fitted.push_back(model_.value(curve_.t[i], values.data()));
     fit.residuals.push_back(fit.logarithmic ? std::log(curve_.x[i]) - std::log(fit.fitted[i])
                                             : curve_.x[i] - fit.fitted[i]);
   }
-  fill_statistics(curve_, best_.r, fit);
-  estimate_errors(residuals, fit);
+  const LinearProblem problem = linear_problem(model_, curve_, values, free_);
+  fill_statistics(curve_, problem.residuals, fit);
+  const DependentErrors dependent =
+      dependent_errors(curve_, problem, options_.memory && !curve_.t.empty(), fit);
+  fill_covariance(problem, free_, fit);
+  Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     const auto k = static_cast<Eigen::Index>(j);
     Estimate estimate;
     estimate.parameter = model_.parameters()[j];
-    estimate.value = values_[j];
+    estimate.value = values[j];
     estimate.standard_error = free_[j] ? std::sqrt(fit.covariance(k, k)) : 0;
+    if (free_[j]) {
+      estimate.error =
+          std::sqrt(dependent.covariance(variable, variable)) * std::abs(problem.slopes[variable]);
+      ++variable;
+    }
     for (Interval& interval : estimate.intervals) {
-      interval = free_[j] ? Interval{-infinite, infinite} : Interval{values_[j], values_[j]};
+      interval = free_[j] ? Interval{-infinite, infinite} : Interval{values[j], values[j]};
     }
     if (!free_[j]) estimate.identifiability = Identifiability::fixed;
     fit.estimates.push_back(std::move(estimate));
   }
+  return dependent.inflation;
 }
 
 bool Fitter::has_intervals(const Fit& fit) const {
-  if (!options_.profiles) return false;
+  if (!options_.profiles || too_short_for_errors(fit)) return false;
   return fit.sigma_given || (fit.dof > 0 && fit.residual_sum > 0);
 }
 
-bool Fitter::find_intervals(Fit& fit) {
-  ProfileProblem problem{model_, curve_,         values_,
+bool Fitter::find_intervals(const Eigen::VectorXd& inflation, Fit& fit) {
+  ProfileProblem problem{model_, searched_,      values_,
                          free_,  best_.cost,     fit.sigma_given ? 1 : fit.reduced_chi2,
                          {0, 0}, options_.solver};
-  for (int level = 0; level < 2; ++level) {
-    problem.thresholds[level] =
-        fit.sigma_given ? normal_two_sided(interval_levels[level])
-                        : student_two_sided(interval_levels[level], static_cast<double>(fit.dof));
-  }
+  Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     if (!free_[j]) continue;
+    const double longer = std::sqrt(inflation[variable++]);
+    for (int level = 0; level < 2; ++level) {
+      problem.thresholds[level] = longer * two_sided(interval_levels[level], fit.error_dof);
+    }
     Estimate& estimate = fit.estimates[j];
     estimate.identifiability = Identifiability::identified;
     if (fit.reason == EndReason::exact && !fit.sigma_given) {
@@ -316,13 +258,13 @@ std::variant<Fit, Refusal> Fitter::operator()() {
     const ParameterValues canonical = any_fixed ? values_ : model_.canonical(values_);
     if (canonical != values_) {
       values_ = canonical;
-      const CurveResiduals reordered(model_, curve_, values_, free_);
+      const CurveResiduals reordered(model_, searched_, values_, free_);
       best_.x = reordered.to_variables(values_);
       reordered.values_and_jacobian(best_.x, best_.r, best_.jacobian);
     }
     Fit fit;
-    describe_fit(CurveResiduals(model_, curve_, values_, free_), fit);
-    if (has_intervals(fit) && !find_intervals(fit)) {
+    const Eigen::VectorXd inflation = describe_fit(fit);
+    if (has_intervals(fit) && !find_intervals(inflation, fit)) {
       if (attempt < most_attempts) continue;
       void_intervals(fit);
     }

@@ -10,6 +10,7 @@
 #include "fitting/curve.hpp"
 #include "fitting/diagnostics.hpp"
 #include "fitting/levenberg_marquardt.hpp"
+#include "fitting/memory.hpp"
 #include "fitting/model.hpp"
 
 namespace jostle {
@@ -23,6 +24,9 @@ struct FitOptions {
   std::map<std::string, double> fixed = {};
   /// Whether intervals are computed: some hundred fits with one parameter held.
   bool profiles = true;
+  /// Whether a curve without realizations may have a memory, which is then found in its residuals.
+  /// Not for points that are known to be independent.
+  bool memory = true;
   SolverOptions solver = {};
 };
 
@@ -51,11 +55,21 @@ enum class Identifiability {
 struct Estimate {
   Parameter parameter;
   double value = 0;
-  /// From the covariance; infinite without degrees of freedom, 0 for a fixed parameter.
+  /// Of a linear problem whose points are independent; infinite without degrees of freedom, 0 for a
+  /// fixed parameter.
   double standard_error = 0;
+  /// The same counting dependence: from the scatter of realizations, else from the memory of the
+  /// residuals. For Student's t of the fit's error_dof.
+  double error = 0;
   Interval intervals[2];  // profile likelihood at interval_levels; the value itself if fixed
   Identifiability identifiability = Identifiability::not_examined;
   std::string statement;  // the same in words
+
+  /// Whether the data give it a value: fixed, or the 68 % interval is closed. What else least
+  /// squares end at, as far out as the search went, is no measurement.
+  bool has_value() const;
+  /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
+  double half_width() const;
 };
 
 /// A fit and what can be said of it. No number is NaN; what does not exist is infinite.
@@ -67,14 +81,19 @@ struct Fit {
   Eigen::MatrixXd covariance, correlation;
 
   std::size_t n_points = 0, n_free = 0, dof = 0;
-  bool sigma_given = false;
-  bool logarithmic = false;   // residuals are those of ln X
-  double residual_sum = 0;    // of squares, weighted: chi2 where errors were given
-  double reduced_chi2 = 0;    // residual_sum / dof; infinite without dof
-  double r2 = 0;              // 1 - residual_sum / weighted sum about the weighted mean
-  double aic = 0, bic = 0;    // -2 ln L + 2 k, + k ln n; k counts the variance if estimated
-  double condition = 0;       // of J^T J for columns of J of unit length
-  RunsTest runs;              // of the residuals in order of t
+  std::size_t n_realizations = 0;  // whose scatter gives the errors; 0: the residuals do
+  double error_dof = 0;            // of errors and intervals; infinite where errors are known
+  std::size_t n_bins = 0;          // means that a long curve was fitted as; 0: its points
+  bool sigma_given = false;        // by the curve, or by its realizations
+  bool logarithmic = false;        // residuals are those of ln X
+  double residual_sum = 0;         // of squares, weighted: chi2 where errors were given
+  double reduced_chi2 = 0;         // residual_sum / dof; infinite without dof
+  double r2 = 0;                   // 1 - residual_sum / weighted sum about the weighted mean
+  double aic = 0, bic = 0;         // -2 ln L + 2 k, + k ln n; k counts the variance if estimated
+  double condition = 0;            // of J^T J for columns of J of unit length
+  RunsTest runs;                   // of the residuals in order of t
+  double weighted_size = 0;  // points of equal weight that would weigh as much: (sum w)^2 / sum w^2
+  Memory memory;             // of the residuals; of realizations none is looked for
   double effective_size = 0;  // points that independent residuals would be worth
   double error_factor = 1;    // sqrt(n_points / effective_size): honest errors are longer
   double aic_effective = 0, bic_effective = 0;  // with likelihoods to the power effective_size/n

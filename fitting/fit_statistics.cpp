@@ -56,6 +56,28 @@ double deviance(const Curve& curve, const Fit& fit, bool logarithmic) {
   return sum;
 }
 
+// Weights are 1 over squared errors, of X or ln X. Points that have none weigh alike.
+double weighted_size(const Curve& curve, bool logarithmic) {
+  if (curve.sigma.empty()) return static_cast<double>(curve.t.size());
+  const auto weight = [&](std::size_t i) {
+    const double inverse = (logarithmic ? curve.x[i] : 1) / curve.sigma[i];
+    return inverse * inverse;
+  };
+  double largest = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < curve.t.size(); ++i) largest = std::max(largest, weight(i));
+  for (std::size_t i = 0; i < curve.t.size(); ++i) {
+    const double share = weight(i) / largest;
+    sum += share;
+    squares += share * share;
+  }
+  return sum * sum / squares;
+}
+
+// Parameters, and the variance of a residual where it is estimated.
+std::size_t n_estimated(const Fit& fit) {
+  return fit.n_free + (fit.sigma_given ? 0 : 1);
+}
+
 }  // namespace
 
 InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian) {
@@ -84,13 +106,19 @@ void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& f
   const std::vector<double> sorted = in_order_of_t(curve, weighted);
   fit.runs = runs_test(sorted);
   fit.effective_size = effective_sample_size(sorted);
-  const auto n = static_cast<double>(fit.n_points);
-  fit.error_factor = std::sqrt(n / fit.effective_size);
+  fit.weighted_size = weighted_size(curve, logarithmic);
   const double likelihood = deviance(curve, fit, logarithmic);
-  const auto k = static_cast<double>(fit.n_free + (fit.sigma_given ? 0 : 1));
+  const auto k = static_cast<double>(n_estimated(fit));
   fit.aic = likelihood + 2 * k;
-  fit.bic = likelihood + k * std::log(n);
-  const double effective = likelihood * fit.effective_size / n;
+  fit.bic = likelihood + k * std::log(static_cast<double>(fit.n_points));
+  count_effective_points(fit);
+}
+
+void count_effective_points(Fit& fit) {
+  const auto n = static_cast<double>(fit.n_points);
+  const auto k = static_cast<double>(n_estimated(fit));
+  fit.error_factor = std::sqrt(n / fit.effective_size);
+  const double effective = (fit.aic - 2 * k) * fit.effective_size / n;
   fit.aic_effective = effective + 2 * k;
   fit.bic_effective = effective + k * std::log(fit.effective_size);
 }

@@ -16,12 +16,16 @@ struct InverseNormal {
 InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian);
 
 /// Fills what follows from residuals and counts: residual sum, reduced chi2, R2, AIC, BIC, runs,
-/// effective size. `weighted`: [n_points], the residuals over their errors; the fit's n_points,
-/// n_free, dof, sigma_given and residuals are set.
+/// weighted and effective size. `weighted`: [n_points], the residuals over their errors; the fit's
+/// n_points, n_free, dof, sigma_given and residuals are set.
 void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& fit);
 
-/// Judges every estimate by its 95 % interval and says so. Adds remarks on parameters that can make
-/// up for each other, and on residuals that hang together.
+/// Fills error_factor, aic_effective and bic_effective from effective_size.
+void count_effective_points(Fit& fit);
+
+/// Judges every estimate by its 95 % interval and says so. Adds remarks on what the errors rest on,
+/// on parameters that can make up for each other, on few points that dominate, on chi2 far from 1
+/// and on correlated residuals.
 void judge(const Curve& curve, Fit& fit);
 
 }  // namespace jostle

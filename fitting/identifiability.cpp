@@ -2,15 +2,16 @@
 #include <cmath>
 #include <sstream>
 
+#include "fitting/distributions.hpp"
+#include "fitting/fit_errors.hpp"
 #include "fitting/fit_statistics.hpp"
 
 namespace jostle {
 
 namespace {
 
-// About 10^3 in good fits of the inverse log, 10^6 where its triplet is free to drift: in between
-// the linear errors and the profiles part company.
-constexpr double poor_condition = 1e5;
+constexpr double few_points_share = 0.1;
+constexpr double chi2_level = 0.001;
 constexpr double wide_factor = 2;     // of a positive parameter
 constexpr double wide_share = 0.125;  // of the curve, for a place or a level
 
@@ -110,35 +111,78 @@ void remark_on_exchange(Fit& fit) {
   fit.remarks.push_back(text.str());
 }
 
-void remark_on_condition(Fit& fit) {
-  if (fit.condition < poor_condition) return;
+void remark_on_memory(Fit& fit) {
+  if (!(fit.memory.time > 0)) return;
   std::ostringstream text;
-  text.precision(2);
-  text << "The problem is ill-conditioned (condition number " << fit.condition
-       << "): standard errors are those of a linear problem and mislead; use the intervals.";
+  text.precision(3);
+  text << "One curve alone: its residuals remember for about " << fit.memory.time
+       << " in t, so its " << fit.n_points << " points are worth " << fit.effective_size
+       << " independent ones";
+  if (too_short_for_errors(fit)) {
+    text << ", too few for errors and intervals, and none are given. Fit several realizations.";
+  } else {
+    text << "; errors and intervals count that.";
+  }
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_weights(Fit& fit) {
+  if (fit.weighted_size > few_points_share * static_cast<double>(fit.n_points)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "Few points dominate: by their errors the " << fit.n_points << " points weigh as "
+       << fit.weighted_size << " equal ones. Unless these errors are known that well, fit without "
+       << "them.";
+  fit.remarks.push_back(text.str());
+}
+
+// By chi2 of as many degrees of freedom as independent points leave; approximately normal in its
+// cube root (Wilson & Hilferty 1931).
+void remark_on_chi2(Fit& fit) {
+  const double dof = fit.effective_size - static_cast<double>(fit.n_free);
+  if (!fit.sigma_given || !(dof >= 1) || fit.reason == EndReason::exact) return;
+  const double z = (std::cbrt(fit.reduced_chi2) - 1 + 2 / (9 * dof)) / std::sqrt(2 / (9 * dof));
+  if (normal_tails(z) > chi2_level) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "Reduced chi2 is " << fit.reduced_chi2 << ", far from 1 (p < 0.001 for "
+       << fit.effective_size << " independent points): ";
+  if (z > 0) {
+    text << "the law misses the curve, or its errors are too small.";
+  } else if (fit.n_realizations > 0) {
+    text << "realizations keep to values of their own, so their mean scatters less than they do. "
+            "Errors and intervals count that.";
+  } else {
+    text << "the errors given are larger than the scatter of the points.";
+  }
   fit.remarks.push_back(text.str());
 }
 
 void remark_on_residuals(Fit& fit) {
-  if (fit.reason == EndReason::exact) return;
+  if (fit.reason == EndReason::exact || !(fit.runs.z < 0 && fit.runs.p < 0.01)) return;
   std::ostringstream text;
   text.precision(3);
-  if (fit.runs.z < 0 && fit.runs.p < 0.01) {
-    text << "The residuals hang together (" << fit.runs.runs << " runs, " << fit.runs.expected
-         << " expected): the model misses the curve, or neighbouring points are not independent. ";
-  }
-  if (fit.effective_size < 0.5 * static_cast<double>(fit.n_points)) {
-    text << "The " << fit.n_points << " points are worth about " << fit.effective_size
-         << " independent ones: multiply errors by " << fit.error_factor
-         << ", or refit resampled realizations.";
-  }
-  if (!text.str().empty()) fit.remarks.push_back(text.str());
+  text << "The residuals are correlated (" << fit.runs.runs << " runs of one sign, "
+       << fit.runs.expected
+       << " expected): the law misses the curve, or points are not independent.";
+  fit.remarks.push_back(text.str());
 }
 
 }  // namespace
 
 bool Interval::closed() const {
   return std::isfinite(lower) && std::isfinite(upper);
+}
+
+bool Estimate::has_value() const {
+  if (identifiability == Identifiability::fixed) return true;
+  return identifiability != Identifiability::not_identifiable && intervals[0].closed();
+}
+
+double Estimate::half_width() const {
+  if (identifiability == Identifiability::fixed) return 0;
+  return intervals[0].closed() ? 0.5 * (intervals[0].upper - intervals[0].lower)
+                               : std::numeric_limits<double>::infinity();
 }
 
 void judge(const Curve& curve, Fit& fit) {
@@ -151,8 +195,10 @@ void judge(const Curve& curve, Fit& fit) {
     if (examined) estimate.identifiability = verdict(estimate, curve);
     estimate.statement = statement(estimate);
   }
+  remark_on_memory(fit);
   remark_on_exchange(fit);
-  remark_on_condition(fit);
+  remark_on_weights(fit);
+  remark_on_chi2(fit);
   remark_on_residuals(fit);
 }
 

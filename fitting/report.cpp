@@ -16,14 +16,20 @@ std::string number(double value, int digits) {
   return text.str();
 }
 
-// As many digits as an error of this size leaves, and two more.
+// "0.5841 +- 0.0012", "(2.05 +- 0.74)e-06": two digits of the error, as many decimals of the value.
 std::string with_error(double value, double error) {
-  int digits = 6;
-  if (error > 0 && std::isfinite(error) && value != 0) {
-    digits =
-        std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 2, 2, 12);
-  }
-  return number(value, digits);
+  if (!(error > 0) || !std::isfinite(error)) return number(value, 6);
+  const double size = std::max(std::abs(value), error);
+  const int power = static_cast<int>(std::floor(std::log10(size)));
+  const int last = static_cast<int>(std::floor(std::log10(error))) - 1;  // digit of the error
+  const bool plain = power >= -3 && power <= 5 && last >= -12 && last <= 0;
+  std::ostringstream text;
+  const double scale = plain ? 1 : std::pow(10.0, -power);
+  text << std::fixed << std::setprecision(std::max(plain ? -last : power - last, 0));
+  if (!plain) text << '(';
+  text << value * scale << " +- " << error * scale;
+  if (!plain) text << ")e" << power;
+  return text.str();
 }
 
 std::string ends(const Interval& interval) {
@@ -44,7 +50,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) {
       const int width = static_cast<int>(widths[c]);
-      const bool words = c == 0 || rows.front()[c] == "meaning";
+      const std::string& header = rows.front()[c];
+      const bool words = c == 0 || header == "meaning" || header == "verdict";
       text << (c == 0 ? "  " : "   ") << (words ? std::left : std::right);
       text << std::setw(c + 1 < row.size() ? width : 0) << row[c];
     }
@@ -53,42 +60,94 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text.str();
 }
 
-std::string parameter_table(const Fit& fit) {
-  std::vector<std::vector<std::string>> rows = {{"", "value", "error", "68 %", "95 %", "meaning"}};
+std::string value_text(const Estimate& estimate) {
+  if (estimate.identifiability == Identifiability::fixed) {
+    return number(estimate.value, 6) + " fixed";
+  }
+  if (!estimate.has_value()) return "-";
+  return with_error(estimate.value, estimate.half_width());
+}
+
+const char* verdict_text(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::fixed:
+      return "fixed";
+    case Identifiability::not_examined:
+      return "not examined";
+    case Identifiability::identified:
+      return "identified";
+    case Identifiability::wide:
+      return "wide";
+    case Identifiability::bounded_below:
+      return "only a lower limit";
+    case Identifiability::bounded_above:
+      return "only an upper limit";
+    case Identifiability::not_identifiable:
+      return "not identifiable";
+  }
+  return "";
+}
+
+std::string parameter_table(const Fit& fit, ReportDetail detail) {
+  const bool full = detail == ReportDetail::full;
+  std::vector<std::vector<std::string>> rows = {{"", "value +- error", "95 %", "verdict"}};
+  if (full) rows[0].insert(rows[0].end(), {"68 %", "linear error"});
+  rows[0].push_back("meaning");
   for (const Estimate& e : fit.estimates) {
-    const bool fixed = e.identifiability == Identifiability::fixed;
-    const bool examined = e.identifiability != Identifiability::not_examined && !fixed;
-    rows.push_back({e.parameter.name, with_error(e.value, e.standard_error),
-                    fixed ? "fixed" : number(e.standard_error, 2),
-                    examined ? ends(e.intervals[0]) : "-", examined ? ends(e.intervals[1]) : "-",
-                    e.parameter.meaning});
+    const bool examined = e.identifiability > Identifiability::not_examined;
+    rows.push_back({e.parameter.name, value_text(e), examined ? ends(e.intervals[1]) : "-",
+                    verdict_text(e.identifiability)});
+    if (full) {
+      rows.back().push_back(examined ? ends(e.intervals[0]) : "-");
+      rows.back().push_back(number(e.standard_error, 2));
+    }
+    rows.back().push_back(e.parameter.meaning);
   }
   return table(rows);
 }
 
+// What the errors rest on.
+std::string basis_of_errors(const Fit& fit) {
+  std::ostringstream text;
+  text << fit.n_points << " points";
+  if (fit.n_bins > 0) text << " fitted as " << fit.n_bins << " means over at most 1 % of t";
+  text << "; errors at 68 %, from ";
+  if (fit.n_realizations > 0) {
+    text << "the scatter of " << fit.n_realizations << " realizations";
+  } else {
+    text << (fit.sigma_given ? "the errors given" : "the scatter about the law");
+  }
+  if (std::isfinite(fit.error_dof)) {
+    text << ", Student's t of " << number(fit.error_dof, 4) << " degrees of freedom";
+  }
+  return text.str();
+}
+
+std::string statistics(const Fit& fit) {
+  std::ostringstream text;
+  text << "  " << fit.n_free << " free parameters; ended by " << describe(fit.reason) << " ("
+       << fit.iterations << " iterations)\n";
+  text << "  " << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.residual_sum, 5)
+       << ", AIC " << number(fit.aic, 6) << ", BIC " << number(fit.bic, 6) << "; for "
+       << number(fit.effective_size, 4) << " independent points AIC "
+       << number(fit.aic_effective, 6) << ", BIC " << number(fit.bic_effective, 6) << "; by weight "
+       << number(fit.weighted_size, 4) << " points\n";
+  text << "  condition " << number(fit.condition, 3) << ", " << fit.runs.runs << " runs ("
+       << number(fit.runs.expected, 4) << " expected, p = " << number(fit.runs.p, 2) << ")\n";
+  return text.str();
+}
+
 }  // namespace
 
-std::string describe(const Fit& fit) {
+std::string describe(const Fit& fit, ReportDetail detail) {
   std::ostringstream text;
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
-  text << '\n' << parameter_table(fit);
-  text << "  " << fit.n_points << " points, " << fit.n_free << " free parameters, "
-       << (fit.sigma_given ? "errors given" : "errors from the scatter") << "; ended by "
-       << describe(fit.reason) << " (" << fit.iterations << " iterations)\n";
-  text << "  " << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.residual_sum, 5)
-       << ", reduced " << number(fit.reduced_chi2, 5) << ", R2 " << number(fit.r2, 6) << ", AIC "
-       << number(fit.aic, 6) << ", BIC " << number(fit.bic, 6) << "; for "
-       << number(fit.effective_size, 4) << " independent points AIC "
-       << number(fit.aic_effective, 6) << ", BIC " << number(fit.bic_effective, 6) << ", errors x "
-       << number(fit.error_factor, 3) << '\n';
-  text << "  condition " << number(fit.condition, 3) << ", " << fit.runs.runs << " runs ("
-       << number(fit.runs.expected, 4) << " expected, p = " << number(fit.runs.p, 2) << ")\n";
-  for (const Estimate& estimate : fit.estimates) {
-    if (estimate.identifiability > Identifiability::identified) {
-      text << "  ! " << estimate.statement << '\n';
-    }
-  }
+  text << '\n'
+       << parameter_table(fit, detail) << "  " << basis_of_errors(fit) << "; reduced "
+       << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
+       << number(fit.r2, 4) << '\n';
+  if (detail == ReportDetail::full) text << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();
 }

@@ -7,9 +7,15 @@
 
 namespace jostle {
 
-/// A fit for people: the law, a table of parameters with errors and intervals, what the data say of
-/// each, how good the fit is, and remarks. Several lines, each ended by a newline.
-std::string describe(const Fit& fit);
+enum class ReportDetail {
+  brief,  // values with errors, 95 % intervals, verdicts, remarks
+  full    // linear errors, 68 % intervals and the statistics of the fit as well
+};
+
+/// A fit for people: the law, a table of parameters, what errors and intervals rest on, and
+/// remarks. Several lines, each ended by a newline. A value stands with its error only: half of
+/// the 68 % interval, which holds the value; "-" where that interval is open.
+std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
 
 /// Fits of one curve by several models, best AIC first: reduced chi2, R2, AIC and BIC with their
 /// distance from the best.

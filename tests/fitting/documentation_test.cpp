@@ -45,9 +45,9 @@ TEST_CASE("a report for people names what it gives") {
     curve.x.push_back(InverseLog().value(t, truth.data()) + 3e-4 * ((curve.t.size() % 3) - 1.0));
   }
   const Fit wide = std::get<Fit>(fit(InverseLog(), curve));
-  const std::string report = describe(wide);
+  const std::string report = describe(wide, ReportDetail::full);
   for (const char* part : {"inverse_log: X = X_inf - dX", "eq. 3", "95 %", "tau", "30 points",
-                           "AIC", "condition", "runs", "not unique"}) {
+                           "AIC", "condition", "runs", "not unique", "linear error"}) {
     INFO(report);
     CHECK(contains(report, part));
   }
