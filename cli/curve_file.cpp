@@ -62,9 +62,27 @@ std::optional<std::vector<double>> numbers(const std::vector<std::string>& words
   return values;
 }
 
+/// As many as the lines before, or as a first line may have.
+bool fits(std::size_t numbers, std::size_t columns, CurveColumns kind) {
+  if (columns != 0) return numbers == columns;
+  return kind == CurveColumns::realizations ? numbers >= 3 : numbers == 2 || numbers == 3;
+}
+
+std::string wanted(std::size_t columns, CurveColumns kind) {
+  if (kind == CurveColumns::realizations) {
+    return columns == 0 ? "numbers t, X, X, ..., of two realizations or more"
+                        : fmt::format("{} numbers, t and X of {} realizations like those before",
+                                      columns, columns - 1);
+  }
+  return columns == 3   ? "three numbers t, X, sigma"
+         : columns == 2 ? "two numbers t, X like those before"
+                        : "two numbers t, X or three t, X, sigma (or, with --realizations, t and a "
+                          "column a realization)";
+}
+
 }  // namespace
 
-Curve read_curve(const std::string& path) {
+Curve read_curve(const std::string& path, CurveColumns kind) {
   std::ifstream file(path);
   if (!file) throw BadInput(fmt::format("{}: cannot be read", path));
   Curve curve;
@@ -79,22 +97,22 @@ Curve read_curve(const std::string& path) {
       named = true;
       continue;
     }
-    if (!values || values->size() < 2 || values->size() > 3 ||
-        (columns != 0 && values->size() != columns)) {
+    if (!values || !fits(values->size(), columns, kind)) {
       throw BadInput(
           fmt::format("{}: line {} is not {}, with decimal points and one kind of divider (\"{}\")",
-                      path, line_number,
-                      columns == 3   ? "three numbers t, X, sigma"
-                      : columns == 2 ? "two numbers t, X like those before"
-                                     : "two numbers t, X or three t, X, sigma",
-                      line));
+                      path, line_number, wanted(columns, kind), line));
     }
     columns = values->size();
     curve.t.push_back((*values)[0]);
+    if (kind == CurveColumns::realizations) {
+      curve.values.insert(curve.values.end(), values->begin() + 1, values->end());
+      continue;
+    }
     curve.x.push_back((*values)[1]);
     if (columns == 3) curve.sigma.push_back((*values)[2]);
   }
-  return curve;
+  if (kind == CurveColumns::errors || columns == 0) return curve;
+  return mean_curve(std::move(curve.t), std::move(curve.values), columns - 1);
 }
 
 }  // namespace jostle

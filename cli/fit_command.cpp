@@ -27,11 +27,12 @@ namespace {
 struct FitArguments {
   std::string input, observable, point, model = "all", range, csv;
   std::vector<std::string> fixed;
-  std::string resample = "jackknife";
+  std::string resample = "none";
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
   int threads = 0;
-  bool json = false, force = false, not_stored = false;
+  bool json = false, force = false, not_stored = false, verbose = false;
+  bool realizations = false;  // columns of a curve file
   bool resampling_asked_for = false;
 };
 
@@ -63,6 +64,10 @@ std::map<std::string, double> fixed_parameters(const std::vector<std::string>& t
 
 std::vector<FitSource> read_sources(const FitArguments& arguments) {
   if (is_results_file(arguments.input)) {
+    if (arguments.realizations) {
+      throw BadInput(
+          "--realizations is of the columns of a text file; a results file knows its own");
+    }
     if (arguments.observable.empty()) {
       throw BadInput("a results file needs --observable NAME; jostle info lists them");
     }
@@ -74,16 +79,20 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
                                arguments.input));
   }
-  if (arguments.resampling_asked_for) {
+  if (arguments.resampling_asked_for && !arguments.realizations) {
     throw BadInput(fmt::format(
-        "{}: not a results file, so without realizations that --resample, --resamples or --seed "
-        "could be of",
+        "{}: not a results file, and without realizations (--realizations) that --resample, "
+        "--resamples or --seed could be of",
         arguments.input));
   }
   const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
   FitSource source;
+  const auto columns = arguments.realizations ? CurveColumns::realizations : CurveColumns::errors;
+  source.curve = within(read_curve(arguments.input, columns), range.first, range.last);
   source.title = arguments.input;
-  source.curve = within(read_curve(arguments.input), range.first, range.last);
+  if (arguments.realizations) {
+    source.title += fmt::format(", {} realizations", source.curve.n_realizations);
+  }
   return {source};
 }
 
@@ -103,10 +112,9 @@ nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome
     object["observable"] = source.observable;
     object["sweep_point"] = *source.point;
     object["label"] = source.label;
-    object["realizations"] = source.realizations ? source.realizations->realizations : 1;
+    object["realizations"] = std::max<std::size_t>(source.curve.n_realizations, 1);
   }
   if (!source.curve.t.empty()) object["range"] = {source.curve.t.front(), source.curve.t.back()};
-  if (!source.remark.empty()) object["remark"] = source.remark;
   for (const FitOutcome& outcome : outcomes) object["fits"].push_back(fit_json(outcome));
   return object;
 }
@@ -120,6 +128,7 @@ int run_fits(const FitArguments& arguments) {
   }
   const FitManner manner = manner_of(arguments);
   const Provenance by = provenance_of_this_run("");
+  const ReportDetail detail = arguments.verbose ? ReportDetail::full : ReportDetail::brief;
   bool any = false;
   std::vector<Table> tables;
   nlohmann::json curves = nlohmann::json::array();
@@ -131,7 +140,7 @@ int run_fits(const FitArguments& arguments) {
     if (arguments.json) {
       curves.push_back(source_json(source, outcomes));
     } else {
-      std::fputs(fits_text(source, outcomes).c_str(), stdout);
+      std::fputs(fits_text(source, outcomes, detail).c_str(), stdout);
     }
     if (source.point) {
       const auto made = fit_tables(source, outcomes, manner);
@@ -154,7 +163,9 @@ void add_fit(CLI::App& app, int& code) {
   auto* command = app.add_subcommand("fit", "Fit the papers' laws to results or a measured curve");
   auto arguments = std::make_shared<FitArguments>();
   FitArguments& a = *arguments;
-  command->add_option("input", a.input, "Results, or a text file with columns t, X and maybe sigma")
+  command
+      ->add_option("input", a.input,
+                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
       ->required()
       ->check(CLI::ExistingFile);
   command->add_option("--observable", a.observable, "Which column of the results");
@@ -165,10 +176,13 @@ void add_fit(CLI::App& app, int& code) {
   command->add_option("--range", a.range,
                       "FIRST:LAST of t, either may be left out (default: results from tap 1)");
   command->add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
+  command->add_flag("--realizations", a.realizations,
+                    "The text file has a column t and one column of X a realization, two or more");
   auto* resample =
       command
-          ->add_option("--resample", a.resample,
-                       "Errors from resampled realizations: jackknife (default), bootstrap, none")
+          ->add_option(
+              "--resample", a.resample,
+              "Also errors from resampled realizations: jackknife, bootstrap, none (default)")
           ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
   auto* count = command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
                     ->check(CLI::Range(2, 1000000));
@@ -176,6 +190,8 @@ void add_fit(CLI::App& app, int& code) {
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");
+  command->add_flag("--verbose", a.verbose,
+                    "Also linear errors, 68 % intervals and the statistics of each fit");
   command->add_flag("--json", a.json, "Print JSON, for programs");
   command->add_option("--csv", a.csv, "Also write the curve with its fits to this file")
       ->check(file_to_write());
@@ -186,6 +202,8 @@ void add_fit(CLI::App& app, int& code) {
       "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
+      "  jostle fit experiments.csv --realizations --model inverse_log      a column an "
+      "experiment\n"
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");

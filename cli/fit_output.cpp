@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "fitting/report.hpp"
-
 namespace jostle {
 
 namespace {
@@ -55,7 +53,10 @@ json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
   json parameters = json::object();
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
-    json entry = {{"value", number(estimate.value)},
+    const bool known = estimate.has_value();
+    json entry = {{"value", known ? number(estimate.value) : json()},
+                  {"error", known ? number(estimate.error) : json()},
+                  {"half_width_68", known ? number(estimate.half_width()) : json()},
                   {"standard_error", number(estimate.standard_error)},
                   {"interval_68", interval_json(estimate.intervals[0])},
                   {"interval_95", interval_json(estimate.intervals[1])},
@@ -91,6 +92,11 @@ json fit_json(const FitOutcome& outcome) {
                  {"correlation", matrix_json(fit, true)},
                  {"points", fit.n_points},
                  {"free_parameters", fit.n_free},
+                 {"realizations", fit.n_realizations},
+                 {"error_dof", number(fit.error_dof)},
+                 {"weighted_points", number(fit.weighted_size)},
+                 {"memory", number(fit.memory.time)},
+                 {"bins", fit.n_bins},
                  {"sigma_given", fit.sigma_given},
                  {"logarithmic", fit.logarithmic},
                  {"residual_sum", number(fit.residual_sum)},
@@ -119,15 +125,16 @@ json fit_json(const FitOutcome& outcome) {
   return object;
 }
 
-std::string fit_text(const FitOutcome& outcome) {
+std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
   if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
     return fmt::format("{}: no fit: {}\n", outcome.model, refusal->message);
   }
   const Fit& fit = std::get<Fit>(outcome.result);
-  std::string text = describe(fit);
+  std::string text = describe(fit, detail);
   if (!outcome.resampled) return text;
   const ResampledErrors& resampled = *outcome.resampled;
-  text += fmt::format("  errors from {} resamples of the realizations:", resampled.resamples);
+  text +=
+      fmt::format("  standard errors from {} resamples of the realizations:", resampled.resamples);
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     text += fmt::format("{} {} {:.2g}", j == 0 ? "" : ",", fit.estimates[j].parameter.name,
                         resampled.errors[j]);

@@ -8,6 +8,7 @@
 
 #include "ensemble/resampled_fit.hpp"
 #include "fitting/fit.hpp"
+#include "fitting/report.hpp"
 
 namespace jostle {
 
@@ -23,7 +24,7 @@ struct FitOutcome {
 nlohmann::json fit_json(const FitOutcome& outcome);
 
 /// For people: the report of the fit with the resampled errors under it, or the refusal.
-std::string fit_text(const FitOutcome& outcome);
+std::string fit_text(const FitOutcome& outcome, ReportDetail detail);
 
 /// The curve with its fits: columns t, X, sigma if given, and one a model that was fitted.
 std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes);

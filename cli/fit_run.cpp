@@ -20,8 +20,11 @@ FitOutcome fit_model(const Model& model, const FitSource& source, const FitManne
   options.fixed = manner.fixed;
   FitOutcome outcome{model.name(), fit(model, source.curve, options), {}};
   const auto* found = std::get_if<Fit>(&outcome.result);
-  if (!found || !source.realizations || !manner.resampled) return outcome;
-  outcome.resampled = resample(model, *source.realizations, *found, manner.resampling);
+  const Curve& curve = source.curve;
+  if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
+  const RealizationCurves behind{curve.t, curve.sigma, curve.values,
+                                 static_cast<std::uint32_t>(curve.n_realizations)};
+  outcome.resampled = resample(model, behind, *found, manner.resampling);
   return outcome;
 }
 
@@ -48,6 +51,8 @@ std::string lines(const std::vector<std::string>& texts) {
   return all;
 }
 
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
 Quantity values(std::string name, std::vector<std::string> axes, std::vector<double> numbers,
                 std::string long_name) {
   return {std::move(name), std::move(axes), std::move(numbers), "", std::move(long_name), ""};
@@ -55,14 +60,15 @@ Quantity values(std::string name, std::vector<std::string> axes, std::vector<dou
 
 void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
   std::vector<std::string> names, units, statements;
-  std::vector<double> value, error, resampled, lower, upper, covariance, correlation;
+  std::vector<double> value, error, linear, resampled, lower, upper, covariance, correlation;
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
     names.push_back(estimate.parameter.name);
     units.push_back(unit_text(estimate.parameter.unit));
     statements.push_back(estimate.statement);
-    value.push_back(estimate.value);
-    error.push_back(estimate.standard_error);
+    value.push_back(estimate.has_value() ? estimate.value : not_a_number);
+    error.push_back(estimate.has_value() ? estimate.error : not_a_number);
+    linear.push_back(estimate.standard_error);
     if (outcome.resampled) resampled.push_back(outcome.resampled->errors[j]);
     for (const Interval& interval : estimate.intervals) {
       lower.push_back(interval.lower);
@@ -81,8 +87,10 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
                 values("level", {"level"}, {interval_levels[0], interval_levels[1]},
                        "probability of an interval")};
   table.quantities = {
-      values("value", one, value, "value of least squares"),
-      values("standard_error", one, error, "from the covariance"),
+      values("value", one, value, "least squares; not a number where the data set no limits"),
+      values("error", one, error,
+             "standard error that counts realizations or memory, for Student's t of error_dof"),
+      values("standard_error", one, linear, "of a linear problem with independent points"),
       {"units", one, units, "", "units of the parameter", ""},
       {"statement", one, statements, "", "what the data say of the parameter", ""},
       values("interval_lower", ends, lower, "lower end of the profile-likelihood interval"),
@@ -95,12 +103,14 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
   }
 }
 
-void add_curve(Table& table, const Curve& curve, const Fit& fit) {
+void add_curve(Table& table, const Curve& source, const Fit& fit) {
+  const Curve curve = with_pooled_errors(source, fit.logarithmic);
   const std::vector<std::string> along = {"t"};
   table.axes.push_back(values("t", along, curve.t, "taps"));
   table.quantities.push_back(values("x", along, curve.x, "mean over realizations"));
   if (!curve.sigma.empty()) {
-    table.quantities.push_back(values("x_error", along, curve.sigma, "standard error of the mean"));
+    table.quantities.push_back(
+        values("x_error", along, curve.sigma, "standard error of the mean, pooled over taps"));
   }
   table.quantities.push_back(values("fitted", along, fit.fitted, "the law"));
 }
@@ -115,6 +125,8 @@ void add_statistics(Table& table, const Fit& fit) {
                                                     {"bic_effective", fit.bic_effective},
                                                     {"condition", fit.condition},
                                                     {"effective_points", fit.effective_size},
+                                                    {"weighted_points", fit.weighted_size},
+                                                    {"error_dof", fit.error_dof},
                                                     {"error_factor", fit.error_factor},
                                                     {"runs_p", fit.runs.p}};
   for (const auto& [name, value] : numbers) {
@@ -141,13 +153,13 @@ std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& mo
   return outcomes;
 }
 
-std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes,
+                      ReportDetail detail) {
   std::string text = source.title + "\n";
-  if (!source.remark.empty()) text += fmt::format("  ! {}\n", source.remark);
   std::vector<Fit> fits;
   for (const FitOutcome& outcome : outcomes) {
     text += '\n';
-    text += fit_text(outcome);
+    text += fit_text(outcome, detail);
     if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
   }
   if (fits.size() > 1) text.append("\n").append(compare(fits));
@@ -167,7 +179,6 @@ std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutc
       table.notes.emplace_back("range",
                                fmt::format("{}:{}", source.curve.t.front(), source.curve.t.back()));
     }
-    if (!source.remark.empty()) table.notes.emplace_back("remark", source.remark);
     if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
       table.notes.emplace_back("refused", refusal->message);
       tables.push_back(std::move(table));
@@ -177,6 +188,7 @@ std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutc
     table.notes.emplace_back("law", fit.formula);
     table.notes.emplace_back("source", fit.source);
     table.notes.emplace_back("ended", describe(fit.reason));
+    table.notes.emplace_back("realizations", fmt::to_string(source.curve.n_realizations));
     table.notes.emplace_back("remarks", lines(fit.remarks));
     if (outcome.resampled) {
       const bool bootstrap = manner.resampling.kind == Resampling::bootstrap;

@@ -15,7 +15,7 @@ namespace jostle {
 /// How curves are fitted and how the errors of resampled realizations are made.
 struct FitManner {
   std::map<std::string, double> fixed = {};  // parameters that keep a value
-  bool resampled = true;
+  bool resampled = false;
   ResamplingOptions resampling = {};
 };
 
@@ -27,7 +27,8 @@ std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& mo
                                    const FitSource& source, const FitManner& manner);
 
 /// The report of a curve and its fits, for people.
-std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes);
+std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes,
+                      ReportDetail detail = ReportDetail::brief);
 
 /// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `resampling` says
 /// how resampled errors were made.

@@ -10,7 +10,6 @@
 #include "cli/observable_series.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
-#include "ensemble/moments.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {
@@ -32,34 +31,20 @@ double read_end(const std::string& text, double otherwise, const std::string& op
 }
 
 // Taps of the range that all realizations have reached, up to the first without a finite value.
-RealizationCurves collect(const ObservableSeries& series, const FitRange& range) {
-  RealizationCurves curves;
-  curves.realizations = series.n_realizations();
+Curve collect(const ObservableSeries& series, const FitRange& range) {
+  const std::uint32_t n = series.n_realizations();
   const double rows = static_cast<double>(series.n_rows());
   const auto first = static_cast<std::uint64_t>(std::clamp(std::ceil(range.first), 0.0, rows));
   const auto end = static_cast<std::uint64_t>(std::clamp(std::floor(range.last) + 1, 0.0, rows));
-  if (first >= end) return curves;
-  curves.values = series.values({first, end});
+  if (first >= end || n == 0) return {.t = {}, .x = {}};
+  std::vector<double> values = series.values({first, end});
   const auto finite = [](double value) { return std::isfinite(value); };
-  const auto broken = std::ranges::find_if_not(curves.values, finite) - curves.values.begin();
-  const std::uint64_t taps = static_cast<std::uint64_t>(broken) / curves.realizations;
-  curves.values.resize(taps * curves.realizations);
-  for (std::uint64_t i = 0; i < taps; ++i) curves.t.push_back(static_cast<double>(first + i));
-  return curves;
-}
-
-// Standard errors of the mean, or nothing where one of them is zero or unknown.
-std::vector<double> standard_errors(const RealizationCurves& curves) {
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < curves.t.size(); ++i) {
-    Moments moments;
-    for (std::uint32_t r = 0; r < curves.realizations; ++r) {
-      moments.add(curves.values[i * curves.realizations + r]);
-    }
-    errors.push_back(moments.standard_error());
-    if (!(errors.back() > 0)) return {};
-  }
-  return errors;
+  const auto broken = std::ranges::find_if_not(values, finite) - values.begin();
+  const std::uint64_t taps = static_cast<std::uint64_t>(broken) / n;
+  values.resize(taps * n);
+  std::vector<double> t;
+  for (std::uint64_t i = 0; i < taps; ++i) t.push_back(static_cast<double>(first + i));
+  return mean_curve(std::move(t), std::move(values), n);
 }
 
 FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::string& observable,
@@ -71,15 +56,11 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
   source.label = file.study().points[point].label;
   source.title = fmt::format("{} {}sweep point {}", observable,
                              source.label.empty() ? "" : source.label + ", ", point);
-  RealizationCurves curves = collect(series, range);
-  if (curves.realizations == 0 || curves.t.empty()) return source;
-  curves.sigma = standard_errors(curves);
-  source.title += fmt::format(", {} realizations", curves.realizations);
-  if (curves.sigma.empty()) {
-    source.remark = "not weighted: the mean has no error at some tap of the range";
+  source.curve = collect(series, range);
+  if (!source.curve.t.empty()) {
+    source.title += fmt::format(", {} realization{}", series.n_realizations(),
+                                series.n_realizations() == 1 ? "" : "s");
   }
-  source.curve = mean_curve(curves);
-  if (curves.realizations > 1) source.realizations = std::move(curves);
   return source;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ensemble/resampled_fit.hpp"
+#include "fitting/curve.hpp"
 #include "results/study.hpp"
 
 namespace jostle {
@@ -14,9 +14,7 @@ struct FitSource {
   std::string title;              // for people
   std::string observable, label;  // of a results file
   std::optional<std::uint32_t> point;
-  Curve curve;
-  std::optional<RealizationCurves> realizations;  // behind the curve, where there are two or more
-  std::string remark;                             // what a reader must know of it; may be empty
+  Curve curve;  // with its realizations, where there are two or more
 };
 
 /// A range of t, both ends included.
@@ -27,7 +25,7 @@ struct FitRange {
 /// "1:4000", ":4000", "1:". Throws BadInput naming the option.
 FitRange read_range(const std::string& option, const std::string& text);
 
-/// The mean of an observable over realizations against taps, weighted by its standard errors, for
+/// The mean of an observable over realizations against taps, with the realizations behind it, for
 /// one sweep point (its number, or "pointer=value" as in the scene's sweep) or, where `point` is
 /// empty, for all. Realizations that failed are left out; taps that not all others have reached
 /// too. Throws BadInput naming what there is, ResultsError for the file.

@@ -65,8 +65,8 @@ struct Estimate {
   Identifiability identifiability = Identifiability::not_examined;
   std::string statement;  // the same in words
 
-  /// Whether the data give it a value: fixed, or the 68 % interval is closed. What else least
-  /// squares end at, as far out as the search went, is no measurement.
+  /// Whether the data give it a value: fixed, or the 68 % interval is closed, or no interval was
+  /// looked for. What else least squares end at, as far out as the search went, is no measurement.
   bool has_value() const;
   /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
   double half_width() const;

@@ -176,6 +176,9 @@ bool Interval::closed() const {
 
 bool Estimate::has_value() const {
   if (identifiability == Identifiability::fixed) return true;
+  if (identifiability == Identifiability::not_examined) {
+    return !(standard_error > absurd * std::abs(value)) || !std::isfinite(standard_error);
+  }
   return identifiability != Identifiability::not_identifiable && intervals[0].closed();
 }
 

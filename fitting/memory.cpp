@@ -10,9 +10,9 @@ namespace jostle {
 
 namespace {
 
-// Twice the gain of the likelihood by two parameters, one at its bound, that chance gives to white
-// noise in about 5 of 100 curves.
-constexpr double significant = 6;
+// Twice the gain of the likelihood by two parameters that chance gives to white noise in fewer than
+// 1 of 100 curves (chi2 of two degrees of freedom).
+constexpr double significant = 10;
 
 // Distance to the point before; points at one t are taken for neighbours.
 std::vector<double> gaps_of(const std::vector<double>& t) {

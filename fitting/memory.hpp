@@ -18,7 +18,7 @@ struct Memory {
 
 /// By restricted maximum likelihood (Patterson & Thompson 1971, doi:10.1093/biomet/58.3.545), which
 /// allows for what the parameters have taken up. Independence is kept unless the likelihood speaks
-/// against it at about 5 %. t: [n], ascending; residuals: [n]; basis: [n, n_variables], orthonormal
+/// against it at 1 %. t: [n], ascending; residuals: [n]; basis: [n, n_variables], orthonormal
 /// columns that span those of the Jacobian; n > n_variables.
 Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& residuals,
                        const Eigen::MatrixXd& basis);

@@ -65,6 +65,7 @@ std::string value_text(const Estimate& estimate) {
     return number(estimate.value, 6) + " fixed";
   }
   if (!estimate.has_value()) return "-";
+  if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
   return with_error(estimate.value, estimate.half_width());
 }
 
@@ -117,8 +118,8 @@ std::string basis_of_errors(const Fit& fit) {
   } else {
     text << (fit.sigma_given ? "the errors given" : "the scatter about the law");
   }
-  if (std::isfinite(fit.error_dof)) {
-    text << ", Student's t of " << number(fit.error_dof, 4) << " degrees of freedom";
+  if (fit.error_dof < 100) {
+    text << ", Student's t of " << number(std::max(fit.error_dof, 0.0), 3) << " degrees of freedom";
   }
   return text.str();
 }

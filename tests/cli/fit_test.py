@@ -118,7 +118,8 @@ class Results(Case):
         self.run_scene("-o", "tiny.h5")
 
     def test_every_sweep_point_is_fitted_with_errors_from_its_realizations(self):
-        result = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--json")
+        result = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--resample",
+                             "jackknife", "--json")
         curves = json.loads(result.stdout)["curves"]
         self.assertEqual([curve["sweep_point"] for curve in curves], [0, 1])
         for curve in curves:
@@ -127,6 +128,7 @@ class Results(Case):
             for fit in curve["fits"]:
                 self.assertEqual(fit["points"], 40)
                 self.assertEqual(fit["resamples"], 3)
+                self.assertEqual((fit["realizations"], fit["error_dof"]), (3, 2))
                 self.assertTrue(fit["sigma_given"])
 
     def test_a_point_is_chosen_by_number_or_by_value(self):
