@@ -49,19 +49,23 @@ json matrix_json(const Fit& fit, bool correlation) {
   return rows;
 }
 
+json estimate_json(const Estimate& estimate) {
+  const bool known = estimate.has_value();
+  return {{"value", known ? number(estimate.value) : json()},
+          {"error", known ? number(estimate.error) : json()},
+          {"half_width_68", known ? number(estimate.half_width()) : json()},
+          {"standard_error", number(estimate.standard_error)},
+          {"interval_68", interval_json(estimate.intervals[0])},
+          {"interval_95", interval_json(estimate.intervals[1])},
+          {"identifiability", name_of(estimate.identifiability)},
+          {"statement", estimate.statement}};
+}
+
 json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resampled) {
   json parameters = json::object();
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
-    const bool known = estimate.has_value();
-    json entry = {{"value", known ? number(estimate.value) : json()},
-                  {"error", known ? number(estimate.error) : json()},
-                  {"half_width_68", known ? number(estimate.half_width()) : json()},
-                  {"standard_error", number(estimate.standard_error)},
-                  {"interval_68", interval_json(estimate.intervals[0])},
-                  {"interval_95", interval_json(estimate.intervals[1])},
-                  {"identifiability", name_of(estimate.identifiability)},
-                  {"statement", estimate.statement}};
+    json entry = estimate_json(estimate);
     if (resampled) {
       entry["resampled_error"] = number(resampled->errors[j]);
       if (!resampled->central.empty()) {
@@ -81,13 +85,17 @@ json fit_json(const FitOutcome& outcome) {
     return {{"model", outcome.model}, {"refused", refusal->message}};
   }
   const Fit& fit = std::get<Fit>(outcome.result);
-  json names = json::array();
+  json names = json::array(), combinations = json::object();
+  for (const Estimate& found : fit.combinations) {
+    combinations[found.parameter.name] = estimate_json(found);
+  }
   for (const Estimate& estimate : fit.estimates) names.push_back(estimate.parameter.name);
   json object = {{"model", fit.model},
                  {"formula", fit.formula},
                  {"source", fit.source},
                  {"parameters", parameters_json(fit, outcome.resampled)},
                  {"order", names},
+                 {"combinations", combinations},
                  {"covariance", matrix_json(fit, false)},
                  {"correlation", matrix_json(fit, true)},
                  {"points", fit.n_points},

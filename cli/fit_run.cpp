@@ -41,6 +41,8 @@ const char* unit_text(ParameterUnit unit) {
       return "X/t";
     case ParameterUnit::value_time:
       return "X t";
+    case ParameterUnit::per_time:
+      return "1/t";
   }
   return "";
 }
@@ -190,6 +192,11 @@ std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutc
     table.notes.emplace_back("ended", describe(fit.reason));
     table.notes.emplace_back("realizations", fmt::to_string(source.curve.n_realizations));
     table.notes.emplace_back("remarks", lines(fit.remarks));
+    if (!fit.combinations.empty()) {
+      std::vector<std::string> statements;
+      for (const Estimate& found : fit.combinations) statements.push_back(found.statement);
+      table.notes.emplace_back("combinations", lines(statements));
+    }
     if (outcome.resampled) {
       const bool bootstrap = manner.resampling.kind == Resampling::bootstrap;
       table.notes.emplace_back(

@@ -76,6 +76,8 @@ struct Estimate {
 struct Fit {
   std::string model, formula, source;
   std::vector<Estimate> estimates;  // [n_parameters]
+  /// Of the law's combinations of two parameters neither of which has both limits, those that have.
+  std::vector<Estimate> combinations;
   /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
   /// residual variance where no errors were given, absolute where they were.
   Eigen::MatrixXd covariance, correlation;

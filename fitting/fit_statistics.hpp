@@ -27,5 +27,7 @@ void count_effective_points(Fit& fit);
 /// on parameters that can make up for each other, on few points that dominate, on chi2 far from 1
 /// and on correlated residuals.
 void judge(const Curve& curve, Fit& fit);
+/// The same of the fit's combinations, which are closed.
+void judge_combinations(const Curve& curve, Fit& fit);
 
 }  // namespace jostle

@@ -188,6 +188,13 @@ double Estimate::half_width() const {
                                : std::numeric_limits<double>::infinity();
 }
 
+void judge_combinations(const Curve& curve, Fit& fit) {
+  for (Estimate& estimate : fit.combinations) {
+    estimate.identifiability = verdict(estimate, curve);
+    estimate.statement = statement(estimate);
+  }
+}
+
 void judge(const Curve& curve, Fit& fit) {
   for (Estimate& estimate : fit.estimates) {
     const bool examined = estimate.identifiability == Identifiability::identified;

@@ -10,7 +10,7 @@
 namespace jostle {
 
 /// What a parameter is measured in.
-enum class ParameterUnit { none, value, time, value_per_time, value_time };
+enum class ParameterUnit { none, value, time, value_per_time, value_time, per_time };
 
 struct Parameter {
   std::string name;     // X_inf
@@ -19,6 +19,15 @@ struct Parameter {
   double lower = -std::numeric_limits<double>::infinity();  // exclusive
   double upper = std::numeric_limits<double>::infinity();   // exclusive
   bool linear = false;  // the model is linear in it (plus what does not depend on it)
+};
+
+/// Of two parameters: kept * other^power, by their indices.
+struct Combination {
+  std::string name;     // B/tau
+  std::string meaning;  // "first slope of the logarithm"
+  ParameterUnit unit = ParameterUnit::none;
+  std::size_t kept = 0, other = 0;
+  int power = 1;
 };
 
 /// Whether residuals are differences of X, or of ln X with sigma / X for errors.
@@ -60,6 +69,8 @@ class Model {
   /// NaN marks those that are free.
   virtual std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                               std::size_t n) const;
+  /// Pairs of positive parameters that can run away together, and what a curve then determines.
+  virtual std::vector<Combination> combinations() const { return {}; }
   /// The same curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }
 };

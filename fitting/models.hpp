@@ -22,6 +22,7 @@ class InverseLog final : public Model {
   std::string refusal(const Curve& curve) const override;
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
+  std::vector<Combination> combinations() const override;
 };
 
 /// Z(t) = Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau)): the inverse log for 1/Z, so
@@ -39,6 +40,7 @@ class InverseLogHeight final : public Model {
   std::string refusal(const Curve& curve) const override;
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
+  std::vector<Combination> combinations() const override;
 };
 
 /// Z(t) = Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2), tau1 <= tau2. PB sec. IV.
@@ -82,6 +84,7 @@ class Ageing final : public Model {
   std::string refusal(const Curve& curve) const override;
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
+  std::vector<Combination> combinations() const override;
 };
 
 /// Phi(z) = (Phi_0 - alpha z) / (1 + exp(beta (z - z_star))), t = height z in R; beta > 0. PB

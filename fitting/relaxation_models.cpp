@@ -51,7 +51,25 @@ Grid log_grid(const Curve& curve, std::span<const double> fixed, std::size_t b, 
   return grid;
 }
 
+// Where B and tau go to infinity together, B ln(1 + t/tau) is this times t.
+const Combination growth_rate = {"B/tau", "growth a tap at first", ParameterUnit::per_time, 2, 3,
+                                 -1};
+
 }  // namespace
+
+std::vector<Combination> InverseLog::combinations() const {
+  return {growth_rate};
+}
+
+std::vector<Combination> InverseLogHeight::combinations() const {
+  return {growth_rate};
+}
+
+// Where B goes to 0 the law is the logarithm A_inf B ln(1 + t/tau).
+std::vector<Combination> Ageing::combinations() const {
+  return {{"A_inf B", "strength of the logarithm where B is small", ParameterUnit::value, 0, 1, 1},
+          {"B/tau", "growth a unit of time at first", ParameterUnit::per_time, 1, 2, -1}};
+}
 
 std::string InverseLog::source() const {
   return "Philippe & Bideau 2001, eq. 3; Knight et al. 1995";

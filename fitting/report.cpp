@@ -94,7 +94,9 @@ std::string parameter_table(const Fit& fit, ReportDetail detail) {
   std::vector<std::vector<std::string>> rows = {{"", "value +- error", "95 %", "verdict"}};
   if (full) rows[0].insert(rows[0].end(), {"68 %", "linear error"});
   rows[0].push_back("meaning");
-  for (const Estimate& e : fit.estimates) {
+  std::vector<Estimate> shown = fit.estimates;
+  shown.insert(shown.end(), fit.combinations.begin(), fit.combinations.end());
+  for (const Estimate& e : shown) {
     const bool examined = e.identifiability > Identifiability::not_examined;
     rows.push_back({e.parameter.name, value_text(e), examined ? ends(e.intervals[1]) : "-",
                     verdict_text(e.identifiability)});

@@ -119,6 +119,37 @@ TEST_CASE("Few realizations with memory: intervals hold the truth as they say", 
   }
 }
 
+TEST_CASE("One realization with memory: intervals hold the truth, or none are given",
+          "[statistics]") {
+  for (const Law& law : laws()) {
+    if (std::string(law.model) != "inverse_log" && std::string(law.model) != "kww") continue;
+    for (const double rho : {0.5, 0.9}) check(law, 1, rho, 40);
+    // 400 points that remember for 100 are worth 2: an error would be a guess.
+    const Coverage found = coverage(law, 1, 0.99, 40);
+    CHECK(found.examined <= 0.2 * 40 * static_cast<double>(law.truth.size()));
+  }
+}
+
+TEST_CASE("Where B and tau run away together, their ratio has limits that hold the truth") {
+  // 1 - 1/(1 + t/50): the inverse log's limit of B and tau without bound, B/tau = 1/50.
+  int covered = 0, found = 0;
+  constexpr int curves = 40;
+  for (int number = 1; number <= curves; ++number) {
+    Noise noise(static_cast<std::uint64_t>(number));
+    Curve curve{.t = geometric(1, 1000, 60), .x = {}, .sigma = std::vector<double>(60, 1e-3)};
+    for (const double t : curve.t) curve.x.push_back(1 - 1 / (1 + t / 50) + 1e-3 * noise());
+    const Fit fitted = std::get<Fit>(fit(InverseLog(), curve));
+    if (fitted.combinations.empty()) continue;
+    ++found;
+    CHECK(fitted.combinations[0].parameter.name == "B/tau");
+    const Interval& interval = fitted.combinations[0].intervals[1];
+    covered += interval.lower <= 0.02 && 0.02 <= interval.upper;
+  }
+  CHECK(found >= curves / 2);
+  // 95 %, a one-sided limit of B beside it; 3 errors of so many.
+  CHECK(covered >= 0.95 * found - 3 * std::sqrt(0.95 * 0.05 * found));
+}
+
 TEST_CASE("The calibration table: every law, 2 to 20 realizations, memories up to 0.99",
           "[nightly]") {
   for (const Law& law : laws()) {
