@@ -6,6 +6,7 @@
 
 #include "engine/random.hpp"
 #include "results/axes.hpp"
+#include "results/hdf5_read.hpp"
 #include "results/layout.hpp"
 #include "results/part.hpp"
 #include "results/particles.hpp"
@@ -177,6 +178,7 @@ void PointWriter::write_snapshots() {
 void PointWriter::write_fittings() {
   const auto is_known = [](const auto& fitting) { return fitting.has_value(); };
   if (std::none_of(fittings_.begin(), fittings_.end(), is_known)) return;
+  if (!exists(file_, fitting_folder)) create_group(file_, fitting_folder);
   create_group(file_, std::string(fitting_folder) + "/" + point_name(number_));
   const Hdf5Handle group = group_under(fitting_folder);
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
