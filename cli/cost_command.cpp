@@ -222,7 +222,7 @@ int run_cost(const CostArguments& arguments) {
     }
     store.reset();
     std::optional<CostStudy> found;
-    found.emplace(ResultsFile(output), rungs, taps);
+    found.emplace(ResultsFile(output), rungs, other_windows(scene), taps);
     write_reports(arguments, *found, scene, output, observable, by);
     if (!found->failed().empty()) return exit_failed_realizations;
   } catch (const BadInput&) {
@@ -288,7 +288,8 @@ void add_cost(CLI::App& app, int& code) {
       "  jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 30m\n"
       "\n"
       "A ladder of settings is run for a few taps, in pairs from the same packings: stop rules,\n"
-      "test intervals, step lengths, half the spheres. docs/accuracy.md says how to read it.");
+      "test intervals, step lengths, theta_0, half the spheres, the other pour between walls. "
+      "docs/accuracy.md says how to read it.");
   command->callback([arguments, &code] { code = run_cost(*arguments); });
 }
 

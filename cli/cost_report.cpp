@@ -87,6 +87,38 @@ std::string shortfall_of_the_reference(const CostOfObservable& cost) {
                             with_error(cost.remainder.value, cost.remainder.error));
 }
 
+/// Whether more taps would change the bias of the scene's own setting.
+std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& cost) {
+  const std::string taps = fmt::format("tap {} of {}", study.pilot_taps(), study.taps());
+  if (cost.growths.empty() || !std::isfinite(cost.growths.front().least_seen) ||
+      study.reference().last == 0) {
+    return study.pilot_taps() < study.taps()
+               ? fmt::format("Biases are those after {}: they may grow with further taps.\n", taps)
+               : "";
+  }
+  const Growth& growth = cost.growths.front();
+  const double now = cost.biases.front().bias, before = now - growth.change.bias;
+  const std::string text =
+      fmt::format("Biases are those after {}. Since tap {} the scene's changed by {}: ", taps,
+                  study.middle_tap(), with_error(growth.change.bias, growth.change.error));
+  if (!growth.is_seen()) {
+    return text + fmt::format("no change is seen, and one below {:.2g} could not be (95 %).\n",
+                              growth.least_seen);
+  }
+  return text + fmt::format("it {} with taps (p = {:.2g}, {} rounds); --taps takes more.\n",
+                            std::abs(now) > std::abs(before) ? "still grows" : "shrinks",
+                            growth.tails, growth.change.pairs);
+}
+
+std::string other_windows_line(const CostOfObservable& cost) {
+  std::string text;
+  for (const WindowEffect& one : cost.windows) {
+    text += text.empty() ? "Read through other windows, the same beds differ by " : "; ";
+    text += fmt::format("{} ({})", with_error(one.difference.bias, one.difference.error), one.name);
+  }
+  return text.empty() ? "" : text + ".\n";
+}
+
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
   const auto choice = cheapest(cost.settings, target);
   const std::string& name = cost.label.name;
@@ -120,10 +152,7 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());
   text += shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study);
-  if (study.pilot_taps() < study.taps()) {
-    text += fmt::format("Biases are those after tap {} of {}: they may grow with further taps.\n",
-                        study.pilot_taps(), study.taps());
-  }
+  text += growth_of_the_bias(study, cost) + other_windows_line(cost);
   if (target) text += advice(study, cost, *target);
   return text;
 }
@@ -134,6 +163,7 @@ std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
   for (std::size_t p = 0; p < study.rungs().size(); ++p) {
     if (p == study.reference().last) continue;
     const Setting& setting = cost.settings[p];
+    if (std::isnan(setting.bias)) continue;
     data += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} \"{}\"\n", setting.realization_seconds,
                         std::abs(setting.bias), setting.bias_error,
                         total_error(setting, scene_realizations), study.rungs()[p].name);

@@ -34,14 +34,44 @@ std::string part_name(Rung::Part part) {
       return "adaptation";
     case Rung::Part::spheres:
       return "spheres";
+    case Rung::Part::start:
+      return "start";
   }
   return "";
 }
 
+void add_windows(const CostOfObservable& cost, Table& table) {
+  if (cost.windows.empty()) return;
+  std::vector<std::string> names;
+  std::vector<double> differences, errors;
+  for (const WindowEffect& one : cost.windows) {
+    names.push_back(one.name);
+    differences.push_back(one.difference.bias);
+    errors.push_back(one.difference.error);
+  }
+  const std::vector<std::string> window = {"window"};
+  const std::string& units = cost.label.units;
+  table.axes.push_back({"window", window, names, "1", "another window", ""});
+  table.quantities.insert(
+      table.quantities.end(),
+      {{"window_difference", window, differences, units, "less the scene's window", ""},
+       {"window_difference_error", window, errors, units, "standard error over rounds", ""}});
+}
+
+std::string window_name(const Window& window) {
+  if (const auto* heights = std::get_if<HeightWindow>(&window)) {
+    return fmt::format("heights {:g} to {:g}", heights->low, heights->high);
+  }
+  const auto& quantiles = std::get<QuantileWindow>(window);
+  return fmt::format("quantiles {:g} to {:g}", quantiles.low, quantiles.high);
+}
+
 }  // namespace
 
-CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint64_t taps)
+CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs,
+                     std::vector<OtherWindow> windows, std::uint64_t taps)
     : rungs_(std::move(rungs)),
+      windows_(std::move(windows)),
       taps_(taps),
       pilot_taps_(file.study().points.front().taps),
       rounds_(file.study().realizations) {
@@ -102,17 +132,37 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file,
       cost.bias_error_by_tap.push_back(bias.error);
       if (tap == pilot_taps_) cost.biases.push_back(bias);
     }
-    cost.settings.push_back({.bias = cost.biases.back().bias,
+    // Another start is another bed, not another accuracy: never recommended.
+    const bool is_choice = rungs_[p].part != Rung::Part::start;
+    cost.settings.push_back({.bias = is_choice ? cost.biases.back().bias : not_a_number,
                              .bias_error = cost.biases.back().error,
                              .sigma = deviation(at(p, pilot_taps_)),
                              .realization_seconds = realization_seconds(p)});
   }
+  for (std::size_t p = 0; p < rungs_.size() && middle_tap() > 0; ++p) {
+    cost.growths.push_back(bias_growth(at(p, middle_tap()), at(best.last, middle_tap()),
+                                       at(p, pilot_taps_), at(best.last, pilot_taps_)));
+  }
+  cost.windows = read_windows(file, label.name);
   cost.last_step = paired_bias(at(best.last, pilot_taps_), at(best.before, pilot_taps_));
   cost.remainder =
       is_seen(cost.last_step)
           ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
           : Remainder{not_a_number, not_a_number};
   return cost;
+}
+
+std::vector<WindowEffect> CostStudy::read_windows(const ResultsFile& file,
+                                                  const std::string& of) const {
+  std::vector<WindowEffect> effects;
+  const TapRange last{pilot_taps_, pilot_taps_ + 1};
+  for (const OtherWindow& other : windows_) {
+    if (other.of != of) continue;
+    const std::vector<double> own = file.block(0, of, last, {0, rounds_});
+    effects.push_back({window_name(other.observable.window),
+                       paired_bias(file.block(0, other.observable.name, last, {0, rounds_}), own)});
+  }
+  return effects;
 }
 
 std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
@@ -138,6 +188,12 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
       reduction.push_back(cost.biases[p].variance_reduction);
       sigma.push_back(cost.settings[p].sigma);
       statistical.push_back(sigma.back() / std::sqrt(static_cast<double>(scene_realizations)));
+    }
+    std::vector<double> growth, growth_error, growth_tails;
+    for (const Growth& one : cost.growths) {
+      growth.push_back(one.change.bias);
+      growth_error.push_back(one.change.error);
+      growth_tails.push_back(one.tails);
     }
     const std::string& units = cost.label.units;
     Table table{.name = "cost/" + cost.label.name};
@@ -176,9 +232,18 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
          units,
          "jackknife over rounds",
          ""}};
+    if (!cost.growths.empty()) {
+      table.quantities.insert(
+          table.quantities.end(),
+          {{"growth", rung, growth, units, "of the bias, from the middle tap to the last", ""},
+           {"growth_error", rung, growth_error, units, "standard error over rounds", ""},
+           {"growth_tails", rung, growth_tails, "1", "probability by chance, Student's t", ""}});
+    }
+    add_windows(cost, table);
     table.notes = {{"observable", cost.label.name},
                    {"reference", rungs_[most_complete(rungs_).last].name},
                    {"rounds", fmt::to_string(rounds_)},
+                   {"middle_tap", fmt::to_string(middle_tap())},
                    {"scene_realizations", fmt::to_string(scene_realizations)},
                    {"scene_taps", fmt::to_string(taps_)}};
     tables.push_back(std::move(table));

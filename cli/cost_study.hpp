@@ -18,6 +18,13 @@ struct RungTime {
   double sweeps = 0;       // of such a tap
 };
 
+/// A bulk fraction read through another window less itself: at the scene's own setting, on the same
+/// packings.
+struct WindowEffect {
+  std::string name;  // "quantiles 0.1 to 0.9"
+  PairedBias difference;
+};
+
 /// What the pilot found of one observable, after its last tap.
 struct CostOfObservable {
   ObservableLabel label;
@@ -26,17 +33,24 @@ struct CostOfObservable {
   PairedBias last_step{};          // the most complete rung less the one before
   Remainder remainder;             // what it still lacks; only where that step is seen
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_rungs, n_taps], taps 1 .. n_taps
+  /// [n_rungs]: since tap n_taps / 2; empty of a pilot of one tap.
+  std::vector<Growth> growths;
+  std::vector<WindowEffect> windows;  // of a bulk fraction
 };
 
 /// A pilot over the rungs of a ladder, as far as its rounds (realizations) are complete.
 class CostStudy {
  public:
-  /// `taps` is the number of taps of the whole scene, for which times are estimated.
-  CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::uint64_t taps);
+  /// `taps` is the number of taps of the whole scene, for which times are estimated; `windows` are
+  /// those that the pilot observes beside the scene's.
+  CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::vector<OtherWindow> windows,
+            std::uint64_t taps);
 
   const std::vector<Rung>& rungs() const { return rungs_; }
   std::uint32_t rounds() const { return rounds_; }
   std::uint64_t pilot_taps() const { return pilot_taps_; }
+  /// From which to its last biases are seen to grow or not.
+  std::uint64_t middle_tap() const { return pilot_taps_ / 2; }
   std::uint64_t taps() const { return taps_; }
   const std::vector<RungTime>& times() const { return times_; }
   /// Realizations that failed, which are in no number of the study.
@@ -52,8 +66,10 @@ class CostStudy {
  private:
   void read_times(const ResultsFile& file);
   CostOfObservable read_observable(const ResultsFile& file, const ObservableLabel& label) const;
+  std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
 
   std::vector<Rung> rungs_;
+  std::vector<OtherWindow> windows_;
   std::uint64_t taps_ = 0, pilot_taps_ = 0;
   std::uint32_t rounds_ = 0;
   std::vector<RungTime> times_;

@@ -37,6 +37,7 @@ class LadderMaker {
     std::visit([&](const auto& rule) { stops(rule); }, scene_.relax.stop.rule);
     std::visit([&](const auto& move) { steps(move); }, scene_.relax.move);
     half_the_spheres();
+    other_pour();
     return std::move(rungs_);
   }
 
@@ -47,9 +48,14 @@ class LadderMaker {
       other.eta = rounded(rule.eta * factor);
       if (other.eta < 1) stop(other, factor, fmt::format("eta = {:.3g}", other.eta));
     }
+    intervals(rule);
+  }
+
+  template <class OfMeanHeight>
+  void intervals(const OfMeanHeight& rule) {
     for (const std::uint64_t interval : {rule.every_sweeps / 10, rule.every_sweeps * 10}) {
       if (interval < 1) continue;
-      MeanHeightStop other = rule;
+      OfMeanHeight other = rule;
       other.every_sweeps = interval;
       Relaxation relax = scene_.relax;
       relax.stop.rule = other;
@@ -95,7 +101,17 @@ class LadderMaker {
     }
   }
 
-  void steps(const PolarMove& move) { largest_steps(move, "d_max"); }
+  void steps(const PolarMove& move) {
+    largest_steps(move, "d_max");
+    for (const double factor : {0.5, 2.0}) {
+      PolarMove other = move;
+      other.theta0 = rounded(move.theta0 * factor);
+      if (other.theta0 < 1e-6 || other.theta0 > 1000) continue;
+      Relaxation relax = scene_.relax;
+      relax.move = other;
+      add(Rung::Part::step, fmt::format("theta_0 = {:.3g}", other.theta0), relax);
+    }
+  }
 
   void steps(const MetropolisMove& move) {
     largest_steps(move, "delta");
@@ -130,12 +146,26 @@ class LadderMaker {
     rungs_.back().container = half;
   }
 
+  void other_pour() {
+    const auto* box = std::get_if<WalledBox>(&scene_.container);
+    if (box == nullptr || scene_.relax_start) return;
+    const bool can_be_fitted = std::min(box->width_x, box->width_y) > least_periodic_width;
+    if (std::holds_alternative<FittedPour>(scene_.start)) {
+      add(Rung::Part::start, "poured between the walls", scene_.relax);
+      rungs_.back().start = SteepestDescentPour{};
+    } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) && can_be_fitted) {
+      add(Rung::Part::start, "fitted between the walls", scene_.relax);
+      rungs_.back().start = FittedPour{};
+    }
+  }
+
   void add(Rung::Part part, std::string name, const Relaxation& relax) {
     const bool known =
-        part != Rung::Part::spheres &&
+        part != Rung::Part::spheres && part != Rung::Part::start &&
         std::ranges::any_of(rungs_, [&](const Rung& rung) { return rung.relax == relax; });
     if (known) return;
-    rungs_.push_back({part, std::move(name), relax, scene_.n_spheres, scene_.container});
+    rungs_.push_back(
+        {part, std::move(name), relax, scene_.n_spheres, scene_.container, scene_.start});
   }
 
   const Scene& scene_;
@@ -156,6 +186,36 @@ MostComplete most_complete(const std::vector<Rung>& rungs) {
   return found;
 }
 
+std::vector<OtherWindow> other_windows(const Scene& scene) {
+  constexpr std::size_t longest_name = 64;
+  std::vector<OtherWindow> windows;
+  std::vector<std::string> taken;
+  for (const Observable& observable : scene.observables) taken.push_back(label(observable).name);
+  const auto add = [&](const BulkFraction& of, const char* ending, const Window& window) {
+    const std::string name = of.name + ending;
+    if (name.size() > longest_name || std::ranges::find(taken, name) != taken.end()) return;
+    taken.push_back(name);
+    windows.push_back({of.name, {name, window}});
+  };
+  for (const Observable& observable : scene.observables) {
+    const auto* of = std::get_if<BulkFraction>(&observable);
+    if (of == nullptr) continue;
+    std::visit(
+        [&](auto window) {
+          const double quarter = 0.25 * (window.high - window.low);
+          window.low = rounded(window.low + quarter);
+          window.high = rounded(window.high - quarter);
+          if (window.low < window.high) add(*of, "_narrow", window);
+        },
+        of->window);
+    if (const auto* quantiles = std::get_if<QuantileWindow>(&of->window)) {
+      add(*of, "_wide",
+          QuantileWindow{rounded(0.5 * quantiles->low), rounded(0.5 * (1 + quantiles->high))});
+    }
+  }
+  return windows;
+}
+
 Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps) {
   Scene out = scene;
   out.name = scene.name + "-cost";
@@ -174,12 +234,14 @@ Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint
   }
   const bool relaxes = std::holds_alternative<RandomSettle>(scene.start);
   if (relaxes && !out.relax_start) out.relax_start = scene.relax;
+  for (const OtherWindow& other : other_windows(scene)) out.observables.push_back(other.observable);
   SweepAxis axis;
-  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};
+  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}, {"/start", {}}};
   for (const Rung& rung : rungs) {
     axis.columns[0].second.push_back(written(rung.relax));
     axis.columns[1].second.push_back(rung.n_spheres);
     axis.columns[2].second.push_back(written(rung.container));
+    axis.columns[3].second.push_back(written(rung.start));
   }
   out.sweep = {axis};
   return out;

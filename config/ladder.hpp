@@ -9,19 +9,21 @@ namespace jostle {
 
 /// One setting of a scene's accuracy, everything else as the scene has it.
 struct Rung {
-  enum class Part { scene, stop, interval, step, adaptation, spheres };
+  enum class Part { scene, stop, interval, step, adaptation, spheres, start };
   Part part = Part::scene;
   std::string name;  // "eta = 1e-06"
   Relaxation relax;
   std::uint32_t n_spheres = 0;
   Container container;
+  StartChoice start;
 };
 
 /// The scene's own setting first, then the others; within a part from rough to complete. Stops:
 /// eta, change or sweeps, tenfold and a hundredfold (a published bulk-fraction rule ends with a
-/// complete one by mean height); test intervals; the largest step halved and doubled; of
-/// Metropolis moves the published adaptation, this project's, and none; half the spheres on half
-/// the footprint, where the start fills any. Caps on sweeps are raised with the stops.
+/// complete one by mean height); test intervals; the largest step halved and doubled, and theta_0
+/// of polar moves; of Metropolis moves the published adaptation, this project's, and none; half the
+/// spheres on half the footprint, where the start fills any; between walls the other of the two
+/// pours, fitted or direct, unless the start is relaxed. Caps on sweeps are raised with the stops.
 std::vector<Rung> ladder(const Scene& scene);
 
 /// The rungs whose stops are most complete. The last is what the others are compared with; the
@@ -31,9 +33,21 @@ struct MostComplete {
 };
 MostComplete most_complete(const std::vector<Rung>& rungs);
 
+/// A bulk fraction of the scene, read through another window.
+struct OtherWindow {
+  std::string of;  // name of the observable
+  BulkFraction observable;
+};
+
+/// For every bulk fraction of the scene a window half as wide about the same middle, and, of
+/// quantiles, one with both edges halfway to the ends of the bed. They are named after it
+/// ("_narrow", "_wide"); those whose name is taken or too long are left out.
+std::vector<OtherWindow> other_windows(const Scene& scene);
+
 /// The scene without its sweep, cut to `taps` taps, as a sweep over the rungs in their order, with
 /// matched streams, and with starts relaxed as the scene has it: so that realization m begins at
-/// every rung from the same bed. Keeps no snapshots.
+/// every rung from the same bed, but where the rung is another start. Observes other_windows(),
+/// too. Keeps no snapshots.
 Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps);
 
 }  // namespace jostle

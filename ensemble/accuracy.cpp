@@ -8,6 +8,7 @@
 
 #include "ensemble/jackknife.hpp"
 #include "ensemble/moments.hpp"
+#include "fitting/distributions.hpp"
 
 namespace jostle {
 
@@ -45,6 +46,28 @@ PairedBias paired_bias(std::span<const double> values, std::span<const double> r
           .bias = difference.mean(),
           .error = difference.standard_error(),
           .variance_reduction = (variance(own) + variance(others)) / variance(difference)};
+}
+
+Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
+                   std::span<const double> values, std::span<const double> reference) {
+  constexpr double level = 0.95;
+  assert(values_before.size() == values.size() && reference_before.size() == values.size());
+  std::vector<double> gained(values.size()), of_reference(values.size());
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    gained[r] = values[r] - values_before[r];
+    of_reference[r] = reference[r] - reference_before[r];
+  }
+  Growth growth{.change = paired_bias(gained, of_reference)};
+  const double dof = static_cast<double>(growth.change.pairs) - 1;
+  if (!(dof > 0)) {
+    growth.tails = growth.least_seen = std::numeric_limits<double>::quiet_NaN();
+    return growth;
+  }
+  const PairedBias& change = growth.change;
+  growth.tails = change.error > 0 ? student_tails(change.bias / change.error, dof)
+                                  : (change.bias == 0 ? 1.0 : 0.0);
+  growth.least_seen = student_two_sided(level, dof) * change.error;
+  return growth;
 }
 
 bool is_seen(const PairedBias& bias) {

@@ -23,6 +23,19 @@ struct PairedBias {
 /// values and reference: one a realization, NaN where it is missing.
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference);
 
+/// Whether a bias still grows with taps: its change from an earlier tap to a later one.
+struct Growth {
+  PairedBias change;      // of the bias, in pairs
+  double tails = 1;       // probability of such a change by chance (Student's t)
+  double least_seen = 0;  // a smaller one would not be told from chance at 5 %
+  bool is_seen() const { return tails < 0.05; }
+};
+
+/// values and reference at both taps: one a realization, NaN where it is missing. Nothing is known
+/// below two pairs: NaN, and not seen.
+Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
+                   std::span<const double> values, std::span<const double> reference);
+
 /// Whether it is told from noise: more than two standard errors.
 bool is_seen(const PairedBias& bias);
 

@@ -59,6 +59,37 @@ class Cost(Case):
         self.assertIn("set output 'c.svg'", (self.folder / "c.gp").read_text())
         self.assertEqual([row["rung"] for row in self.rows("c.csv")], names)
 
+    def test_starts_windows_and_growth_with_taps(self):
+        self.write(changed(SCENE, container={"sides": "walls", "width": 4},
+                           start={"pour": "fitted"}, observe=["mean_height", "bulk_fraction"]))
+        done = self.cost("--rounds", "4", "--taps", "6", "--observable", "bulk_fraction")
+        self.assertIn("\n  poured between the walls", done.stdout)
+        self.assertIn("\n  theta_0 = 0.393", done.stdout)
+        self.assertRegex(done.stdout, r"Since tap 3 the scene's changed by \S+ \+- \S+: ")
+        self.assertRegex(done.stdout, r"the same beds differ by \S+ \+- \S+ \(quantiles 0.35 to 0.65\); "
+                                      r"\S+ \+- \S+ \(quantiles 0.1 to 0.9\)\.")
+        with h5py.File(self.folder / "tiny-cost.h5") as stored:
+            table = stored["analysis/cost/bulk_fraction"]
+            names = [name.decode() for name in table["rung"][:]]
+            reference = names.index("eta = 1e-06")
+            values = {(p, tap): stored[f"observables/point_{p:04}/bulk_fraction"][tap]
+                      for p in range(len(names)) for tap in (3, 6)}
+            for p in range(len(names)):
+                grown = (values[p, 6] - values[reference, 6]) - (values[p, 3] - values[reference, 3])
+                self.assertAlmostEqual(table["growth"][p], grown.mean(), places=14)
+                self.assertAlmostEqual(table["growth_error"][p],
+                                       grown.std(ddof=1) / 4 ** 0.5, places=14)
+            for name, difference in zip(("narrow", "wide"), table["window_difference"][:]):
+                other = stored[f"observables/point_0000/bulk_fraction_{name}"][6]
+                self.assertAlmostEqual(difference, (other - values[0, 6]).mean(), places=14)
+            # The other pour begins from beds of its own.
+            starts = [stored[f"observables/point_{p:04}/mean_height"][0] for p in range(len(names))]
+            poured = names.index("poured between the walls")
+            self.assertTrue((starts[poured] != starts[0]).all())
+            self.assertEqual(table["pareto"][poured], 0)
+            self.assertIn(f"fitting/point_{reference:04}", stored)
+            self.assertNotIn(f"fitting/point_{poured:04}", stored)
+
     def test_the_same_rounds_give_the_same_numbers(self):
         self.cost("--rounds", "4", "--taps", "3", "--csv", "a.csv", "--threads", "1")
         self.cost("--rounds", "2", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5")

@@ -30,7 +30,8 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
   CHECK(names(rungs) == std::set<std::string>{"as the scene", "eta = 0.001", "eta = 0.0001",
                                               "eta = 1e-06", "eta = 1e-07", "test every 10 sweeps",
                                               "test every 1000 sweeps", "d_max = 0.05",
-                                              "d_max = 0.2", "half the footprint"});
+                                              "d_max = 0.2", "theta_0 = 0.393", "theta_0 = 1.57",
+                                              "half the footprint"});
   const MostComplete best = most_complete(rungs);
   CHECK(rungs[best.last].name == "eta = 1e-07");
   CHECK(rungs[best.before].name == "eta = 1e-06");
@@ -46,6 +47,45 @@ TEST_CASE("A published bulk-fraction stop is compared with a complete one by mea
   CHECK(rungs[most_complete(rungs).last].name == "mean height, eta = 1e-06");
   CHECK(all.contains("fixed delta"));
   CHECK(all.contains("delta of falling trials, 2 %"));
+}
+
+TEST_CASE("Between walls the other of the two pours is a rung") {
+  const auto start_rungs = [](const Scene& scene) {
+    std::vector<StartChoice> found;
+    for (const Rung& rung : ladder(scene)) {
+      if (rung.part == Rung::Part::start) found.push_back(rung.start);
+    }
+    return found;
+  };
+  Scene scene = shipped("philippe-bideau-2001/fig10.json");
+  CHECK(start_rungs(scene) == std::vector<StartChoice>{SteepestDescentPour{}});
+  scene.start = SteepestDescentPour{};
+  CHECK(start_rungs(scene) == std::vector<StartChoice>{FittedPour{}});
+  // Too narrow for the periodic pour that is to be fitted.
+  scene.container = WalledBox{2, 16};
+  CHECK(start_rungs(scene).empty());
+  CHECK(start_rungs(shipped("quickstart.json")).empty());
+  // A direct pour takes no relaxation before tap 0, so a scene that has one has no such pair.
+  Scene relaxed = shipped("philippe-bideau-2001/fig10.json");
+  relaxed.relax_start = relaxed.relax;
+  CHECK(start_rungs(relaxed).empty());
+}
+
+TEST_CASE("A bulk fraction is read through a narrower and a wider window, too") {
+  Scene scene = shipped("quickstart.json");
+  scene.observables = {MeanHeight{}, BulkFraction{}, BulkFraction{"low", HeightWindow{2, 6}}};
+  std::vector<OtherWindow> windows = other_windows(scene);
+  REQUIRE(windows.size() == 3);
+  CHECK(windows[0].of == "bulk_fraction");
+  CHECK(windows[0].observable == BulkFraction{"bulk_fraction_narrow", QuantileWindow{0.35, 0.65}});
+  CHECK(windows[1].observable == BulkFraction{"bulk_fraction_wide", QuantileWindow{0.1, 0.9}});
+  CHECK(windows[2].of == "low");
+  CHECK(windows[2].observable == BulkFraction{"low_narrow", HeightWindow{3, 5}});
+  // A name that the scene has already is left alone.
+  scene.observables.push_back(BulkFraction{"low_narrow", HeightWindow{1, 2}});
+  windows = other_windows(scene);
+  CHECK(windows.back().observable.name == "low_narrow_narrow");
+  CHECK(windows.size() == 3);
 }
 
 TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from the same beds") {
@@ -64,7 +104,9 @@ TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from th
       CHECK(total_taps(plans[i]) == 7);
       CHECK(plans[i].snapshots.taps.empty());
       CHECK(plans[i].relax_start.value_or(scene.relax) == scene.relax_start.value_or(scene.relax));
-      CHECK(plans[i].start == plans[0].start);
+      const bool another = rungs[i].part == Rung::Part::start;
+      CHECK((plans[i].start == plans[0].start) != another);
+      CHECK(plans[i].observables.size() == scene.observables.size() + other_windows(scene).size());
     }
   }
 }

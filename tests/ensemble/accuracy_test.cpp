@@ -28,6 +28,49 @@ TEST_CASE("Without two pairs there is no error, and equal differences need no ot
   CHECK(std::isinf(paired_bias(a, b).variance_reduction));
 }
 
+TEST_CASE("A growth is the change of the pairs' differences, judged by Student's t") {
+  const std::vector<double> before{1, 2, 4}, reference_before{0.5, 1.5, 3.5}, after{1.5, 2.5, 5},
+      reference{0.5, 1.6, 3.4};
+  const Growth growth = bias_growth(before, reference_before, after, reference);
+  // Differences of 0.5 each before; of 1, 0.9 and 1.6 after.
+  CHECK(growth.change.bias == Approx(2.0 / 3));
+  CHECK(growth.change.pairs == 3);
+  CHECK(growth.least_seen == Approx(4.302653 * growth.change.error));
+  CHECK(growth.is_seen() == (growth.change.bias > growth.least_seen));
+  const std::vector<double> one{1}, other{2};
+  CHECK_FALSE(bias_growth(one, one, other, one).is_seen());
+  CHECK(std::isnan(bias_growth(one, one, other, one).least_seen));
+  // The reference against itself.
+  CHECK_FALSE(bias_growth(before, before, after, after).is_seen());
+}
+
+TEST_CASE("A bias that does not grow is called growing one time in twenty, with any rounds") {
+  RandomStream random = test_stream(23);
+  constexpr int repetitions = 4000;
+  for (const std::size_t rounds : {2u, 3u, 4u, 10u}) {
+    int alarms = 0, missed = 0;
+    for (int k = 0; k < repetitions; ++k) {
+      // Beds differ more than settings; a bias of 0.3 from the first tap on.
+      std::vector<double> early, early_reference, late, late_reference, grown;
+      for (std::size_t r = 0; r < rounds; ++r) {
+        const double bed = 10 * noise(random);
+        early_reference.push_back(bed + noise(random));
+        late_reference.push_back(bed + 2 + noise(random));
+        early.push_back(bed - 0.3 + noise(random));
+        late.push_back(bed + 2 - 0.3 + noise(random));
+        grown.push_back(late.back() - 30);
+      }
+      alarms += bias_growth(early, early_reference, late, late_reference).is_seen();
+      missed += !bias_growth(early, early_reference, grown, late_reference).is_seen();
+    }
+    const double rate = static_cast<double>(alarms) / repetitions;
+    CAPTURE(rounds, rate, missed);
+    CHECK(std::abs(rate - 0.05) <= 3 * std::sqrt(0.05 * 0.95 / repetitions));
+    // What is 15 deviations of a difference is seen even with three rounds.
+    if (rounds > 2) CHECK(missed < repetitions / 100);
+  }
+}
+
 TEST_CASE("What a geometric ladder lacks is the rest of the series") {
   // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
   const auto of = [](std::vector<double> two_before, std::vector<double> before,
