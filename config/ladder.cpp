@@ -236,12 +236,16 @@ Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint
   if (relaxes && !out.relax_start) out.relax_start = scene.relax;
   for (const OtherWindow& other : other_windows(scene)) out.observables.push_back(other.observable);
   SweepAxis axis;
-  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}, {"/start", {}}};
+  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};
+  // The values of a point are part of its random streams: without another start, none is named.
+  const bool starts_differ =
+      std::ranges::any_of(rungs, [](const Rung& rung) { return rung.part == Rung::Part::start; });
+  if (starts_differ) axis.columns.push_back({"/start", {}});
   for (const Rung& rung : rungs) {
     axis.columns[0].second.push_back(written(rung.relax));
     axis.columns[1].second.push_back(rung.n_spheres);
     axis.columns[2].second.push_back(written(rung.container));
-    axis.columns[3].second.push_back(written(rung.start));
+    if (starts_differ) axis.columns[3].second.push_back(written(rung.start));
   }
   out.sweep = {axis};
   return out;

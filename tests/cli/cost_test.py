@@ -63,8 +63,8 @@ class Cost(Case):
         self.write(changed(SCENE, container={"sides": "walls", "width": 4},
                            start={"pour": "fitted"}, observe=["mean_height", "bulk_fraction"]))
         done = self.cost("--rounds", "4", "--taps", "6", "--observable", "bulk_fraction")
-        self.assertIn("\n  poured between the walls", done.stdout)
-        self.assertIn("\n  theta_0 = 0.393", done.stdout)
+        self.assertRegex(done.stdout, r"\n *poured between the walls  ")
+        self.assertRegex(done.stdout, r"\n *theta_0 = 0.393  ")
         self.assertRegex(done.stdout, r"Since tap 3 the scene's changed by \S+ \+- \S+: ")
         self.assertRegex(done.stdout, r"the same beds differ by \S+ \+- \S+ \(quantiles 0.35 to 0.65\); "
                                       r"\S+ \+- \S+ \(quantiles 0.1 to 0.9\)\.")
