@@ -245,7 +245,7 @@ TEST_CASE("Matched points begin from the same bed also where the start is relaxe
 
 TEST_CASE("A shake records the share of lateral offsets that found no room") {
   Plan plan = small_plan();
-  plan.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.3, .retries = 0}, 2}, {Lift{}, 1}};
+  plan.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.1, .retries = 0}, 2}, {Lift{}, 1}};
   const RecordedRealization record = straight(plan);
   CHECK(record.rows[0].relaxation.dropped_offsets == 0);
   for (const std::size_t tap : {1, 2}) {
