@@ -90,8 +90,8 @@ std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, Realizatio
   std::optional<Fit> last;
   for (int i = 0; i <= reweightings; ++i) {
     const bool limited = !last || last->condition < singular_condition;
-    FitOptions options{.profiles =
-                           i == reweightings && (limited || runaways == Runaways::profiled)};
+    FitOptions options{.profiles = i == reweightings && (limited || runaways == Runaways::profiled),
+                       .memory = false};
     options.fixed = fixed;
     if (last) options.start = last->values();
     options.multi_start = !last;

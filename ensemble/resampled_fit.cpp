@@ -50,6 +50,7 @@ FitOptions refit_options(const Fit& fit) {
   options.start = fit.values();
   options.multi_start = false;
   options.profiles = false;
+  options.memory = false;
   for (const Estimate& estimate : fit.estimates) {
     if (estimate.identifiability == Identifiability::fixed) {
       options.fixed[estimate.parameter.name] = estimate.value;

@@ -54,7 +54,8 @@ std::vector<ParameterValues> SharedAgeing::starts(const Curve& curve, std::span<
     ParameterValues start = {b};
     double sum = 0;
     for (std::size_t k = 0; k < own.size(); ++k) {
-      FitOptions options{.multi_start = false, .fixed = {{"B", b}}, .profiles = false};
+      FitOptions options{
+          .multi_start = false, .fixed = {{"B", b}}, .profiles = false, .memory = false};
       const double a_inf = fixed[a_inf_index(k)], tau = fixed[tau_index(k)];
       if (!std::isnan(a_inf)) options.fixed["A_inf"] = a_inf;
       if (!std::isnan(tau)) options.fixed["tau"] = tau;

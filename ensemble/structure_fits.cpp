@@ -88,7 +88,7 @@ FoundLaw fitted(const Model& model, const RealizationCurves& curves) {
   FoundLaw found{std::vector(n, nan), std::vector(n, nan), "converged"};
   if (curves.realizations == 0) return found.status = "no packing", found;
   if (!has_points(curves, n)) return found.status = "too few places that hold anything", found;
-  const auto outcome = fit(model, mean_curve(curves), {.profiles = false});
+  const auto outcome = fit(model, mean_curve(curves), {.profiles = false, .memory = false});
   if (const auto* refusal = std::get_if<Refusal>(&outcome)) {
     return found.status = refusal->message, found;
   }
