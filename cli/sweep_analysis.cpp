@@ -114,8 +114,7 @@ bool take_parameter(Member& member, const Table& table, const std::string& name)
     if (place == names->size()) return false;
     const Quantity* const resampled = quantity_named(table, "resampled_error");
     member.y = number_at(quantity_named(table, "value"), place);
-    member.y_error =
-        number_at(resampled ? resampled : quantity_named(table, "standard_error"), place);
+    member.y_error = number_at(resampled ? resampled : quantity_named(table, "error"), place);
     member.label = {name, "1", "parameter of a fit", ""};
     return true;
   }
