@@ -59,6 +59,8 @@ std::string cell(const Quantity& quantity, std::size_t index, Digits digits) {
   return std::get<std::vector<std::string>>(quantity.values).at(index);
 }
 
+constexpr const char* interval_endings[] = {"_low_68", "_high_68", "_low_95", "_high_95"};
+
 /// Of an error two digits, of the value as many decimals.
 std::string value_and_error(const Quantity& value, const Quantity& error, std::size_t index) {
   const auto* numbers = std::get_if<std::vector<double>>(&value.values);
@@ -75,16 +77,49 @@ std::string value_and_error(const Quantity& value, const Quantity& error, std::s
                      decimals);
 }
 
-const Quantity* error_of(const Quantity& quantity, const Block& block) {
+const Quantity* beside(const Quantity& quantity, const Block& block, const char* ending) {
   for (const Quantity* other : block.columns) {
-    if (other->name == quantity.name + "_error") return other;
+    if (other->name == quantity.name + ending) return other;
   }
   return nullptr;
 }
 
+const Quantity* error_of(const Quantity& quantity, const Block& block) {
+  return beside(quantity, block, "_error");
+}
+
+bool has_interval(const Quantity& quantity, const Block& block) {
+  return beside(quantity, block, "_low_95") != nullptr &&
+         beside(quantity, block, "_high_95") != nullptr;
+}
+
 bool is_shown_beside(const Quantity& quantity, const Block& block) {
-  return std::ranges::any_of(
-      block.columns, [&](const Quantity* other) { return error_of(*other, block) == &quantity; });
+  return std::ranges::any_of(block.columns, [&](const Quantity* other) {
+    if (error_of(*other, block) == &quantity) return true;
+    return has_interval(*other, block) &&
+           std::ranges::any_of(interval_endings, [&](const char* ending) {
+             return beside(*other, block, ending) == &quantity;
+           });
+  });
+}
+
+/// A value with what stands beside it: "2.1 (1.3 to 3.4)" where there is a 95 % interval, else
+/// "2.1 +- 0.4".
+std::string shown(const Quantity& quantity, const Block& block, std::size_t index) {
+  if (has_interval(quantity, block)) {
+    const auto at = [&](const char* ending) {
+      const Quantity* end = beside(quantity, block, ending);
+      const auto* numbers = std::get_if<std::vector<double>>(&end->values);
+      return numbers != nullptr ? numbers->at(index) : std::nan("");
+    };
+    const double low = at("_low_95"), high = at("_high_95");
+    if (!std::isfinite(low) || !std::isfinite(high)) return cell(quantity, index, Digits::few);
+    const auto* values = std::get_if<std::vector<double>>(&quantity.values);
+    return fmt::format("{:.4g} ({:.4g} to {:.4g})", values ? values->at(index) : std::nan(""), low,
+                       high);
+  }
+  const Quantity* error = error_of(quantity, block);
+  return error ? value_and_error(quantity, *error, index) : cell(quantity, index, Digits::few);
 }
 
 // Indices along the block's axes of a place in its flat, row-major values.
@@ -102,12 +137,9 @@ std::string single_values(const Block& block) {
   std::string text;
   for (const Quantity* quantity : block.columns) {
     if (is_shown_beside(*quantity, block)) continue;
-    const Quantity* error = error_of(*quantity, block);
-    const std::string shown =
-        error ? value_and_error(*quantity, *error, 0) : cell(*quantity, 0, Digits::few);
     const bool unitless = quantity->units.empty() || quantity->units == "1";
     text +=
-        fmt::format("  {:<22} {}{}", quantity->name, shown, unitless ? "" : " " + quantity->units);
+        fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0), unitless ? "" : " " + quantity->units);
     text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
   }
   return text;
@@ -127,9 +159,7 @@ std::string columns_text(const Table& table, const Block& block) {
     }
     for (const Quantity* quantity : block.columns) {
       if (is_shown_beside(*quantity, block)) continue;
-      const Quantity* error = error_of(*quantity, block);
-      cells.push_back(error ? value_and_error(*quantity, *error, row)
-                            : cell(*quantity, row, Digits::few));
+      cells.push_back(shown(*quantity, block, row));
     }
     text.add(cells);
   }

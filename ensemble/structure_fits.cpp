@@ -6,7 +6,10 @@
 #include <limits>
 #include <optional>
 
+#include "ensemble/histogram_fit.hpp"
+#include "ensemble/jackknife.hpp"
 #include "ensemble/resampled_fit.hpp"
+#include "ensemble/runaway.hpp"
 #include "fitting/models.hpp"
 #include "structure/gradient.hpp"
 
@@ -16,16 +19,22 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A law and where it is sought.
+/// What a law gave at one tap.
+struct FoundLaw {
+  HistogramFit fit;
+  std::uint32_t realizations = 0;
+};
+
+using Packings = std::vector<const Measurement*>;  // of one tap, [n_realizations]
+
+/// A law, what it is fitted to, and how.
 struct FittedLaw {
-  std::string quantity;  // fitted, along its places
+  std::string quantity;  // what the law is of
   std::string prefix;    // of the parameters' names in the table
   std::string model;
-  std::vector<std::string> units;  // of its parameters
-  /// The law's variable at a place; nothing where the law does not hold.
-  std::function<std::optional<double>(double place)> variable;
-  /// What a value is multiplied by to become a count, whose error is its root; none: all alike.
-  std::function<double(double place)> width{};
+  std::vector<std::string> units;  // of its parameters; empty: one that says nothing, left out
+  std::function<FoundLaw(const Model&, const Packings&)> found;
+  bool of_counts = false;
 };
 
 const std::vector<double>& places_of(const Measurement& measurement, std::string_view name) {
@@ -33,80 +42,85 @@ const std::vector<double>& places_of(const Measurement& measurement, std::string
   return std::get<std::vector<double>>(found->values);
 }
 
-/// The curves of one tap, up to the longest.
-RealizationCurves curves_of(const FittedLaw& law, const std::vector<const Measurement*>& packings) {
-  RealizationCurves curves;
+/// The packings that have the quantity, and the longest list of its places.
+struct Values {
+  std::vector<const Measurement*> packings;
   std::vector<const MeasuredQuantity*> quantities;
-  const std::vector<double>* places = nullptr;
-  for (const Measurement* packing : packings) {
-    const MeasuredQuantity* quantity = packing != nullptr ? packing->find(law.quantity) : nullptr;
-    if (quantity == nullptr) continue;
-    quantities.push_back(quantity);
-    const std::vector<double>& own = places_of(*packing, quantity->places);
-    if (places == nullptr || own.size() > places->size()) places = &own;
-  }
-  curves.realizations = static_cast<std::uint32_t>(quantities.size());
-  std::vector<double> counts, widths;
-  for (std::size_t k = 0; places != nullptr && k < places->size(); ++k) {
-    const auto t = law.variable((*places)[k]);
-    if (!t) continue;
-    curves.t.push_back(*t);
-    double mean = 0;
-    for (const MeasuredQuantity* quantity : quantities) {
-      const double value = quantity->at(k);
-      curves.values.push_back(value);
-      mean += value / static_cast<double>(quantities.size());
-    }
-    if (law.width) {
-      widths.push_back(law.width((*places)[k]));
-      counts.push_back(mean * widths.back());
-    }
-  }
-  double least = std::numeric_limits<double>::infinity();  // an empty bin could hold so much
-  for (const double count : counts) least = count > 0 ? std::min(least, count) : least;
-  for (std::size_t k = 0; k < counts.size() && std::isfinite(least); ++k) {
-    curves.sigma.push_back(std::sqrt(std::max(counts[k], least)) / widths[k]);
-  }
-  return curves;
-}
-
-struct FoundLaw {
-  std::vector<double> values, errors;  // [n_parameters]
-  std::string status;
+  std::vector<double> places;
 };
 
-/// Whether there are more points that say something than parameters: bins that hold anything, where
-/// the curve is one of counts.
-bool has_points(const RealizationCurves& curves, std::size_t n_parameters) {
-  const Curve mean = mean_curve(curves);
-  const auto filled = std::ranges::count_if(mean.x, [](double x) { return x != 0; });
-  return static_cast<std::size_t>(filled) > n_parameters;
+Values values_of(const std::string& name, const Packings& packings) {
+  Values all;
+  for (const Measurement* packing : packings) {
+    const MeasuredQuantity* quantity = packing != nullptr ? packing->find(name) : nullptr;
+    if (quantity == nullptr) continue;
+    all.packings.push_back(packing);
+    all.quantities.push_back(quantity);
+    const std::vector<double>& own = places_of(*packing, quantity->places);
+    if (own.size() > all.places.size()) all.places = own;
+  }
+  return all;
 }
 
-FoundLaw fitted(const Model& model, const RealizationCurves& curves) {
-  const std::size_t n = model.parameters().size();
-  FoundLaw found{std::vector(n, nan), std::vector(n, nan), "converged"};
-  if (curves.realizations == 0) return found.status = "no packing", found;
-  if (!has_points(curves, n)) return found.status = "too few places that hold anything", found;
-  const auto outcome = fit(model, mean_curve(curves), {.profiles = false, .memory = false});
-  if (const auto* refusal = std::get_if<Refusal>(&outcome)) {
-    return found.status = refusal->message, found;
+/// Least squares to the mean curve, all points alike, where `variable` gives the law's variable.
+FoundLaw fitted_curve(const std::string& quantity, const Model& model, const Packings& packings,
+                      const std::function<std::optional<double>(double place)>& variable) {
+  const Values all = values_of(quantity, packings);
+  RealizationCurves curves;
+  curves.realizations = static_cast<std::uint32_t>(all.quantities.size());
+  for (std::size_t k = 0; k < all.places.size(); ++k) {
+    const auto t = variable(all.places[k]);
+    if (!t) continue;
+    curves.t.push_back(*t);
+    for (const MeasuredQuantity* one : all.quantities) {
+      curves.values.push_back(one->at(k));
+    }
   }
+  const std::size_t n = model.parameters().size();
+  FoundLaw found{{std::vector(n, nan), std::vector(n, nan), nan, "converged"}, curves.realizations};
+  std::string& status = found.fit.status;
+  if (curves.realizations == 0) return status = "no packing", found;
+  const auto outcome = fit(model, mean_curve(curves), {.profiles = false, .memory = false});
+  if (const auto* refusal = std::get_if<Refusal>(&outcome)) return status = refusal->message, found;
   const Fit& result = std::get<Fit>(outcome);
   if (!is_minimum(result.reason)) {
-    return found.status = std::string("did not settle: ") + describe(result.reason), found;
+    return status = std::string("did not settle: ") + describe(result.reason), found;
   }
-  found.values = result.values();
+  if (const std::string lost = runaways(result); !lost.empty()) return status = lost, found;
+  found.fit.values = result.values();
   if (curves.realizations < 2) return found;
   const ResampledErrors errors = resample(model, curves, result, {});
   if (errors.failed == 0) {
-    found.errors = errors.errors;
+    found.fit.errors = errors.errors;
   } else {
-    found.status = std::to_string(errors.failed);
-    found.status.append(" of ").append(std::to_string(errors.resamples));
-    found.status.append(" refits without a realization did not settle: no error");
+    status = std::to_string(errors.failed);
+    status.append(" of ").append(std::to_string(errors.resamples));
+    status.append(" refits without a realization did not settle: no error");
   }
   return found;
+}
+
+/// What a histogram counted: `bin` gives the law's variable at a place, `number` what 1 of the
+/// quantity stands for in a packing. Whole numbers beyond the last one found count as empty.
+FoundLaw fitted_counts(const std::string& quantity, const Model& model, const Packings& packings,
+                       const std::function<std::optional<Bin>(double place)>& bin,
+                       const std::function<double(const Measurement&)>& number,
+                       std::size_t beyond = 0) {
+  Values all = values_of(quantity, packings);
+  for (std::size_t i = 0; i < beyond && !all.places.empty(); ++i) {
+    all.places.push_back(all.places.back() + 1);
+  }
+  Histogram histogram;
+  histogram.realizations = static_cast<std::uint32_t>(all.quantities.size());
+  for (std::size_t k = 0; k < all.places.size(); ++k) {
+    const auto place = bin(all.places[k]);
+    if (!place) continue;
+    histogram.bins.push_back(*place);
+    for (std::size_t r = 0; r < all.quantities.size(); ++r) {
+      histogram.counts.push_back(all.quantities[r]->at(k) * number(*all.packings[r]));
+    }
+  }
+  return {fit_histogram(model, histogram), histogram.realizations};
 }
 
 std::string in_lower_case(std::string text) {
@@ -115,50 +129,140 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
+                   const std::vector<FoundLaw>& taps, Table& table) {
+  const Parameter& parameter = model.parameters()[j];
+  std::vector<double> values, errors, low, high;
+  for (const FoundLaw& found : taps) {
+    const double value = found.fit.values[j], error = found.fit.errors[j];
+    const double reach = student_half_width(error, found.realizations, interval_levels[1]);
+    values.push_back(value);
+    errors.push_back(error);
+    low.push_back(value - reach);
+    high.push_back(value + reach);
+  }
+  std::string name = law.prefix;
+  name.append("_").append(in_lower_case(parameter.name));
+  std::string meaning = parameter.meaning;
+  meaning.append(", of ").append(law.quantity).append(" = ").append(model.formula());
+  const auto add = [&](const char* ending, std::vector<double> of_taps, std::string long_name,
+                       std::string source) {
+    table.quantities.push_back({name + ending,
+                                {"tap"},
+                                std::move(of_taps),
+                                law.units[j],
+                                std::move(long_name),
+                                std::move(source)});
+  };
+  add("", std::move(values), std::move(meaning), model.source());
+  add("_error", std::move(errors), "standard error by the jackknife over realizations", "");
+  add("_low_95", std::move(low), "lower end of the 95 % interval, Student's t over realizations",
+      "");
+  add("_high_95", std::move(high), "its upper end", "");
+}
+
 void add_law(const FittedLaw& law, const PartPackings& part, Table& table) {
   const auto model = make_model(law.model);
-  const auto& parameters = model->parameters();
-  std::vector<std::vector<double>> values(parameters.size()), errors(parameters.size());
+  std::vector<FoundLaw> taps;
+  std::vector<double> p;
   std::vector<std::string> status;
-  for (const auto& packings : part) {
-    const FoundLaw found = fitted(*model, curves_of(law, packings));
-    for (std::size_t j = 0; j < parameters.size(); ++j) {
-      values[j].push_back(found.values[j]);
-      errors[j].push_back(found.errors[j]);
-    }
-    status.push_back(found.status);
+  for (const Packings& packings : part) {
+    taps.push_back(law.found(*model, packings));
+    p.push_back(taps.back().fit.p);
+    status.push_back(taps.back().fit.status);
   }
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    std::string name = law.prefix;
-    name.append("_").append(in_lower_case(parameters[j].name));
-    std::string meaning = parameters[j].meaning;
-    meaning.append(", of ").append(law.quantity).append(" = ").append(model->formula());
-    table.quantities.push_back(
-        {name, {"tap"}, std::move(values[j]), law.units[j], std::move(meaning), model->source()});
-    name.append("_error");
-    table.quantities.push_back({std::move(name),
+  for (std::size_t j = 0; j < law.units.size(); ++j) {
+    if (!law.units[j].empty()) add_parameter(law, *model, j, taps, table);
+  }
+  if (law.of_counts) {
+    table.quantities.push_back({law.prefix + "_p",
                                 {"tap"},
-                                std::move(errors[j]),
-                                law.units[j],
-                                "standard error by the jackknife over realizations",
+                                std::move(p),
+                                "1",
+                                "chance that counts of the law itself lie so far from it",
                                 ""});
   }
   table.quantities.push_back({law.prefix + "_status",
                               {"tap"},
                               std::move(status),
                               "1",
-                              "converged, or why there is no fit",
+                              "whether the law was found and holds, or why there is no fit",
                               ""});
 }
 
-std::optional<double> itself(double place) {
-  return place;
+std::optional<Bin> whole_number(double place) {
+  return Bin{place, place};
 }
-double one(double) {
-  return 1;
+
+// Where there is no number to count by there is nothing to fit.
+double single(const Measurement& measurement, std::string_view name) {
+  const MeasuredQuantity* quantity = measurement.find(name);
+  return quantity != nullptr ? quantity->at(0) : 0;
 }
-double pore_volume(double xi) {
-  return xi * xi * xi;
+
+/// The normal law of whole numbers, of shares of what `counted` counts.
+FittedLaw normal_law(const char* shares, const char* counted) {
+  constexpr std::size_t beyond = 20;
+  return {shares,
+          "normal",
+          "normal",
+          {"", "1", "1"},
+          [shares, counted](const Model& model, const Packings& packings) {
+            return fitted_counts(
+                shares, model, packings, whole_number,
+                [&](const Measurement& packing) { return single(packing, counted); }, beyond);
+          },
+          true};
+}
+
+FittedLaw density_profile(const ProfileSettings& settings) {
+  // In R, above the layers at the floor.
+  const double low = settings.gradient ? settings.gradient->low : GradientRange{}.low;
+  return {"phi",
+          "eq7",
+          "profile",
+          {"1", "1/R", "1/R", "R"},
+          [low](const Model& model, const Packings& packings) {
+            return fitted_curve("phi", model, packings, [low](double height) {
+              return height >= low ? std::optional(height / sphere_radius) : std::nullopt;
+            });
+          }};
+}
+
+FittedLaw free_volumes(const VoronoiSettings& settings) {
+  return {"free_volume_density",
+          "k_gamma",
+          "k_gamma",
+          {"", "sphere volumes", "1"},
+          [width = settings.bin_width](const Model& model, const Packings& packings) {
+            const auto bin = [width](double middle) -> std::optional<Bin> {
+              const double low = middle - 0.5 * width - least_free_volume;
+              if (low + width <= 0) return std::nullopt;
+              return Bin{std::max(low, 0.0), low + width};
+            };
+            return fitted_counts(
+                "free_volume_density", model, packings, bin,
+                [width](const Measurement& packing) { return width * single(packing, "n_cells"); });
+          },
+          true};
+}
+
+FittedLaw pore_tail(const PoresSettings& settings) {
+  return {"rho_v",
+          "tail",
+          "pore_tail",
+          {"1", "R^3"},
+          [from = settings.tail_from, width = settings.bin_width](const Model& model,
+                                                                  const Packings& packings) {
+            const auto bin = [from, width](double xi) -> std::optional<Bin> {
+              const double low = xi - 0.5 * width, high = xi + 0.5 * width;
+              if (xi * xi * xi < from) return std::nullopt;
+              return Bin{low * low * low, high * high * high};
+            };
+            return fitted_counts("rho_xi", model, packings, bin,
+                                 [width](const Measurement&) { return width; });
+          },
+          true};
 }
 
 }  // namespace
@@ -166,36 +270,14 @@ double pore_volume(double xi) {
 void add_fits(std::string_view part_name, const PartPackings& part,
               const StructureSettings& settings, Table& table) {
   if (part_name == "profile") {
-    // In R, above the layers at the floor.
-    const double low =
-        settings.profile->gradient ? settings.profile->gradient->low : GradientRange{}.low;
-    const auto in_radii = [low](double height) {
-      return height >= low ? std::optional(height / sphere_radius) : std::nullopt;
-    };
-    add_law({"phi", "eq7", "profile", {"1", "1/R", "1/R", "R"}, in_radii}, part, table);
+    add_law(density_profile(*settings.profile), part, table);
   } else if (part_name == "coordination") {
-    add_law({"neighbour_share", "normal", "normal", {"1", "1", "1"}, itself, one}, part, table);
+    add_law(normal_law("neighbour_share", "n_spheres"), part, table);
   } else if (part_name == "voronoi") {
-    add_law({"face_share", "normal", "normal", {"1", "1", "1"}, itself, one}, part, table);
-    const auto above_least = [](double free_volume) {
-      const double t = free_volume - least_free_volume;
-      return t > 0 ? std::optional(t) : std::nullopt;
-    };
-    add_law({"free_volume_density",
-             "k_gamma",
-             "k_gamma",
-             {"1", "sphere volumes", "1"},
-             above_least,
-             one},
-            part, table);
+    add_law(normal_law("face_share", "n_cells"), part, table);
+    add_law(free_volumes(*settings.voronoi), part, table);
   } else if (part_name == "pores") {
-    const auto tail = [from = settings.pores->tail_from](double xi) {
-      return pore_volume(xi) >= from ? std::optional(pore_volume(xi)) : std::nullopt;
-    };
-    const auto width = [bin = settings.pores->bin_width](double xi) {
-      return pore_volume(xi + 0.5 * bin) - pore_volume(xi - 0.5 * bin);
-    };
-    add_law({"rho_v", "tail", "pore_tail", {"1", "R^3"}, tail, width}, part, table);
+    add_law(pore_tail(*settings.pores), part, table);
   }
 }
 

@@ -58,6 +58,33 @@ double student_tails(double t, double dof) {
   return incomplete_beta(0.5 * dof, 0.5, dof / (dof + t * t));
 }
 
+double fisher_tail(double f, double dof_1, double dof_2) {
+  return incomplete_beta(0.5 * dof_2, 0.5 * dof_1, dof_2 / (dof_2 + dof_1 * f));
+}
+
+// Q(a, x), a = dof / 2: the series of P below a + 1 (Abramowitz & Stegun 6.5.29), the continued
+// fraction by the modified Lentz method above (6.5.31).
+double chi_squared_tail(double x, double dof) {
+  const double a = 0.5 * dof, y = 0.5 * x;
+  if (y <= 0) return 1;
+  const double front = std::exp(a * std::log(y) - y - std::lgamma(a));
+  if (y < a + 1) {
+    double term = 1 / a, sum = term;
+    for (int n = 1; n < 10'000 && term > 1e-16 * sum; ++n) sum += term *= y / (a + n);
+    return 1 - front * sum;
+  }
+  double b = y + 1 - a, c = 1e300, d = 1 / b, h = d;
+  for (int n = 1; n < 10'000; ++n) {
+    const double numerator = -n * (n - a);
+    b += 2;
+    d = 1 / (numerator * d + b);
+    c = b + numerator / c;
+    h *= d * c;
+    if (std::abs(d * c - 1) < 1e-15) break;
+  }
+  return front * h;
+}
+
 double normal_two_sided(double level) {
   return solve_tails(1 - level, [](double z) { return normal_tails(z); });
 }

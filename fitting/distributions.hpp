@@ -13,5 +13,9 @@ double two_sided(double level, double dof);
 double normal_tails(double z);
 /// Probability that Student's |t| exceeds |t|.
 double student_tails(double t, double dof);
+/// Probability that Fisher's F of dof_1 and dof_2 > 0 degrees of freedom exceeds f >= 0.
+double fisher_tail(double f, double dof_1, double dof_2);
+/// Probability that chi2 with dof > 0 degrees of freedom exceeds x >= 0.
+double chi_squared_tail(double x, double dof);
 
 }  // namespace jostle

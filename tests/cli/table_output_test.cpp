@@ -31,6 +31,21 @@ TEST_CASE("A table for people has values with their errors, then columns") {
   CHECK(text.find(" 10    8  -\n") != std::string::npos);
 }
 
+TEST_CASE("A table for people has values with their 95 % intervals") {
+  Table table = example();
+  for (const auto& [ending, value] : {std::pair{"_low_68", 12.1}, std::pair{"_high_68", 12.6},
+                                      std::pair{"_low_95", 11.8}, std::pair{"_high_95", 12.9}}) {
+    table.quantities.push_back(
+        {std::string("tau").append(ending), {}, std::vector{value}, "taps", "", ""});
+  }
+  const std::string text = table_text(table, Detail::full);
+  CHECK(text.find("  tau                    12.35 (11.8 to 12.9) taps   (memory)\n") !=
+        std::string::npos);
+  CHECK(text.find("tau_") == std::string::npos);
+  std::get<std::vector<double>>(table.quantities.back().values)[0] = std::nan("");
+  CHECK(table_text(table, Detail::full).find("12.3457 taps") != std::string::npos);
+}
+
 TEST_CASE("A brief table leaves long columns out") {
   Table table = example();
   table.axes[1].values = std::vector<std::uint64_t>(20, 1);

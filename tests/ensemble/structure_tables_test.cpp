@@ -44,7 +44,8 @@ Measurement measurement(const std::vector<double>& along, double value) {
 
 /// Realizations whose curve of `part` is `curve` times 1 + 0.01 (r - 1), r = 0, 1, 2.
 EnsembleStructure three_curves(const char* part, const char* places, const char* name,
-                               const std::vector<double>& at, const std::vector<double>& curve) {
+                               const std::vector<double>& at, const std::vector<double>& curve,
+                               const char* counted = nullptr, double number = 0) {
   EnsembleStructure structure{.taps = {0}, .packings = {{}}};
   for (int r = 0; r < 3; ++r) {
     Measurement one{.part = part};
@@ -52,6 +53,7 @@ EnsembleStructure three_curves(const char* part, const char* places, const char*
     std::vector<double> values = curve;
     for (double& value : values) value *= 1 + 0.01 * (r - 1);
     one.quantities = {{.name = name, .places = places, .values = values, .long_name = "a curve"}};
+    if (counted != nullptr) one.quantities.push_back({.name = counted, .values = {number}});
     structure.packings[0].push_back({one});
   }
   return structure;
@@ -104,7 +106,7 @@ TEST_CASE("A part that all packings refuse says why, and others speak for those 
   CHECK(structure_tables("", {.taps = {0}, .packings = {{{}}}}, {}).empty());
 }
 
-TEST_CASE("The laws of the papers are found in the mean curves, with jackknife errors") {
+TEST_CASE("The laws of the papers are found in curves and counts, with jackknife errors") {
   const StructureSettings settings = all_structure();
   std::vector<double> at, curve;
   for (int k = 0; k < 160; ++k) {
@@ -125,15 +127,26 @@ TEST_CASE("The laws of the papers are found in the mean curves, with jackknife e
   CHECK(numbers(table, "eq7_phi_0_error")[0] == Approx(0.61 * 0.01 / std::sqrt(3.0)).epsilon(1e-4));
   CHECK(numbers(table, "eq7_z_star_error")[0] < 1e-6);
 
+  // The expected counts of an exponential tail; below the tail stands something else.
   std::vector<double> xi, rho;
   for (int k = 0; k < 75; ++k) {
+    const double low = std::pow(0.02 * k, 3), high = std::pow(0.02 * (k + 1), 3);
     xi.push_back(0.01 + 0.02 * k);
     const double v = xi.back() * xi.back() * xi.back();
-    rho.push_back(v < 0.15 ? 1 : 4e4 * std::exp(-v / 0.08));
+    const double tail = 4e4 * 0.08 * (std::exp(-low / 0.08) - std::exp(-high / 0.08));
+    rho.push_back(v < 0.15 ? 1 : tail / 0.02);
   }
-  table = structure_tables("", three_curves("pores", "xi", "rho_v", xi, rho), settings).at(0);
-  CHECK(numbers(table, "tail_v0")[0] == Approx(0.08).epsilon(1e-8));
-  CHECK(numbers(table, "tail_a_error")[0] == Approx(400 / std::sqrt(3.0)).epsilon(1e-6));
+  table = structure_tables("", three_curves("pores", "xi", "rho_xi", xi, rho), settings).at(0);
+  CHECK(numbers(table, "tail_v0")[0] == Approx(0.08).epsilon(1e-7));
+  CHECK(numbers(table, "tail_a")[0] == Approx(4e4).epsilon(1e-6));
+  const double error = 400 / std::sqrt(3.0);
+  CHECK(numbers(table, "tail_a_error")[0] == Approx(error).epsilon(1e-6));
+  // Student's t of 2 degrees of freedom.
+  CHECK(numbers(table, "tail_a_low_95")[0] == Approx(4e4 - 4.30265 * error).epsilon(1e-6));
+  CHECK(numbers(table, "tail_a_high_95")[0] == Approx(4e4 + 4.30265 * error).epsilon(1e-6));
+  CHECK(numbers(table, "tail_p")[0] > 0.99);
+  CHECK(std::get<std::vector<std::string>>(quantity(table, "tail_status").values)[0].find(
+            "the law is not refuted: F test over ") == 0);
 
   std::vector<double> free, density;
   for (int k = 0; k < 100; ++k) {
@@ -143,12 +156,26 @@ TEST_CASE("The laws of the papers are found in the mean curves, with jackknife e
     density.push_back(t > 0 ? KGamma().value(t, truth) : 0);
   }
   EnsembleStructure cells =
-      three_curves("voronoi", "free_volume", "free_volume_density", free, density);
+      three_curves("voronoi", "free_volume", "free_volume_density", free, density, "n_cells", 4000);
   table = structure_tables("", cells, settings).at(0);
-  CHECK(numbers(table, "k_gamma_k")[0] == Approx(14).epsilon(1e-7));
-  CHECK(numbers(table, "k_gamma_mean")[0] == Approx(0.4).epsilon(1e-8));
+  // The density at the middle of a bin is that of the bin to second order in its width.
+  CHECK(numbers(table, "k_gamma_k")[0] == Approx(14).epsilon(0.01));
+  CHECK(numbers(table, "k_gamma_mean")[0] == Approx(0.4).epsilon(1e-4));
   CHECK(std::get<std::vector<std::string>>(quantity(table, "normal_status").values)[0] ==
         "no packing");
+
+  std::vector<double> faces, shares;
+  for (int k = 0; k < 20; ++k) {
+    const double truth[] = {1, 13.9, 1.5};
+    faces.push_back(k);
+    shares.push_back(Normal().value(k, truth));
+  }
+  table = structure_tables(
+              "", three_curves("voronoi", "faces", "face_share", faces, shares, "n_cells", 4000),
+              settings)
+              .at(0);
+  CHECK(numbers(table, "normal_mean")[0] == Approx(13.9).epsilon(1e-4));
+  CHECK(numbers(table, "normal_width")[0] == Approx(1.5).epsilon(1e-3));
 }
 
 TEST_CASE("What is no curve of a law is not fitted, and says why") {
@@ -163,12 +190,12 @@ TEST_CASE("What is no curve of a law is not fitted, and says why") {
   std::vector<double> faces(13, 0.0), at(13);
   for (int k = 0; k < 13; ++k) at[k] = k;
   faces[12] = 1;
-  CHECK(status(three_curves("voronoi", "faces", "face_share", at, faces), "normal_mean") ==
-        "too few places that hold anything");
+  CHECK(status(three_curves("voronoi", "faces", "face_share", at, faces, "n_cells", 1000),
+               "normal_mean") == "too few places that hold anything");
   std::vector<double> rho(75, 0.0), xi(75);
   for (int k = 0; k < 75; ++k) xi[k] = 0.01 + 0.02 * k;
   rho[30] = 80;
-  CHECK(status(three_curves("pores", "xi", "rho_v", xi, rho), "tail_v0") ==
+  CHECK(status(three_curves("pores", "xi", "rho_xi", xi, rho), "tail_v0") ==
         "too few places that hold anything");
 }
 

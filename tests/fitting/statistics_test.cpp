@@ -36,6 +36,12 @@ TEST_CASE("quantiles agree with tables") {
   CHECK(student_two_sided(0.95, 30) == Approx(2.0422724563012373).epsilon(1e-11));
   CHECK(student_two_sided(0.95, 1e6) == Approx(1.959966356).epsilon(1e-8));
   CHECK(student_tails(2.0422724563012373, 30) == Approx(0.05).epsilon(1e-11));
+  CHECK(fisher_tail(2.0422724563012373 * 2.0422724563012373, 1, 30) == Approx(0.05).epsilon(1e-11));
+  CHECK(fisher_tail(3.3258345304130112, 5, 10) == Approx(0.05).epsilon(1e-9));
+  CHECK(chi_squared_tail(3.841458820694124, 1) == Approx(0.05).epsilon(1e-11));
+  CHECK(chi_squared_tail(18.307038053275146, 10) == Approx(0.05).epsilon(1e-11));
+  CHECK(chi_squared_tail(3.9402991361190605, 10) == Approx(0.95).epsilon(1e-11));
+  CHECK(chi_squared_tail(0, 3) == 1);
   CHECK(normal_tails(-1) == Approx(0.31731050786291415).epsilon(1e-13));
 }
 

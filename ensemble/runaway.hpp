@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "fitting/fit.hpp"
+
+namespace jostle {
+
+/// Whether the least squares have carried a free parameter away from all that the data could say of
+/// it: overflown, or with a standard error over 100 times a positive parameter, or a level over 100
+/// times the largest value of the curve. Such a number is neither stored nor printed.
+bool has_run_away(const Fit& fit, std::size_t parameter);
+
+/// "b and tau have run away: ...", or nothing.
+std::string runaways(const Fit& fit);
+
+}  // namespace jostle
