@@ -161,8 +161,7 @@ Eigen::VectorXd Fitter::describe_fit(Fit& fit) const {
   }
   const LinearProblem problem = linear_problem(model_, curve_, values, free_);
   fill_statistics(curve_, problem.residuals, fit);
-  const DependentErrors dependent =
-      dependent_errors(curve_, problem, options_.memory && !curve_.t.empty(), fit);
+  const DependentErrors dependent = dependent_errors(curve_, problem, options_.memory, fit);
   fill_covariance(problem, free_, fit);
   Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
