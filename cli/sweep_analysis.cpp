@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "cli/analyse_run.hpp"
 #include "cli/point_scenes.hpp"
 #include "cli/scene_file.hpp"
+#include "config/json_text.hpp"
 #include "ensemble/protocol_steps.hpp"
 #include "ensemble/sweep_curve.hpp"
 #include "results/layout.hpp"
@@ -28,7 +30,8 @@ struct Member {
   SweptValue swept;
   std::string others;                // values of the sweep that do not vary with x
   std::vector<double> realizations;  // of the value, by number; empty for other quantities
-  double y = not_a_number, y_error = not_a_number;
+  double y = not_a_number;
+  ErrorOf y_error;
   ObservableLabel label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
 };
@@ -95,26 +98,33 @@ double number_at(const Quantity* quantity, std::size_t place) {
   return numbers && place < numbers->size() ? (*numbers)[place] : not_a_number;
 }
 
+/// An error as tables hold it; where they do not give its degrees of freedom it is taken for known.
+ErrorOf error_of(double error, double dof) {
+  if (std::isnan(error)) return {};
+  return {error, std::isnan(dof) ? std::numeric_limits<double>::infinity() : dof};
+}
+
 /// A single value of an analysis with its error.
 bool take_single(Member& member, const Table& table, const std::string& name) {
   const Quantity* const found = quantity_named(table, name);
   if (!found || !found->axes.empty()) return false;
   member.y = number_at(found, 0);
-  member.y_error = number_at(quantity_named(table, name + "_error"), 0);
+  member.y_error = error_of(number_at(quantity_named(table, name + "_error"), 0),
+                            number_at(quantity_named(table, name + "_dof"), 0));
   member.label = {name, found->units, found->long_name, found->source};
   return true;
 }
 
-/// A parameter of a fit with its error: from resampled realizations where there is one.
+/// A parameter of a fit with its error, which counts realizations or memory.
 bool take_parameter(Member& member, const Table& table, const std::string& name) {
   for (const Quantity& axis : table.axes) {
     const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
     if (axis.name != "parameter" || !names) continue;
     const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
     if (place == names->size()) return false;
-    const Quantity* const resampled = quantity_named(table, "resampled_error");
     member.y = number_at(quantity_named(table, "value"), place);
-    member.y_error = number_at(resampled ? resampled : quantity_named(table, "error"), place);
+    member.y_error = error_of(number_at(quantity_named(table, "error"), place),
+                              number_at(quantity_named(table, "error_dof"), 0));
     member.label = {name, "1", "parameter of a fit", ""};
     return true;
   }
@@ -149,8 +159,21 @@ Streams streams_of(std::span<const Member> members) {
   return paired ? Streams::matched : Streams::independent;
 }
 
-Table curve_table(std::string name, std::span<const Member> members) {
-  std::vector<double> x, y, y_error;
+/// The point of the curve at this place of its axis.
+std::size_t point_at(const SweepCurve& curve, double x) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    if (std::abs(curve.x()[i] - x) <= 1e-9 * std::abs(x)) return i;
+    places.push_back(fmt::format("{:.6g}", curve.x()[i]));
+  }
+  throw BadInput(
+      fmt::format("reference {}: there is no such point; there are {}", x, joined(places, ", ")));
+}
+
+Table curve_table(std::string name, std::span<const Member> members,
+                  const std::optional<double>& reference) {
+  std::vector<double> x, y;
+  std::vector<ErrorOf> y_error;
   std::vector<std::vector<double>> realizations;
   for (const Member& member : members) {
     if (member.swept.name != members.front().swept.name) {
@@ -166,7 +189,9 @@ Table curve_table(std::string name, std::span<const Member> members) {
       members, [](const Member& member) { return !member.realizations.empty(); });
   const SweepCurve curve =
       means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
-  return sweep_table(std::move(name), members.front().swept, members.front().label, curve);
+  std::optional<std::size_t> point;
+  if (reference) point = point_at(curve, *reference);
+  return sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
 }
 
 std::vector<Member> members_of(std::span<const ResultsFile* const> files,
@@ -221,7 +246,7 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files,
       }
       for (std::size_t i = 0; i < order.size(); ++i) {
         Table table = curve_table(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
-                                  groups[order[i]]);
+                                  groups[order[i]], request.settings.reference);
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
         tables.push_back(std::move(table));
       }

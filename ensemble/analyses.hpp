@@ -58,6 +58,8 @@ struct SweepSettings {
   std::string quantity = "value";
   std::optional<std::uint64_t> last = std::nullopt;  // of "value"; absent: the last quarter
   std::string against;                               // JSON pointer; empty: the first of the sweep
+  /// The point, on the axis as drawn, that all others are compared with; absent: neighbours.
+  std::optional<double> reference = std::nullopt;
   bool operator==(const SweepSettings&) const = default;
 };
 
@@ -75,7 +77,8 @@ class SpectrumAnalysis {
 
   void add(std::span<const double> values);  // [n_taps]
   /// After at least one realization: frequency; density, its error, lines a bin; the slope, its
-  /// error; the trend. Note "verdict" says whether a drift fakes the low frequencies.
+  /// error; the trend. Note "drift" says whether a drift fakes the low frequencies,
+  /// "verdict" how the slope compares with that of an AR(1) process of the same memory.
   Table table() const;
 
  private:
@@ -87,7 +90,7 @@ class SpectrumAnalysis {
 };
 
 /// Value, deviation, autocorrelation time, each with its error; the blocking levels; trend and
-/// halves. Note "verdict" is "reached" or "not reached: " and why.
+/// halves. Note "verdict" begins with "reached", "not reached" or "cannot decide", and says why.
 Table steady_table(const AnalysedSeries& series, const SteadyState& state);
 
 }  // namespace jostle

@@ -6,7 +6,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "ensemble/moments.hpp"
+#include "ensemble/line.hpp"
 
 namespace jostle {
 
@@ -14,17 +14,19 @@ namespace {
 
 constexpr double window_in_times = 6;
 
-// Sums of x[i] x[i + lag] for lags 0 .. n / 2, of a series about its mean.
-std::vector<double> lagged_products(std::span<const double> series) {
-  Moments moments;
-  for (const double value : series) moments.add(value);
+// Sums of x[i] x[i + lag] for lags 0 .. n / 2, of a series about its mean or its line.
+std::vector<double> lagged_products(std::span<const double> series, Removed removed) {
+  const Line line = fit_line(series);
+  const double slope = removed == Removed::line ? line.slope : 0;
   // Zeros up to here keep the ends of the series apart in the cyclic transform.
   std::vector<double> padded(std::bit_ceil(series.size() + series.size() / 2 + 1), 0.0);
-  for (std::size_t i = 0; i < series.size(); ++i) padded[i] = series[i] - moments.mean();
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    padded[i] = (series[i] - line.middle) - slope * (static_cast<double>(i) - line.center);
+  }
   Eigen::FFT<double> fft;
   std::vector<std::complex<double>> transform;
   fft.fwd(transform, padded);
-  for (auto& line : transform) line = std::norm(line);
+  for (auto& power : transform) power = std::norm(power);
   std::vector<double> products;
   fft.inv(products, transform);
   products.resize(series.size() / 2 + 1);
@@ -37,7 +39,7 @@ void Autocorrelation::add(std::span<const double> series) {
   assert((n_ == 0 || series.size() == n_) && series.size() >= 4);
   n_ = series.size();
   ++realizations_;
-  const std::vector<double> products = lagged_products(series);
+  const std::vector<double> products = lagged_products(series, removed_);
   products_.resize(products.size(), 0.0);
   for (std::size_t lag = 0; lag < products.size(); ++lag) products_[lag] += products[lag];
 }
@@ -56,8 +58,10 @@ AutocorrelationTime Autocorrelation::result() const {
   }
   const bool found = lag < products_.size();
   const std::size_t last = found ? lag : products_.size() - 1;
-  // Subtracting the mean of a series lowers every covariance by the variance of that mean.
-  const double lowered = 2 * result.time * biased_variance / static_cast<double>(n_);
+  // Subtracting the mean of a series lowers every covariance by the variance of that mean, and its
+  // slope by as much again at lags that are short against the series.
+  const double times = removed_ == Removed::line ? 2 : 1;
+  const double lowered = times * 2 * result.time * biased_variance / static_cast<double>(n_);
   result.variance = biased_variance + lowered;
   result.time = 0.5;
   for (std::size_t t = 1; t <= last; ++t) {

@@ -18,16 +18,23 @@ struct AutocorrelationTime {
   bool found() const { return window > 0; }
 };
 
-/// Pooled over series of one length, at least 4, each about its own mean. The sum ends at the first
-/// lag of at least 6 tau (Madras and Sokal 1988, doi:10.1007/BF01022990), up to half a series; the
-/// bias by subtracting each series' own mean is put right to first order, and the error is that of
-/// Wolff 2004, doi:10.1016/S0010-4655(03)00467-3, eqs. 32 and 42.
+/// What is taken from every series first: its mean, or its straight line, so that a drift does not
+/// pass for memory.
+enum class Removed { mean, line };
+
+/// Pooled over series of one length, at least 4, each about its own mean or line. The sum ends at
+/// the first lag of at least 6 tau (Madras and Sokal 1988, doi:10.1007/BF01022990), up to half a
+/// series; the bias by subtracting each series' own mean or line is put right to first order, and
+/// the error is that of Wolff 2004, doi:10.1016/S0010-4655(03)00467-3, eqs. 32 and 42.
 class Autocorrelation {
  public:
+  explicit Autocorrelation(Removed removed = Removed::mean) : removed_(removed) {}
+
   void add(std::span<const double> series);
   AutocorrelationTime result() const;
 
  private:
+  Removed removed_;
   std::size_t n_ = 0, realizations_ = 0;
   std::vector<double> products_;  // [n / 2 + 1], by lag, summed over taps and realizations
 };

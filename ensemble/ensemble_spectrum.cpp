@@ -31,7 +31,7 @@ Points in_band(std::span<const double> frequency, std::span<const double> log_de
 
 LogLogSlope straight_line(const Points& points) {
   const std::size_t n = points.x.size();
-  if (n < 3) return {not_a_number, not_a_number, n};
+  if (n < 3) return {not_a_number, not_a_number, 0, n};
   Moments x, y;
   for (std::size_t i = 0; i < n; ++i) x.add(points.x[i]), y.add(points.y[i]);
   double xx = 0, xy = 0, squares = 0;
@@ -44,7 +44,8 @@ LogLogSlope straight_line(const Points& points) {
     const double residual = points.y[i] - y.mean() - slope * (points.x[i] - x.mean());
     squares += residual * residual;
   }
-  return {slope, std::sqrt(squares / static_cast<double>(n - 2) / xx), n};
+  return {slope, std::sqrt(squares / static_cast<double>(n - 2) / xx), static_cast<double>(n - 2),
+          n};
 }
 
 std::vector<double> bin_means(const Spectrum& spectrum, const FrequencyBins& bins) {
@@ -145,8 +146,22 @@ LogLogSlope SpectrumAverage::slope(const Band& band) const {
   Moments slopes;
   for (std::size_t r = 0; r < densities_.size(); ++r) slopes.add(without(r).slope);
   // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
-  slope.error = slopes.sigma() * std::sqrt(static_cast<double>(densities_.size() - 1));
+  slope.dof = static_cast<double>(densities_.size() - 1);
+  slope.error = slopes.sigma() * std::sqrt(slope.dof);
   return slope;
+}
+
+double SpectrumAverage::autoregressive_slope(double time, const Band& band) const {
+  const double rho = (2 * time - 1) / (2 * time + 1);
+  const std::vector<double> lines = expected_welch(
+      options_, [rho](std::size_t lag) { return std::pow(rho, static_cast<double>(lag)); });
+  std::vector<double> means;
+  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+    Moments bin;
+    for (std::size_t k = bins_.first[b]; k < bins_.first[b + 1]; ++k) bin.add(lines[k]);
+    means.push_back(bin.mean());
+  }
+  return log_log_slope(bins_.frequency, means, band).slope;
 }
 
 }  // namespace jostle

@@ -30,6 +30,7 @@ struct Band {
 struct LogLogSlope {
   double slope = 0;
   double error = 0;          // standard error
+  double dof = 0;            // degrees of freedom of the error
   std::size_t n_points = 0;  // in the band
 };
 
@@ -56,10 +57,14 @@ class SpectrumAverage {
 
   /// After at least one series.
   EnsembleSpectrum result() const;
-  /// The slope of the mean spectrum. The mean of k independent exponential variables has a
-  /// logarithm that is low by 1/(2 k) + 1/(12 k^2) on average: this is put right before the fit.
-  /// The error is a jackknife over realizations; of fewer than 3, from the scatter about the line.
+  /// The slope of the mean spectrum. The mean of k independent exponential variables, chi
+  /// squared of 2 k degrees of freedom, has a logarithm that is low by 1/(2 k) + 1/(12 k^2) on
+  /// average: this is put right before the fit. The error is a jackknife over realizations, of
+  /// M - 1 degrees of freedom; of fewer than 3, from the scatter about the line.
   LogLogSlope slope(const Band& band) const;
+  /// What slope() is on average for an AR(1) process of autocorrelation time `time` >= 1/2, without
+  /// its scatter: the same windows, bins, band and straight line.
+  double autoregressive_slope(double time, const Band& band) const;
 
  private:
   std::vector<double> sound_log_density(std::size_t left_out) const;

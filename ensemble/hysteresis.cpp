@@ -1,11 +1,12 @@
 #include "ensemble/hysteresis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
-#include "ensemble/jackknife.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {
@@ -47,8 +48,10 @@ Loop loop_between(std::span<const double> strengths, const std::vector<std::size
     areas.add(area);
   }
   loop.area = areas.mean();
-  loop.error = areas.standard_error();  // the jackknife of a mean
   loop.realizations = areas.count();
+  if (areas.count() > 1)
+    loop.error = {areas.standard_error(), static_cast<double>(areas.count() - 1)};
+  loop.p = p_value(loop.area, loop.error);
   return loop;
 }
 
@@ -77,7 +80,7 @@ void add_steps(const ProtocolSteps& steps, Table& table) {
 
 void add_values(const ObservableLabel& observable, std::span<const double> values,
                 std::size_t n_steps, std::uint32_t realizations, Table& table) {
-  std::vector<double> means, errors, half_widths;
+  std::vector<double> means, errors, dof;
   std::vector<std::uint64_t> counts;
   for (std::size_t step = 0; step < n_steps; ++step) {
     Moments moments;
@@ -86,7 +89,7 @@ void add_values(const ObservableLabel& observable, std::span<const double> value
     }
     means.push_back(moments.mean());
     errors.push_back(moments.standard_error());
-    half_widths.push_back(student_half_width(moments.standard_error(), moments.count()));
+    dof.push_back(moments.count() > 1 ? static_cast<double>(moments.count() - 1) : 0);
     counts.push_back(moments.count());
   }
   const auto add = [&](const std::string& suffix, auto column, const std::string& units,
@@ -96,14 +99,14 @@ void add_values(const ObservableLabel& observable, std::span<const double> value
   };
   add("", std::move(means), observable.units, observable.long_name + ", mean of the last taps");
   add("_error", std::move(errors), observable.units, "standard error over realizations");
-  add("_half_width_68", std::move(half_widths), observable.units,
-      "half the 68 % interval, Student's t");
+  add("_dof", std::move(dof), "1", "degrees of freedom of the error");
   add("_count", std::move(counts), "1", "realizations that reached the step's end");
 }
 
 void add_loops(const std::vector<Loop>& all, const std::string& units, Table& table) {
   std::vector<std::uint64_t> index, earlier, later, counts;
-  std::vector<double> lowest, highest, areas, errors, half_widths;
+  std::vector<double> lowest, highest, areas, errors, dof, p, corrected;
+  std::vector<std::string> statements;
   for (const Loop& loop : all) {
     index.push_back(index.size());
     earlier.push_back(loop.earlier);
@@ -112,8 +115,11 @@ void add_loops(const std::vector<Loop>& all, const std::string& units, Table& ta
     lowest.push_back(loop.lowest);
     highest.push_back(loop.highest);
     areas.push_back(loop.area);
-    errors.push_back(loop.error);
-    half_widths.push_back(student_half_width(loop.error, loop.realizations));
+    errors.push_back(error_or_nan(loop.error));
+    dof.push_back(loop.error.dof);
+    p.push_back(loop.p);
+    corrected.push_back(loop.corrected);
+    statements.push_back(loop.statement());
   }
   table.axes.push_back({"loop", {"loop"}, std::move(index), "1", "pair of branches", ""});
   const auto add = [&](const char* name, auto column, const std::string& unit,
@@ -126,8 +132,12 @@ void add_loops(const std::vector<Loop>& all, const std::string& units, Table& ta
   add("highest_strength", std::move(highest), "1", "where they end to");
   add("area", std::move(areas), units,
       "integral over strength of the later branch less the earlier");
-  add("area_error", std::move(errors), units, "jackknife error over realizations");
-  add("area_half_width_68", std::move(half_widths), units, "half the 68 % interval, Student's t");
+  add("area_error", std::move(errors), units, "standard error over realizations");
+  add("area_dof", std::move(dof), "1", "degrees of freedom of area_error");
+  add("area_p", std::move(p), "1", "of no area, this loop alone, Student's t");
+  add("area_p_corrected", std::move(corrected), "1",
+      "the same for all loops together, Holm 1979, Scand. J. Statist. 6, 65");
+  add("area_verdict", std::move(statements), "1", "whether the branches differ");
   add("area_count", std::move(counts), "1", "realizations that have all steps of both branches");
 }
 
@@ -159,7 +169,34 @@ std::vector<Loop> loops(std::span<const double> strengths, std::span<const doubl
     found.back().earlier = b - 1;
     found.back().later = b;
   }
+  std::vector<double> p;
+  for (const Loop& loop : found) p.push_back(loop.p);
+  p = corrected_for_number(p);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    Loop& loop = found[i];
+    loop.corrected = p[i];
+    const double one = Loop::level / static_cast<double>(found.size());
+    loop.detectable = loop.error.known()
+                          ? loop.error.error * smallest_effect_found(one, loop.error.dof)
+                          : std::numeric_limits<double>::infinity();
+  }
   return found;
+}
+
+std::string Loop::statement() const {
+  if (!error.known()) {
+    return fmt::format("cannot decide with {} realization{}: an area needs two for its error",
+                       realizations, realizations == 1 ? "" : "s");
+  }
+  if (corrected < level) {
+    return fmt::format("the branches differ: area {:+.2g} (p = {:.2g}, {} realizations)", area,
+                       corrected, realizations);
+  }
+  return fmt::format(
+      "cannot decide with {} realizations: p = {:.2g}, only an area of {:.2g} or more would have "
+      "been "
+      "found with 80 %",
+      realizations, corrected, detectable);
 }
 
 std::vector<double> step_values(const ProtocolSteps& steps, std::span<const double> series,

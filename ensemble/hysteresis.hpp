@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ensemble/protocol_steps.hpp"
+#include "ensemble/student_tests.hpp"
 #include "ensemble/table.hpp"
 #include "structure/observables.hpp"
 
@@ -20,8 +22,14 @@ struct Loop {
   std::size_t earlier = 0, later = 0;  // branches
   double lowest = 0, highest = 0;      // strengths
   double area = 0;                     // mean over realizations; NaN without any
-  double error = 0;                    // jackknife over realizations; NaN below two
+  ErrorOf error{};                     // over realizations, Student's; none below two
+  double p = 1, corrected = 1;         // of no area: by itself, and for all loops (Holm 1979)
+  double detectable = 0;               // area that would have been found with probability 0.8
   std::size_t realizations = 0;        // that have all steps of both branches
+
+  static constexpr double level = 0.05;  // false alarms, all loops together
+  /// "encloses an area" or "cannot decide", with the test and what would have refuted it.
+  std::string statement() const;
 };
 
 /// Of every branch and the next. values: [n_steps, n_realizations], NaN where there is none.

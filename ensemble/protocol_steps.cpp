@@ -45,6 +45,12 @@ std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> p
     last += stage.count;
     steps.windows.push_back({last + 1 - std::min(last_taps, stage.count), last});
   }
+  const auto same = [&](double strength) { return strength == steps.strengths.front(); };
+  if (std::ranges::all_of(steps.strengths, same)) {
+    return std::string(
+        "The protocol has taps of one strength only, so there is no branch: hysteresis "
+        "needs a ramp, and a loop one up and one down.");
+  }
   return steps;
 }
 

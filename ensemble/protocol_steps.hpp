@@ -33,7 +33,8 @@ struct ProtocolSteps {
 };
 
 /// One step a stage, with its last `last_taps` taps (at least 1; all of a shorter stage). A message
-/// where the stages tap in different ways: their strengths cannot be compared.
+/// where the stages tap in different ways, whose strengths cannot be compared, or all with one
+/// strength.
 std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> protocol,
                                                         std::uint64_t last_taps);
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "ensemble/trend.hpp"
+#include "ensemble/line.hpp"
 
 namespace jostle {
 
@@ -140,6 +140,33 @@ std::vector<double> relative_errors(const SpectrumOptions& options, std::size_t 
     errors.push_back(std::sqrt(sum / (static_cast<double>(segments) * n_lines)));
   }
   return errors;
+}
+
+std::vector<double> expected_welch(const SpectrumOptions& options,
+                                   const std::function<double(std::size_t)>& covariance) {
+  const std::size_t n = options.segment;
+  assert(n >= 2);
+  // The correlation of the window with itself, by its transform; zeros keep its ends apart.
+  std::vector<double> padded = weights_of(options.window, n);
+  padded.resize(2 * n, 0.0);
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> transform;
+  fft.fwd(transform, padded);
+  for (auto& line : transform) line = std::norm(line);
+  std::vector<double> overlap;
+  fft.inv(overlap, transform);
+  // Lags of both signs, folded on to a period of n: lines k / n do not tell them apart.
+  std::vector<double> folded(n, 0.0);
+  folded[0] = overlap[0] * covariance(0);
+  for (std::size_t lag = 1; lag < n; ++lag) {
+    const double term = overlap[lag] * covariance(lag);
+    folded[lag] += term;
+    folded[n - lag] += term;
+  }
+  fft.fwd(transform, folded);
+  std::vector<double> lines;
+  for (std::size_t k = 0; k <= n / 2; ++k) lines.push_back(transform[k].real());
+  return lines;
 }
 
 std::size_t fast_length(std::size_t n) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,12 @@ std::size_t first_sound_line(const SpectrumOptions& options);
 /// `options.segment` > 0; every element of `lines` in 1 .. n/2 + 1.
 std::vector<double> relative_errors(const SpectrumOptions& options, std::size_t segments,
                                     std::span<const std::size_t> lines);
+
+/// Means of the lines of welch(), up to a common factor, for a stationary process with this
+/// covariance at lags 0 .. segment - 1; what detrending takes from the first sound line on is
+/// left out. [segment / 2 + 1].
+std::vector<double> expected_welch(const SpectrumOptions& options,
+                                   const std::function<double(std::size_t)>& covariance);
 
 /// The largest length of at most n that has no prime factor above 5, so that its transform is
 /// fast. n >= 1.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 #include "ensemble/analyses.hpp"
 
@@ -32,12 +34,46 @@ SpectrumOptions prepared(const AnalysedSeries& series, const SpectrumSettings& s
   return spectrum_options(settings, series.n_taps());
 }
 
-std::string verdict(const Trend& trend, Detrending detrending) {
-  if (!trend.drifts()) return "no drift found";
-  const std::string drift = fmt::format("drift: {:+.2g} over the taps ({:.0f} % of the variance)",
-                                        trend.change, 100 * trend.share);
+std::string drift_verdict(const Trend& trend, Detrending detrending) {
+  if (!trend.drifts()) return trend.statement();
+  const std::string drift =
+      fmt::format("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);
   if (detrending == Detrending::linear) return drift + "; its straight part was removed";
   return drift + "; it adds a slope of -2 at low frequencies: use linear detrending or later taps";
+}
+
+/// The slope that memory alone gives.
+struct AutoregressiveSlope {
+  double slope = 0;
+  ErrorOf error{};  // from that of the time
+  double p = 1;     // of the measured slope being this one
+};
+
+AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
+                                   const AutocorrelationTime& memory, const Band& band) {
+  const auto at = [&](double time) {
+    return average.autoregressive_slope(std::max(time, 0.5), band);
+  };
+  AutoregressiveSlope found{.slope = at(memory.time)};
+  found.error = {0.5 * std::abs(at(memory.time + memory.error) - at(memory.time - memory.error)),
+                 std::numeric_limits<double>::infinity()};
+  found.p =
+      p_value(measured.slope - found.slope, combined({measured.error, measured.dof}, found.error));
+  return found;
+}
+
+std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& memory,
+                          const AutocorrelationTime& time) {
+  if (std::isnan(slope.slope)) return "no slope: fewer than three points in the band";
+  const std::string alone =
+      fmt::format("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
+                  time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
+  if (std::isnan(memory.p)) return alone + "; no test";
+  if (memory.p >= 0.05) {
+    return fmt::format("{}: the slope tells no more than that memory (p = {:.2g})", alone,
+                       memory.p);
+  }
+  return fmt::format("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
 }
 
 }  // namespace
@@ -71,6 +107,9 @@ Table SpectrumAnalysis::table() const {
                                              static_cast<double>(options_.segment),
                                    .highest = 0.5});
   const LogLogSlope slope = average_.slope(band);
+  const AutoregressiveSlope memory = autoregressive(average_, slope, trend.memory, band);
+  const double dof = spectrum.realizations > 1 ? static_cast<double>(spectrum.realizations - 1)
+                                               : std::numeric_limits<double>::infinity();
   std::vector<std::uint64_t> lines;
   for (std::size_t b = 0; b < spectrum.bins.n_bins(); ++b)
     lines.push_back(spectrum.bins.n_lines(b));
@@ -80,40 +119,34 @@ Table SpectrumAnalysis::table() const {
   Table table{.name = "spectrum/" + series_.observable, .axes = {}, .quantities = {}, .notes = {}};
   table.axes = {{"frequency", along, spectrum.bins.frequency, "1/taps",
                  "geometric mean of the lines of a bin", ""}};
-  table.quantities = {
-      {"density", along, spectrum.density, density_units, "one-sided power spectral density",
-       welch_1967},
-      {"density_error", along, spectrum.error, density_units,
-       spectrum.realizations > 1 ? "standard error over realizations"
-                                 : "standard error for Gaussian noise",
-       ""},
-      {"lines", along, lines, "1", "lines of a bin", ""},
-      {"slope",
-       {},
-       std::vector{slope.slope},
-       "1",
-       "log-log slope in the band",
-       "Philippe & Bideau 2001, fig. 3: -1 to -1.5"},
-      {"slope_error",
-       {},
-       std::vector{slope.error},
-       "1",
-       spectrum.realizations > 2 ? "jackknife over realizations"
-                                 : "from the scatter about the line",
-       ""},
-      {"drift",
-       {},
-       std::vector{trend.change},
-       series_.units,
-       "change of the mean over the taps, by a straight line",
-       ""},
-      {"drift_error",
-       {},
-       std::vector{trend.slope_error * static_cast<double>(series_.n_taps())},
-       series_.units,
-       "its standard error",
-       ""},
-      {"drift_share", {}, std::vector{trend.share}, "1", "of the variance in time", ""}};
+  table.quantities = {{"density", along, spectrum.density, density_units,
+                       "one-sided power spectral density", welch_1967},
+                      {"density_error", along, spectrum.error, density_units,
+                       spectrum.realizations > 1 ? "standard error over realizations"
+                                                 : "standard error for Gaussian noise",
+                       ""},
+                      {"lines", along, lines, "1", "lines of a bin", ""}};
+  const auto add = [&](const char* name, double value, const std::string& units,
+                       const char* meaning, const char* source = "") {
+    table.quantities.push_back({name, {}, std::vector{value}, units, meaning, source});
+  };
+  add("density_dof", dof, "1", "degrees of freedom of density_error");
+  add("slope", slope.slope, "1", "log-log slope in the band",
+      "Philippe & Bideau 2001, fig. 3: -1 to -1.5");
+  add("slope_error", slope.error, "1",
+      spectrum.realizations > 2 ? "jackknife over realizations"
+                                : "from the scatter about the line");
+  add("slope_dof", slope.dof, "1", "degrees of freedom of slope_error");
+  add("ar1_slope", memory.slope, "1",
+      "in the same band, of an AR(1) process of the same autocorrelation time");
+  add("ar1_slope_error", memory.error.error, "1", "standard error, from that of the time");
+  add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
+  add("drift", trend.line.value, series_.units,
+      "change of the mean over the taps, by a straight line");
+  add("drift_error", error_or_nan(trend.line.error()), series_.units, "standard error");
+  add("drift_dof", trend.line.error().dof, "1", "degrees of freedom of drift_error");
+  add("drift_p", trend.tests > 0 ? trend.p : std::nan(""), "1", "of no drift");
+  add("drift_share", trend.share, "1", "of the variance in time");
   table.notes = {{"observable", series_.observable},
                  {"taps", fmt::format("{} to {}", series_.first_tap, series_.last_tap)},
                  {"realizations", fmt::to_string(spectrum.realizations)},
@@ -123,7 +156,8 @@ Table SpectrumAnalysis::table() const {
                                           spectrum.segments, options_.segment, options_.overlap)},
                  {"band", fmt::format("{:.4g} to {:.4g} per tap, {} points", band.lowest,
                                       band.highest, slope.n_points)},
-                 {"verdict", verdict(trend, options_.detrending)}};
+                 {"drift", drift_verdict(trend, options_.detrending)},
+                 {"verdict", slope_verdict(slope, memory, trend.memory)}};
   return table;
 }
 

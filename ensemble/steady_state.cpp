@@ -6,43 +6,25 @@
 #include <cmath>
 #include <limits>
 
-#include "fitting/distributions.hpp"
-
 namespace jostle {
 
 namespace {
 
-constexpr double significance = 0.0027;  // 3 standard errors of a normal variable
-
-Difference halves_of(const Moments& differences, const BlockingResult& blocking) {
-  Difference halves{.value = differences.mean()};
-  double dof = static_cast<double>(differences.count()) - 1;
-  halves.error = differences.standard_error();
-  if (differences.count() == 1) {
-    // Each half has twice the variance of the whole.
-    halves.error = 2 * blocking.error();
-    dof =
-        blocking.plateau ? static_cast<double>(blocking.levels[*blocking.plateau].n_blocks) - 1 : 1;
-  }
-  if (halves.value == 0) return halves;
-  halves.tails = halves.error > 0 ? student_tails(halves.value / halves.error, dof) : 0;
-  return halves;
-}
-
-std::string reasons_against(const SteadyState& state) {
+// What keeps the taps from deciding; empty where nothing does.
+std::string reasons_for_doubt(const SteadyState& state) {
   std::string reasons;
   const auto add = [&](const std::string& reason) {
     reasons += (reasons.empty() ? "" : "; ") + reason;
   };
-  if (state.trend.drifts()) {
-    add(fmt::format("it drifts: {:+.2g} over {} taps, error {:.1g}", state.trend.change,
-                    state.n_taps, state.trend.slope_error * static_cast<double>(state.n_taps)));
-  }
-  if (state.halves.tails < significance) {
-    add(fmt::format("its halves differ by {:.2g}, error {:.1g}", state.halves.value,
-                    state.halves.error));
-  }
   const auto n = static_cast<double>(state.n_taps);
+  if (state.trend.tests == 0) {
+    add("one realization, too short for its memory, tells nothing of a drift");
+  } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
+    add(fmt::format(
+        "only a change of {:.2g} or more over the taps, {:.2g} deviations of single taps, "
+        "would have been found with 80 %",
+        state.trend.detectable, state.detectable()));
+  }
   if (!state.autocorrelation.found() ||
       n < SteadyStateTest::fewest_times * state.autocorrelation.time) {
     add(fmt::format("{} taps are fewer than {} autocorrelation times ({:.3g} taps{})", state.n_taps,
@@ -63,15 +45,38 @@ double sigma_error(const SteadyState& state) {
 
 }  // namespace
 
+double SteadyState::detectable() const {
+  return trend.detectable == 0 ? 0 : trend.detectable / trend.sigma;
+}
+
+Verdict SteadyState::verdict() const {
+  if (trend.drifts()) return Verdict::not_reached;
+  return reasons_for_doubt(*this).empty() ? Verdict::reached : Verdict::cannot_decide;
+}
+
+std::string SteadyState::statement() const {
+  switch (verdict()) {
+    case Verdict::not_reached:
+      return "not reached: " + trend.statement();
+    case Verdict::reached:
+      return fmt::format(
+          "reached: {}; a change of {:.2g} over the taps, {:.2g} deviations of single taps, would "
+          "have been found with 80 %",
+          trend.statement(), trend.detectable, detectable());
+    case Verdict::cannot_decide:
+      return fmt::format("cannot decide with {} realization{}: {}{}{}", realizations,
+                         realizations == 1 ? "" : "s", trend.tests > 0 ? trend.statement() : "",
+                         trend.tests > 0 ? ", but " : "", reasons_for_doubt(*this));
+  }
+  return {};
+}
+
 void SteadyStateTest::add(std::span<const double> series) {
   assert((n_taps_ == 0 || series.size() == n_taps_) && series.size() >= fewest_taps);
   n_taps_ = series.size();
-  Moments all, first, second;
+  Moments all;
   for (const double value : series) all.add(value);
-  for (const double value : series.first(n_taps_ / 2)) first.add(value);
-  for (const double value : series.last(n_taps_ / 2)) second.add(value);
   means_.add(all.mean());
-  halves_.add(second.mean() - first.mean());
   variances_.add(all.sigma() * all.sigma());
   blocking_.add(series);
   autocorrelation_.add(series);
@@ -85,19 +90,21 @@ SteadyState SteadyStateTest::result() const {
                     .value = means_.mean(),
                     .blocking = blocking_.result(),
                     .autocorrelation = autocorrelation_.result(),
-                    .trend = trend_.result(),
-                    .halves = {},
-                    .reasons_against = {}};
+                    .trend = trend_.result()};
   const auto realizations = static_cast<double>(state.realizations);
   const bool single = state.realizations == 1;
-  state.error = single ? state.blocking.error() : means_.standard_error();
+  const double blocks =
+      state.blocking.plateau
+          ? static_cast<double>(state.blocking.levels[*state.blocking.plateau].n_blocks)
+          : 2;
+  state.error = single ? ErrorOf{state.blocking.error(), blocks - 1}
+                       : ErrorOf{means_.standard_error(), realizations - 1};
   state.realization_sigma = single ? std::numeric_limits<double>::quiet_NaN()
                                    : means_.standard_error() * std::sqrt(realizations);
   state.sigma = std::sqrt(state.autocorrelation.variance);
   state.sigma_error = single || state.sigma == 0 ? sigma_error(state)
                                                  : variances_.standard_error() / (2 * state.sigma);
-  state.halves = halves_of(halves_, state.blocking);
-  state.reasons_against = reasons_against(state);
+  state.sigma_dof = single ? std::numeric_limits<double>::infinity() : realizations - 1;
   return state;
 }
 

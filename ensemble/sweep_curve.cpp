@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <optional>
-#include <span>
 
 #include "ensemble/moments.hpp"
 
@@ -12,11 +10,9 @@ namespace jostle {
 
 namespace {
 
-Moments folded(std::span<const double> values, std::optional<std::size_t> left_out = std::nullopt) {
+Moments folded(std::span<const double> values) {
   Moments moments;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i != left_out) moments.add(values[i]);
-  }
+  for (const double value : values) moments.add(value);
   return moments;
 }
 
@@ -27,12 +23,40 @@ std::vector<T> chosen(const std::vector<T>& values, const std::vector<std::size_
   return kept;
 }
 
+double square(double x) {
+  return x * x;
+}
+
+// Sum of squared deviations.
+double squares_of(const Moments& moments) {
+  return square(moments.sigma()) * static_cast<double>(moments.count());
+}
+
+double sum_of_squares(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return sum;
+}
+
 }  // namespace
 
-SweepCurve::SweepCurve(std::vector<double> x, std::vector<double> y, std::vector<double> error)
+SweepCurve::SweepCurve(std::vector<double> x, std::vector<double> y, std::vector<ErrorOf> error)
     : x_(std::move(x)), y_(std::move(y)), error_(std::move(error)), count_(x_.size(), 0) {
   assert(y_.size() == x_.size() && error_.size() == x_.size());
   sort_and_drop();
+  fitted_y_ = y_;
+  const auto serves = [](const ErrorOf& one) {
+    return one.dof + 1 >= enough_for_own && one.error > 0;
+  };
+  own_errors_ = std::ranges::all_of(error_, serves);
+  if (own_errors_) return;
+  double variance = 0;
+  for (const ErrorOf& one : error_) {
+    if (!one.known() || !std::isfinite(one.dof)) continue;
+    variance += one.dof * one.error * one.error;
+    pooled_.dof += one.dof;
+  }
+  if (pooled_.known()) pooled_.error = std::sqrt(variance / pooled_.dof);
 }
 
 SweepCurve::SweepCurve(std::vector<double> x, std::vector<std::vector<double>> realizations,
@@ -42,10 +66,15 @@ SweepCurve::SweepCurve(std::vector<double> x, std::vector<std::vector<double>> r
   for (const std::vector<double>& values : realizations_) {
     const Moments moments = folded(values);
     y_.push_back(moments.mean());
-    error_.push_back(moments.standard_error());
     count_.push_back(moments.count());
+    const bool several = moments.count() > 1;
+    error_.push_back(
+        several ? ErrorOf{moments.standard_error(), static_cast<double>(moments.count() - 1)}
+                : ErrorOf{});
   }
   sort_and_drop();
+  fitted_y_ = y_;
+  streams_ == Streams::matched ? pool_matched() : pool_independent();
 }
 
 void SweepCurve::sort_and_drop() {
@@ -61,36 +90,100 @@ void SweepCurve::sort_and_drop() {
   if (has_realizations()) realizations_ = chosen(realizations_, order);
 }
 
-bool SweepCurve::errors_known() const {
-  return std::ranges::all_of(error_, [](double error) { return error > 0; });
+void SweepCurve::pool_independent() {
+  double squares = 0;
+  for (std::size_t i = 0; i < n_points(); ++i) {
+    squares += squares_of(folded(realizations_[i]));
+    pooled_.dof += static_cast<double>(count_[i] - 1);
+  }
+  if (pooled_.known()) pooled_.error = std::sqrt(squares / pooled_.dof);
+  own_errors_ = n_points() > 0 && std::ranges::min(count_) >= enough_for_own;
 }
 
-std::vector<std::vector<std::vector<double>>> SweepCurve::left_out() const {
-  std::vector<std::vector<std::vector<double>>> groups;
-  if (streams_ == Streams::matched) {
-    std::size_t n = 0;
-    for (const auto& values : realizations_) n = std::max(n, values.size());
-    groups.emplace_back();
-    for (std::size_t r = 0; r < n; ++r) {
-      const bool present = std::ranges::any_of(realizations_, [r](const auto& values) {
-        return r < values.size() && !std::isnan(values[r]);
-      });
-      if (!present) continue;
-      std::vector<double> y;
-      for (const auto& values : realizations_) y.push_back(folded(values, r).mean());
-      groups.back().push_back(std::move(y));
-    }
-    return groups;
+void SweepCurve::pool_matched() {
+  if (n_points() == 0) return;
+  for (std::size_t r = 0; r < realizations_.front().size(); ++r) {
+    const bool everywhere = std::ranges::all_of(realizations_, [r](const auto& values) {
+      return r < values.size() && !std::isnan(values[r]);
+    });
+    if (everywhere) common_.push_back(r);
   }
-  for (std::size_t i = 0; i < realizations_.size(); ++i) {
-    groups.emplace_back();
-    for (std::size_t r = 0; r < realizations_[i].size(); ++r) {
-      if (std::isnan(realizations_[i][r])) continue;
-      groups.back().push_back(y_);
-      groups.back().back()[i] = folded(realizations_[i], r).mean();
+  if (common_.empty()) return;
+  const auto n = static_cast<double>(n_points()), m = static_cast<double>(common_.size());
+  for (std::size_t i = 0; i < n_points(); ++i) {
+    fitted_y_[i] = folded(chosen(realizations_[i], common_)).mean();
+  }
+  Moments levels;
+  double squares = 0;
+  for (const std::size_t r : common_) {
+    Moments deviations;
+    for (std::size_t i = 0; i < n_points(); ++i) deviations.add(realizations_[i][r] - fitted_y_[i]);
+    levels.add(deviations.mean());
+    squares += squares_of(deviations);
+  }
+  if (common_.size() < 2) return;
+  level_ = {levels.standard_error() * std::sqrt(m), m - 1};
+  if (n_points() > 1) pooled_ = {std::sqrt(squares / ((m - 1) * (n - 1))), (m - 1) * (n - 1)};
+}
+
+std::vector<double> SweepCurve::weights() const {
+  std::vector<double> weights(n_points(), 1.0);
+  for (std::size_t i = 0; i < n_points(); ++i) {
+    if (!has_realizations() && own_errors_) weights[i] = 1 / error_[i].error;
+    if (has_realizations() && streams_ == Streams::independent) {
+      weights[i] = std::sqrt(static_cast<double>(count_[i]));
     }
   }
-  return groups;
+  return weights;
+}
+
+bool SweepCurve::pools() const {
+  return streams_ == Streams::matched ? common_.size() < enough_for_own : !own_errors_;
+}
+
+ErrorOf SweepCurve::error_of(std::span<const double> coefficients) const {
+  assert(coefficients.size() == n_points());
+  if (streams_ == Streams::matched) return matched_error_of(coefficients);
+  if (!pools()) return own_error_of(coefficients);
+  if (!pooled_.known()) return {};
+  double sum = 0;
+  for (std::size_t i = 0; i < n_points(); ++i) {
+    const double count = has_realizations() ? static_cast<double>(count_[i]) : 1;
+    sum += square(coefficients[i]) / count;
+  }
+  return {pooled_.error * std::sqrt(sum), pooled_.dof};
+}
+
+ErrorOf SweepCurve::own_error_of(std::span<const double> coefficients) const {
+  std::optional<ErrorOf> sum;
+  for (std::size_t i = 0; i < n_points(); ++i) {
+    if (coefficients[i] == 0) continue;
+    const ErrorOf term{std::abs(coefficients[i]) * error_[i].error, error_[i].dof};
+    sum = sum ? combined(*sum, term) : term;
+  }
+  return sum.value_or(ErrorOf{0, 1});
+}
+
+ErrorOf SweepCurve::matched_error_of(std::span<const double> coefficients) const {
+  if (common_.size() < 2) return {};
+  const auto m = static_cast<double>(common_.size());
+  if (!pools() || n_points() == 1) {
+    Moments sums;
+    for (const std::size_t r : common_) {
+      double sum = 0;
+      for (std::size_t i = 0; i < n_points(); ++i) sum += coefficients[i] * realizations_[i][r];
+      sums.add(sum);
+    }
+    return {sums.standard_error(), m - 1};
+  }
+  const double mean = folded(coefficients).mean();
+  std::vector<double> contrast;
+  for (const double c : coefficients) contrast.push_back(c - mean);
+  const double total = mean * static_cast<double>(n_points());
+  const ErrorOf within{pooled_.error * std::sqrt(sum_of_squares(contrast) / m), pooled_.dof};
+  const ErrorOf shared{std::abs(total) * level_.error / std::sqrt(m), level_.dof};
+  const double size = std::sqrt(sum_of_squares(coefficients));
+  return std::abs(total) < 1e-10 * size ? within : combined(within, shared);
 }
 
 }  // namespace jostle

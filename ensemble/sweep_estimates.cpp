@@ -1,14 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 
-#include "engine/random.hpp"
-#include "ensemble/jackknife.hpp"
-#include "ensemble/moments.hpp"
 #include "ensemble/sweep_curve.hpp"
+#include "fitting/distributions.hpp"
 #include "fitting/polynomial.hpp"
 
 namespace jostle {
@@ -16,176 +14,219 @@ namespace jostle {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr int drawn_curves = 1000;
-constexpr double doubtful_below = 0.95;
 
-using Pair = std::array<double, 2>;  // two numbers read off a curve, with their errors
-using Estimator = std::function<Pair(const std::vector<double>& y)>;
+/// A number that is linear in the values of a curve's points.
+using Combination = std::vector<double>;  // [n_points]
 
-std::vector<double> weights_of(const SweepCurve& curve) {
-  std::vector<double> weights(curve.n_points(), 1.0);
-  if (!curve.errors_known()) return weights;
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1 / curve.error()[i];
-  return weights;
+Combination sum_of(const Combination& a, double factor, const Combination& b) {
+  Combination sum = a;
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * b[i];
+  return sum;
 }
 
-// Of a group's estimates without one of its realizations each. A lone realization says nothing of
-// its scatter: the error is known only where the estimate does without it.
-double error_of_group(std::span<const double> left_out) {
-  if (left_out.size() == 1) return std::isnan(left_out[0]) ? not_a_number : 0;
-  return jackknife_error(left_out);
+double value_of(const Combination& combination, const std::vector<double>& y) {
+  double sum = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) sum += combination[i] * y[i];
+  return sum;
 }
 
-// Leaving out one of a group of n, the groups being independent of each other.
-Pair jackknife_errors(const SweepCurve& curve, const Estimator& estimator) {
-  Pair variance = {0, 0};
-  const auto groups = curve.left_out();
-  if (groups.empty()) return {not_a_number, not_a_number};
-  for (const auto& group : groups) {
-    std::array<std::vector<double>, 2> estimates;
-    for (const std::vector<double>& y : group) {
-      const Pair found = estimator(y);
-      for (std::size_t k = 0; k < 2; ++k) estimates[k].push_back(found[k]);
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double error = error_of_group(estimates[k]);
-      variance[k] += error * error;
-    }
-  }
-  return {std::sqrt(variance[0]), std::sqrt(variance[1])};
-}
-
-double standard_normal(RandomStream& random) {
-  const double radius = std::sqrt(-2 * std::log(random.uniform()));
-  return radius * std::cos(2 * M_PI * random.uniform());
-}
-
-struct Drawn {
-  Pair errors = {not_a_number, not_a_number};  // deviation over curves with an estimate
-  double share = not_a_number;                 // of those curves
+/// A polynomial fitted to points first .. first + points - 1.
+struct LinearFit {
+  double origin = 0, scale = 1;             // of the powers
+  std::vector<Combination> coefficients{};  // [coefficients][n_points]
 };
 
-Drawn drawn(const SweepCurve& curve, const Estimator& estimator) {
-  if (!curve.errors_known()) return {};
-  RandomStream random(stream_key(1, 0, 0, Purpose::resampling));
-  std::array<Moments, 2> moments;
-  for (int i = 0; i < drawn_curves; ++i) {
-    std::vector<double> y = curve.y();
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] += curve.error()[k] * standard_normal(random);
-    const Pair found = estimator(y);
-    for (std::size_t k = 0; k < 2; ++k) moments[k].add(found[k]);
+LinearFit linear_fit(const SweepCurve& curve, std::size_t first, std::size_t points,
+                     std::size_t coefficients) {
+  const auto x = std::span(curve.x()).subspan(first, points);
+  const std::vector<double> all_weights = curve.weights();
+  const auto weights = std::span(all_weights).subspan(first, points);
+  LinearFit fit{.origin = 0.5 * (x.front() + x.back()), .scale = 0.5 * (x.back() - x.front())};
+  fit.coefficients.assign(coefficients, Combination(curve.n_points(), 0.0));
+  for (std::size_t i = 0; i < points; ++i) {
+    std::vector<double> unit(points, 0.0);
+    unit[i] = 1;
+    const auto c = polynomial_fit(x, unit, weights, coefficients, fit.origin, fit.scale);
+    for (std::size_t k = 0; k < coefficients; ++k) fit.coefficients[k][first + i] = c[k];
   }
-  return {.errors = {moments[0].sigma(), moments[1].sigma()},
-          .share = static_cast<double>(moments[0].count()) / drawn_curves};
+  return fit;
 }
 
 // The points about the largest y, as many on both sides as the ends allow.
-std::size_t first_of_window(const SweepCurve& curve, std::size_t points) {
-  const auto top =
-      static_cast<std::size_t>(std::ranges::max_element(curve.y()) - curve.y().begin());
+std::size_t first_of_window(const std::vector<double>& y, std::size_t points) {
+  const auto top = static_cast<std::size_t>(std::ranges::max_element(y) - y.begin());
   const std::size_t below = points / 2;
-  return std::min(top > below ? top - below : 0, curve.n_points() - points);
+  return std::min(top > below ? top - below : 0, y.size() - points);
 }
 
-// The vertex of the parabola through points first .. first + points - 1, NaN where it is no maximum
-// between them.
-Pair vertex(const SweepCurve& curve, std::span<const double> weights, std::size_t first,
-            std::size_t points, const std::vector<double>& y) {
-  const auto x = std::span(curve.x()).subspan(first, points);
-  const double origin = 0.5 * (x.front() + x.back()), scale = 0.5 * (x.back() - x.front());
-  const std::vector<double> c = polynomial_fit(x, std::span(y).subspan(first, points),
-                                               weights.subspan(first, points), 3, origin, scale);
-  const double at = -0.5 * c[1] / c[2];
-  if (!(c[2] < 0) || !(std::abs(at) <= 1)) return {not_a_number, not_a_number};
-  return {origin + scale * at, c[0] + 0.5 * c[1] * at};
-}
-
-std::size_t different_values(const std::vector<double>& ascending) {
+std::size_t different_values(std::span<const double> ascending) {
   std::size_t n = ascending.empty() ? 0 : 1;
   for (std::size_t i = 1; i < ascending.size(); ++i) n += ascending[i] != ascending[i - 1];
   return n;
 }
 
-std::string verdict_of(const SweepCurve& curve, double x, double resolved) {
-  if (std::isnan(x)) {
-    const auto top = std::ranges::max_element(curve.y());
-    const bool at_end = top == curve.y().begin() || top + 1 == curve.y().end();
-    return at_end ? "no maximum inside: the largest value is at an end of the sweep"
-                  : "no maximum: the points about the largest value do not bend down";
+/// The slope of a parabola at u in [-1, 1] of its points, in scaled units.
+struct SlopeAt {
+  const SweepCurve& curve;
+  const LinearFit& parabola;
+
+  Combination combination(double u) const {
+    return sum_of(parabola.coefficients[1], 2 * u, parabola.coefficients[2]);
   }
-  if (std::isnan(resolved)) return "maximum, without errors";
-  if (resolved < doubtful_below) {
-    return "doubtful: " + std::to_string(std::lround(100 * resolved)) +
-           " % of curves drawn from the errors have a maximum there";
+  double value(double u) const { return value_of(combination(u), curve.fitted_y()); }
+  /// Between the vertex and an end of the points: where the slope begins to differ from 0; NaN
+  /// where it does not do so before the end.
+  double limit(double vertex, double end) const {
+    const auto differs = [&](double u) {
+      return p_value(value(u), curve.error_of(combination(u))) < 0.05;
+    };
+    if (!differs(end)) return not_a_number;
+    double inside = vertex, outside = end;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (differs(middle) ? outside : inside) = middle;
+    }
+    return 0.5 * (inside + outside);
   }
-  return "maximum";
+};
+
+/// Probability that chance makes a straight line through points first .. last rise (sign 1) or fall
+/// (sign -1) like this one; 1 where they have no slope.
+double p_of_slope(const SweepCurve& curve, std::size_t first, std::size_t last, double sign) {
+  const std::size_t points = last + 1 - first;
+  if (different_values(std::span(curve.x()).subspan(first, points)) < 2) return 1;
+  const Combination slope = linear_fit(curve, first, points, 2).coefficients[1];
+  const double value = value_of(slope, curve.fitted_y());
+  const double both_sides = p_value(value, curve.error_of(slope));
+  return sign * value > 0 ? 0.5 * both_sides : 1 - 0.5 * both_sides;
+}
+
+std::string realizations_of(const SweepCurve& curve) {
+  if (!curve.has_realizations()) return {};
+  const auto [least, most] = std::ranges::minmax(curve.count());
+  const std::string range =
+      least == most ? fmt::to_string(most) : fmt::format("{} to {}", least, most);
+  return fmt::format(" with {} {}", range, most == 1 ? "realization" : "realizations");
+}
+
+std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
+  if (std::isnan(found.p)) {
+    return "cannot decide: there are no errors to test a maximum by";
+  }
+  const std::string test = fmt::format("p = {:.2g}, two lines", found.p);
+  if (found.found())
+    return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")";
+  const auto& y = curve.fitted_y();
+  const auto top = std::ranges::max_element(y);
+  if (std::isnan(found.x) && (top == y.begin() || top + 1 == y.end())) {
+    return "none found: the largest value is at an end of the sweep (" + test + ")";
+  }
+  return fmt::format("cannot decide{}: {} ({})", realizations_of(curve),
+                     std::isnan(found.x) ? "the points about the largest value do not bend down"
+                                         : "chance alone would often give such a maximum",
+                     test);
+}
+
+// F of the squares about a line: their sum over what the errors of the residuals make of it.
+void test_line(const SweepCurve& curve, const LinearFit& fit, StraightLine& line) {
+  const std::vector<double> weights = curve.weights();
+  const double dof = static_cast<double>(curve.n_points()) - 2;
+  double squares = 0, expected = 0, uncertain = 0;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    const double u = (curve.x()[i] - fit.origin) / fit.scale;
+    Combination residual = sum_of(fit.coefficients[0], u, fit.coefficients[1]);
+    for (double& c : residual) c = -c;
+    residual[i] += 1;
+    const ErrorOf error = curve.error_of(residual);
+    if (!error.known()) return;
+    squares += std::pow(weights[i] * value_of(residual, curve.fitted_y()), 2);
+    const double variance = std::pow(weights[i] * error.error, 2);
+    expected += variance;
+    uncertain += variance * variance / error.dof;
+  }
+  if (!(dof > 0) || !(expected > 0)) return;
+  // One pooled variance, or several of their own (Satterthwaite).
+  const double dof_of_errors = curve.pools() ? curve.pooled().dof : expected * expected / uncertain;
+  line.reduced_chi2 = squares / expected;
+  line.p = fisher_tail(line.reduced_chi2, dof, std::min(dof_of_errors, 1e6));
+}
+
+// Without errors of the points: from the scatter about the line.
+ErrorOf scatter_error(const SweepCurve& curve, const LinearFit& fit,
+                      const Combination& combination) {
+  const double dof = static_cast<double>(curve.n_points()) - 2;
+  if (!(dof > 0)) return {};
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    const double u = (curve.x()[i] - fit.origin) / fit.scale;
+    const Combination fitted = sum_of(fit.coefficients[0], u, fit.coefficients[1]);
+    squares += std::pow(curve.fitted_y()[i] - value_of(fitted, curve.fitted_y()), 2);
+    sum += combination[i] * combination[i];
+  }
+  return {std::sqrt(squares / dof * sum), dof};
 }
 
 }  // namespace
 
 SweepMaximum maximum(const SweepCurve& curve, std::size_t points) {
-  SweepMaximum found = {not_a_number,
-                        not_a_number,
-                        not_a_number,
-                        not_a_number,
-                        not_a_number,
-                        0,
-                        "fewer than three different strengths"};
+  SweepMaximum found{.x = not_a_number,
+                     .y = not_a_number,
+                     .x_low = not_a_number,
+                     .x_high = not_a_number,
+                     .p = not_a_number,
+                     .verdict = "cannot decide: fewer than three different strengths"};
   points = std::min(std::max<std::size_t>(points, 3), curve.n_points());
   if (points < 3) return found;
-  const std::size_t first = first_of_window(curve, points);
-  const auto window = std::span(curve.x()).subspan(first, points);
-  if (different_values({window.begin(), window.end()}) < 3) return found;
-  const std::vector<double> weights = weights_of(curve);
-  const auto estimator = [&](const std::vector<double>& y) {
-    return vertex(curve, weights, first, points, y);
-  };
-  const Pair top = estimator(curve.y());
-  const Drawn draws = drawn(curve, estimator);
-  const Pair errors = curve.has_realizations() ? jackknife_errors(curve, estimator) : draws.errors;
-  const bool exists = !std::isnan(top[0]);
-  found.x = top[0];
-  found.y = top[1];
-  found.x_error = exists ? errors[0] : not_a_number;
-  found.y_error = exists ? errors[1] : not_a_number;
-  found.resolved = draws.share;
+  const std::vector<double>& y = curve.fitted_y();
+  const std::size_t first = first_of_window(y, points);
+  if (different_values(std::span(curve.x()).subspan(first, points)) < 3) return found;
   found.points = points;
-  found.verdict = verdict_of(curve, top[0], draws.share);
+  const LinearFit parabola = linear_fit(curve, first, points, 3);
+  const SlopeAt slope{curve, parabola};
+  const double bend = value_of(parabola.coefficients[2], y);
+  const double vertex = -0.5 * value_of(parabola.coefficients[1], y) / bend;
+  // The top is where y is largest: each point between the ends could have been it.
+  const auto top = static_cast<std::size_t>(std::ranges::max_element(y) - y.begin());
+  const auto places = static_cast<double>(curve.n_points() - 2);
+  const double p =
+      std::max(p_of_slope(curve, first, top, 1), p_of_slope(curve, top, first + points - 1, -1));
+  if (curve.error_of(parabola.coefficients[2]).known()) found.p = std::min(1.0, places * p);
+  if (bend < 0 && std::abs(vertex) <= 1) {
+    const Combination height =
+        sum_of(sum_of(parabola.coefficients[0], vertex, parabola.coefficients[1]), vertex * vertex,
+               parabola.coefficients[2]);
+    found.x = parabola.origin + parabola.scale * vertex;
+    found.y = value_of(height, y);
+    // Where it may be none, its place has no error, and its interval is no interval.
+    if (found.found()) {
+      found.y_error = curve.error_of(height);
+      found.x_error = curve.error_of(slope.combination(vertex));
+      found.x_error.error *= parabola.scale / std::abs(2 * bend);
+      found.x_low = parabola.origin + parabola.scale * slope.limit(vertex, -1);
+      found.x_high = parabola.origin + parabola.scale * slope.limit(vertex, 1);
+    }
+  }
+  found.verdict = verdict_of(curve, found);
   return found;
 }
 
 StraightLine straight_line(const SweepCurve& curve) {
-  StraightLine line = {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number};
+  StraightLine line{not_a_number, not_a_number, {}, {}, not_a_number, not_a_number};
   if (different_values(curve.x()) < 2) return line;
-  const std::vector<double> weights = weights_of(curve);
-  const Estimator estimator = [&](const std::vector<double>& y) -> Pair {
-    const std::vector<double> c = polynomial_fit(curve.x(), y, weights, 2);
-    return {c[0], c[1]};
-  };
-  const Pair found = estimator(curve.y());
-  line.intercept = found[0];
-  line.slope = found[1];
-  double sum = 0, w = 0, wx = 0, wxx = 0;
-  for (std::size_t i = 0; i < curve.n_points(); ++i) {
-    const double x = curve.x()[i], square = weights[i] * weights[i];
-    const double residual = weights[i] * (curve.y()[i] - found[0] - found[1] * x);
-    sum += residual * residual;
-    w += square;
-    wx += square * x;
-    wxx += square * x * x;
+  const LinearFit fit = linear_fit(curve, 0, curve.n_points(), 2);
+  Combination slope = fit.coefficients[1];
+  for (double& c : slope) c /= fit.scale;
+  const Combination intercept = sum_of(fit.coefficients[0], -fit.origin, slope);
+  line.slope = value_of(slope, curve.fitted_y());
+  line.intercept = value_of(intercept, curve.fitted_y());
+  line.slope_error = curve.error_of(slope);
+  line.intercept_error = curve.error_of(intercept);
+  if (line.slope_error.known()) {
+    test_line(curve, fit, line);
+  } else {
+    line.slope_error = scatter_error(curve, fit, slope);
+    line.intercept_error = scatter_error(curve, fit, intercept);
   }
-  const auto dof = static_cast<double>(curve.n_points()) - 2;
-  if (curve.errors_known() && dof > 0) line.reduced_chi2 = sum / dof;
-  if (curve.has_realizations()) {
-    const Pair errors = jackknife_errors(curve, estimator);
-    line.intercept_error = errors[0];
-    line.slope_error = errors[1];
-    return line;
-  }
-  const double variance = curve.errors_known() ? 1 : dof > 0 ? sum / dof : not_a_number;
-  const double determinant = w * wxx - wx * wx;
-  line.intercept_error = std::sqrt(variance * wxx / determinant);
-  line.slope_error = std::sqrt(variance * w / determinant);
   return line;
 }
 

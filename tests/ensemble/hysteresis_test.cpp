@@ -52,7 +52,8 @@ TEST_CASE("The area of a loop is that between straight lines, for each realizati
   REQUIRE(found.size() == 1);
   // A triangle from 3 to 2, then two squares; the jackknife of a mean of three.
   CHECK(found[0].area == Approx(2.5 * 3).epsilon(1e-14));
-  CHECK(found[0].error == Approx(2.5 * std::sqrt(7.0 / 3)).epsilon(1e-14));
+  CHECK(found[0].error.error == Approx(2.5 * std::sqrt(7.0 / 3)).epsilon(1e-14));
+  CHECK(found[0].error.dof == 2);
   CHECK(found[0].lowest == 0);
   CHECK(found[0].highest == 3);
   CHECK(found[0].realizations == 3);
@@ -69,7 +70,41 @@ TEST_CASE("Branches on one line enclose nothing, whatever their steps") {
   CHECK(found[1].highest == 4);
   for (const Loop& loop : found) {
     CHECK(std::abs(loop.area) < 1e-14);
-    CHECK(std::isnan(loop.error));
+    CHECK_FALSE(loop.error.known());
+    CHECK(loop.statement().starts_with("cannot decide with 1 realization: "));
+  }
+}
+
+TEST_CASE("Two realizations cannot decide on an area of eleven errors") {
+  const std::vector<double> strengths = {1, 2, 1};
+  const std::vector<double> values = {0, 0, 1, 1, 2, 2.4};
+  const Loop found = loops(strengths, values, 2).at(0);
+  CHECK(found.area / found.error.error == Approx(11));
+  CHECK(found.p == Approx(0.0577).epsilon(1e-3));
+  CHECK(found.statement().starts_with("cannot decide with 2 realizations: p = 0.058, only"));
+  CHECK(found.detectable == Approx(16.334 * found.error.error).epsilon(1e-3));
+  const Loop clear = loops(strengths, std::vector{0.0, 0.0, 1.0, 1.0, 2.0, 2.1}, 2).at(0);
+  CHECK(clear.statement().starts_with("the branches differ"));
+}
+
+TEST_CASE("Branches that do not differ are called different at the level of the test",
+          "[statistics]") {
+  for (const std::uint32_t realizations : {2, 3, 10}) {
+    constexpr int ensembles = 1000;
+    RandomStream random = test_stream(20261124 + realizations);
+    int different = 0;
+    for (int e = 0; e < ensembles; ++e) {
+      std::vector<double> values;
+      for (std::uint32_t i = 0; i < 5 * realizations; ++i) values.push_back(noise(random));
+      bool any = false;
+      for (const Loop& loop : loops(std::vector{1.0, 2.0, 1.0, 2.0, 1.0}, values, realizations)) {
+        any = any || loop.corrected < Loop::level;
+      }
+      different += any;
+    }
+    CAPTURE(realizations, different);
+    // Of 5 %, 3 deviations.
+    CHECK(different <= 0.05 * ensembles + 3 * std::sqrt(0.05 * 0.95 * ensembles));
   }
 }
 
@@ -90,6 +125,8 @@ TEST_CASE("A protocol's steps are its stages, with their last taps") {
   CHECK(steps.control == "sqrt_epsilon");
   CHECK(steps.strengths[1] == Approx(0.2).epsilon(1e-15));
   CHECK(steps.windows == std::vector<StepTaps>{{71, 100}, {101, 120}, {191, 220}});
+  CHECK(std::get<std::string>(protocol_steps(dilations({0.1, 0.1}, 5), 5))
+            .starts_with("The protocol has taps of one strength only"));
   protocol.push_back({Lift{0.25}, 10});
   CHECK(std::get<std::string>(protocol_steps(protocol, 30)) ==
         "The protocol taps in different ways (sqrt_epsilon, gamma), whose strengths cannot be "

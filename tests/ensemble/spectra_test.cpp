@@ -205,6 +205,33 @@ TEST_CASE("Averages over realizations give AR(1) its spectrum and a random walk 
   CHECK(std::abs(slope.slope - expected) < 3 * slope.error);
 }
 
+TEST_CASE("Expected Welch spectra are those of long averages") {
+  const auto window = GENERATE(Taper::hann, Taper::boxcar);
+  const SpectrumOptions options{.window = window, .detrending = Detrending::none, .segment = 60};
+  // Without memory every line has the same, but for the two that have one side.
+  const auto white = expected_welch(options, [](std::size_t lag) { return lag == 0 ? 1.0 : 0.0; });
+  REQUIRE(white.size() == 31);
+  for (const double line : white) CHECK(line == Approx(white[0]).epsilon(1e-12));
+  // Against the sum over all pairs of taps.
+  const auto memory = [](std::size_t lag) { return std::pow(0.9, static_cast<double>(lag)); };
+  const auto lines = expected_welch(options, memory);
+  for (const std::size_t k : {0, 1, 7, 30}) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 60; ++i) {
+      for (std::size_t j = 0; j < 60; ++j) {
+        const auto weight = [&](std::size_t t) {
+          const double s = std::sin(std::numbers::pi * static_cast<double>(t) / 60);
+          return window == Taper::hann ? s * s : 1.0;
+        };
+        const double lag = static_cast<double>(i) - static_cast<double>(j);
+        sum += weight(i) * weight(j) * std::pow(0.9, std::abs(lag)) *
+               std::cos(2 * std::numbers::pi * static_cast<double>(k) * lag / 60);
+      }
+    }
+    CHECK(lines[k] == Approx(sum).epsilon(1e-10));
+  }
+}
+
 TEST_CASE("Bands with too few points give no slope") {
   const std::vector<double> frequency{0.1, 0.2, 0.3, 0.4}, density{4, 3, 0, 1};
   CHECK(std::isnan(log_log_slope(frequency, density, {0.1, 0.35}).slope));

@@ -91,8 +91,11 @@ def fluctuations(run):
 
 
 def maximum(curve, symbol, text):
-    return (f"\n\nMaximum: {curve.attrs['note_maximum']}; at {symbol} = "
-            f"{of(curve, 'maximum_at', 3)}, {text} = {of(curve, 'maximum')}.")
+    said = f"\n\nMaximum: {curve.attrs['note_maximum']}"
+    if not np.isfinite(curve["maximum_at_error"][()]):
+        return said + "."
+    return said + (f"; at {symbol} = {of(curve, 'maximum_at', 3)}, "
+                   f"{text} = {of(curve, 'maximum')}.")
 
 
 def bell(run):

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+// Student's tests of an estimate against 0, and what they can see.
+namespace jostle {
+
+/// The standard error of an estimate, with its degrees of freedom: infinite where the error is
+/// known, 0 where there is none.
+struct ErrorOf {
+  double error = 0;
+  double dof = 0;
+  bool known() const { return dof > 0; }
+};
+
+/// NaN where there is none: what tables hold.
+double error_or_nan(const ErrorOf& error);
+
+/// The error of the sum of two independent numbers: Satterthwaite 1946, doi:10.2307/3002019. None
+/// where one has none.
+ErrorOf combined(const ErrorOf& a, const ErrorOf& b);
+
+/// Probability that chance makes an estimate of 0 as large as this, on either side. NaN without an
+/// error; 1 for a value of 0, and 0 for any other whose error is 0.
+double p_value(double value, const ErrorOf& error);
+
+/// The p-values of several tests made together, so that the chance of any false alarm is the level:
+/// Holm 1979, Scand. J. Statist. 6, 65. NaN stays and does not count.
+std::vector<double> corrected_for_number(std::span<const double> p_values);
+
+/// Probability that the two-sided test at `level` (its rate of false alarms, in (0, 1)) finds an
+/// effect of `effect` true standard errors, with dof > 0 degrees of freedom: the tails of the
+/// noncentral t distribution.
+double student_power(double effect, double level, double dof);
+
+/// The smallest effect, in true standard errors, that is found with probability `power` (above
+/// `level`, below 1): 2.8 for level 0.05, power 0.8 and many degrees of freedom, 16 for one.
+double smallest_effect_found(double level, double dof, double power = 0.8);
+
+}  // namespace jostle
