@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "cli/analyse_run.hpp"
 #include "cli/arguments.hpp"
@@ -31,6 +33,7 @@ struct AnalyseArguments {
   std::string window = "hann", detrend = "mean", band;
   std::vector<std::uint64_t> waiting_times, lags;
   std::string quantity = "value", against;
+  std::optional<double> reference;
 };
 
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
@@ -144,7 +147,9 @@ void require_different_runs(const std::vector<ResultsFile>& files) {
 int run_sweep(const AnalyseArguments& arguments) {
   require_files(arguments);
   const Provenance by = provenance_of_this_run("");
-  SweepSettings settings{.quantity = arguments.quantity, .against = arguments.against};
+  SweepSettings settings{.quantity = arguments.quantity,
+                         .against = arguments.against,
+                         .reference = arguments.reference};
   if (arguments.last > 0) settings.last = arguments.last;
   std::vector<Table> tables;
   {
@@ -186,96 +191,142 @@ CLI::Validator existing_file() {
       "FILE");
 }
 
-/// At every place that takes one.
-CLI::Option* add_last(CLI::App& kind, AnalyseArguments& arguments, const char* description) {
-  return kind.add_option("--last", arguments.last, description)->check(whole_from(1));
+/// The options of the kinds of analyses: each belongs to its kind, and stands before the kind's
+/// name as well as behind it.
+class Kinds {
+ public:
+  Kinds(CLI::App& command, std::shared_ptr<AnalyseArguments> arguments)
+      : command_(command), arguments_(std::move(arguments)) {}
+
+  /// `run` is called once the whole command line has been read.
+  CLI::App& add(const char* name, const char* description,
+                std::function<void(AnalyseArguments&)> run) {
+    auto* kind = command_.add_subcommand(name, description);
+    kind->fallthrough();
+    add_option(*kind, "--observable", arguments_->observables, "Which columns of the results");
+    kind->callback([&command = command_, arguments = arguments_, kind, run = std::move(run)] {
+      require_options_of(command, *kind);
+      if (arguments->observables.empty()) {
+        throw BadInput("--observable is required: the columns of the results to analyse");
+      }
+      run(*arguments);
+    });
+    return *kind;
+  }
+
+  /// `restrict` adds checks to the option at either place.
+  template <class T>
+  void add_option(CLI::App& kind, const std::string& name, T& value, const char* description,
+                  const std::function<void(CLI::Option&)>& restrict = {}) {
+    auto* option = kind.add_option(name, value, description);
+    if (restrict) restrict(*option);
+    if (command_.get_option_no_throw(name)) return;
+    auto* before = command_.add_option(name, value)->group("");  // hidden
+    if (restrict) restrict(*before);
+  }
+
+  void add_last(CLI::App& kind, const char* description) {
+    add_option(kind, "--last", arguments_->last, description,
+               [](CLI::Option& option) { option.check(whole_from(1)); });
+  }
+
+ private:
+  /// An option of another kind before the name of this one.
+  static void require_options_of(const CLI::App& command, const CLI::App& kind) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->count() == 0 || !option->get_group().empty()) continue;
+      const auto* own = kind.get_option_no_throw(option->get_name());
+      if (!own) {
+        throw BadInput(fmt::format("{} has no option {}; jostle analyse {} --help lists them",
+                                   kind.get_name(), option->get_name(), kind.get_name()));
+      }
+      if (own->count() > 0) {
+        throw BadInput(fmt::format("{} is there twice, before and after {}", option->get_name(),
+                                   kind.get_name()));
+      }
+    }
+  }
+
+  CLI::App& command_;
+  std::shared_ptr<AnalyseArguments> arguments_;
+};
+
+void add_steady(Kinds& kinds, int& code) {
+  CLI::App& kind = kinds.add("steady", "Value, deviation and memory of the last taps",
+                             [&code](AnalyseArguments& arguments) {
+                               Analyses analyses;
+                               analyses.steady = requests(arguments, steady_settings(arguments));
+                               code = run_analyses(arguments, analyses);
+                             });
+  kinds.add_last(kind, "Taps at the end (default: a quarter)");
 }
 
-CLI::App* add_kind(CLI::App& command, const char* name, const char* description,
-                   AnalyseArguments& arguments) {
-  auto* kind = command.add_subcommand(name, description);
-  kind->fallthrough();
-  kind->add_option("--observable", arguments.observables, "Which columns of the results")
-      ->required();
-  return kind;
-}
-
-void add_steady(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
-  auto* kind =
-      add_kind(command, "steady", "Value, deviation and memory of the last taps", *arguments);
-  add_last(*kind, *arguments, "Taps at the end (default: a quarter)");
-  kind->callback([arguments, &code] {
-    Analyses analyses;
-    analyses.steady = requests(*arguments, steady_settings(*arguments));
-    code = run_analyses(*arguments, analyses);
+void add_spectrum(Kinds& kinds, AnalyseArguments& a, int& code) {
+  CLI::App& kind = kinds.add("spectrum", "Power spectrum of the last taps, and its slope",
+                             [&code](AnalyseArguments& arguments) {
+                               Analyses analyses;
+                               analyses.spectrum =
+                                   requests(arguments, spectrum_settings(arguments));
+                               code = run_analyses(arguments, analyses);
+                             });
+  kinds.add_last(kind, "Taps at the end (default: half of them)");
+  kinds.add_option(kind, "--segment", a.segment,
+                   "Taps of a segment of Welch's average (default: about a quarter of them)",
+                   [](CLI::Option& option) { option.check(CLI::Range(16, 1000000000)); });
+  kinds.add_option(kind, "--window", a.window, "hann (default) or boxcar", [](CLI::Option& option) {
+    option.check(CLI::IsMember({"hann", "boxcar"}));
   });
-}
-
-void add_spectrum(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments,
-                  int& code) {
-  auto* kind =
-      add_kind(command, "spectrum", "Power spectrum of the last taps, and its slope", *arguments);
-  add_last(*kind, *arguments, "Taps at the end (default: half of them)");
-  kind->add_option("--segment", arguments->segment,
-                   "Taps of a segment of Welch's average (default: about a quarter of them)")
-      ->check(CLI::Range(16, 1000000000));
-  kind->add_option("--window", arguments->window, "hann (default) or boxcar")
-      ->check(CLI::IsMember({"hann", "boxcar"}));
-  kind->add_option("--detrend", arguments->detrend, "Of segments: mean (default), linear or none")
-      ->check(CLI::IsMember({"none", "mean", "linear"}));
-  kind->add_option("--band", arguments->band,
+  kinds.add_option(kind, "--detrend", a.detrend, "Of segments: mean (default), linear or none",
+                   [](CLI::Option& option) {
+                     option.check(CLI::IsMember({"none", "mean", "linear"}));
+                   });
+  kinds.add_option(kind, "--band", a.band,
                    "LOWEST:HIGHEST frequency of the slope, in 1/taps (default: all)");
-  kind->callback([arguments, &code] {
-    Analyses analyses;
-    analyses.spectrum = requests(*arguments, spectrum_settings(*arguments));
-    code = run_analyses(*arguments, analyses);
-  });
 }
 
-void add_ageing(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
-  auto* kind = add_kind(command, "ageing", "A(t, t_W), C(t, t_W), fits of eq. 6, their collapse",
-                        *arguments);
-  kind->add_option("--waiting-times", arguments->waiting_times,
-                   "Taps t_W, separated by commas (default: 0 and two a decade)")
-      ->delimiter(',');
-  kind->add_option("--lags", arguments->lags, "Taps t, likewise (default: ten a decade)")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 1000000000));
-  kind->callback([arguments, &code] {
-    const AgeingSettings settings{ascending("--waiting-times", arguments->waiting_times),
-                                  ascending("--lags", arguments->lags)};
-    Analyses analyses;
-    analyses.ageing = requests(*arguments, settings);
-    code = run_analyses(*arguments, analyses);
-  });
+void add_ageing(Kinds& kinds, AnalyseArguments& a, int& code) {
+  CLI::App& kind = kinds.add("ageing", "A(t, t_W), C(t, t_W), fits of eq. 6, their collapse",
+                             [&code](AnalyseArguments& arguments) {
+                               const AgeingSettings settings{
+                                   ascending("--waiting-times", arguments.waiting_times),
+                                   ascending("--lags", arguments.lags)};
+                               Analyses analyses;
+                               analyses.ageing = requests(arguments, settings);
+                               code = run_analyses(arguments, analyses);
+                             });
+  kinds.add_option(kind, "--waiting-times", a.waiting_times,
+                   "Taps t_W, separated by commas (default: 0 and two a decade)",
+                   [](CLI::Option& option) { option.delimiter(','); });
+  kinds.add_option(
+      kind, "--lags", a.lags, "Taps t, likewise (default: ten a decade)",
+      [](CLI::Option& option) { option.delimiter(',')->check(CLI::Range(1, 1000000000)); });
 }
 
-void add_hysteresis(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments,
-                    int& code) {
-  auto* kind =
-      add_kind(command, "hysteresis",
-               "Steady value of every step of a protocol, branches, areas of loops", *arguments);
-  add_last(*kind, *arguments, "Taps at the end of each step (default: a quarter of the shortest)");
-  kind->callback([arguments, &code] {
-    HysteresisSettings settings;
-    if (arguments->last > 0) settings.last = arguments->last;
-    Analyses analyses;
-    analyses.hysteresis = requests(*arguments, settings);
-    code = run_analyses(*arguments, analyses);
-  });
+void add_hysteresis(Kinds& kinds, int& code) {
+  CLI::App& kind =
+      kinds.add("hysteresis", "Steady value of every step of a protocol, branches, areas of loops",
+                [&code](AnalyseArguments& arguments) {
+                  HysteresisSettings settings;
+                  if (arguments.last > 0) settings.last = arguments.last;
+                  Analyses analyses;
+                  analyses.hysteresis = requests(arguments, settings);
+                  code = run_analyses(arguments, analyses);
+                });
+  kinds.add_last(kind, "Taps at the end of each step (default: a quarter of the shortest)");
 }
 
-void add_sweep(CLI::App& command, const std::shared_ptr<AnalyseArguments>& arguments, int& code) {
-  auto* kind =
-      add_kind(command, "sweep",
-               "A quantity against the swept value, its maximum; all files together", *arguments);
-  kind->add_option("--quantity", arguments->quantity,
+void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
+  CLI::App& kind = kinds.add(
+      "sweep", "A quantity against the swept value, its maximum, differences; all files together",
+      [&code](AnalyseArguments& arguments) { code = run_sweep(arguments); });
+  kinds.add_option(kind, "--quantity", a.quantity,
                    "value: mean of the last taps (default); or what is kept of an analysis or a "
                    "fit: steady/sigma, kww/rho_inf");
-  kind->add_option("--against", arguments->against,
+  kinds.add_option(kind, "--against", a.against,
                    "JSON pointer into the scene (default: the first of the sweep)");
-  add_last(*kind, *arguments, "Taps at the end (default: a quarter)");
-  kind->callback([arguments, &code] { code = run_sweep(*arguments); });
+  kinds.add_option(kind, "--reference", a.reference,
+                   "Point on the axis that all others are compared with (default: neighbours)");
+  kinds.add_last(kind, "Taps at the end (default: a quarter)");
 }
 
 }  // namespace
@@ -298,11 +349,12 @@ void add_analyse(CLI::App& app, int& code) {
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");
   command->require_subcommand(1);
-  add_steady(*command, arguments, code);
-  add_spectrum(*command, arguments, code);
-  add_ageing(*command, arguments, code);
-  add_hysteresis(*command, arguments, code);
-  add_sweep(*command, arguments, code);
+  Kinds kinds(*command, arguments);
+  add_steady(kinds, code);
+  add_spectrum(kinds, a, code);
+  add_ageing(kinds, a, code);
+  add_hysteresis(kinds, code);
+  add_sweep(kinds, a, code);
   command->footer(
       "Examples:\n"
       "  jostle analyse quickstart.h5 steady --observable mean_height --last 1000\n"

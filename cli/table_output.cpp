@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/half_widths.hpp"
 #include "cli/text_table.hpp"
 
 namespace jostle {
@@ -211,7 +212,8 @@ std::string csv_line(const std::vector<std::string>& cells) {
 
 }  // namespace
 
-std::string table_text(const Table& table, Detail detail) {
+std::string table_text(const Table& stored, Detail detail) {
+  const Table table = with_half_widths(stored);
   std::string text = fmt::format("{}\n", table.name);
   for (const auto& [name, note] : table.notes) text += fmt::format("  {:<22} {}\n", name, note);
   for (const Block& block : blocks_of(table)) {

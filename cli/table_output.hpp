@@ -14,7 +14,8 @@ enum class Detail {
   full
 };
 
-/// Notes, single values with their errors, then columns, one block a set of axes.
+/// Notes, single values with their errors (with_half_widths), then columns, one block a set of
+/// axes.
 std::string table_text(const Table& table, Detail detail);
 
 /// {"name", "notes": {...}, "axes": {name: quantity}, "quantities": {name: quantity}}, a quantity

@@ -55,6 +55,8 @@ void read_settings(const Reader& in, SweepSettings& settings) {
   if (const auto quantity = in.find("quantity")) settings.quantity = quantity->text().value_or("");
   read_optional(in, "last", 1, settings.last);
   if (const auto against = in.find("against")) settings.against = against->text().value_or("");
+  if (const auto reference = in.find("reference"))
+    settings.reference = reference->number(between(-1e9, 1e9));
 }
 
 const std::vector<std::string>& keys(const AgeingSettings&) {
@@ -68,7 +70,8 @@ const std::vector<std::string>& keys(const HysteresisSettings&) {
 }
 
 const std::vector<std::string>& keys(const SweepSettings&) {
-  static const std::vector<std::string> names = {"observable", "quantity", "last", "against"};
+  static const std::vector<std::string> names = {"observable", "quantity", "last", "against",
+                                                 "reference"};
   return names;
 }
 
@@ -135,6 +138,7 @@ Json written(const SweepSettings& settings) {
   Json out = {{"quantity", settings.quantity}};
   if (settings.last) out["last"] = *settings.last;
   if (!settings.against.empty()) out["against"] = settings.against;
+  if (settings.reference) out["reference"] = plain_number(*settings.reference);
   return out;
 }
 

@@ -16,7 +16,12 @@ constexpr std::uint64_t fewest_ageing_taps = 2;  // of the default grid
 class AnalysisCheck {
  public:
   AnalysisCheck(const Scene& scene, std::vector<Fault>& faults)
-      : faults_(faults), taps_(total_taps(scene.protocol)) {
+      : scene_(scene),
+        read_(faults),
+        faults_(faults),
+        observables_sound_(sound(faults, "/observe")),
+        protocol_sound_(sound(faults, "/protocol")),
+        taps_(protocol_sound_ ? total_taps(scene.protocol) : 0) {
     for (const Observable& observable : scene.observables) observed_.push_back(name_of(observable));
   }
 
@@ -25,11 +30,13 @@ class AnalysisCheck {
     for (std::size_t i = 0; i < requests.size(); ++i) {
       const std::string place = fmt::format("/analyse/{}/{}", kind, i);
       const std::string& name = requests[i].observable;
-      if (std::ranges::find(observed_, name) == observed_.end()) {
-        note(place + "/observable", fmt::format("\"{}\" is not observed (observed: {}).{}", name,
-                                                listed(observed_), did_you_mean(name, observed_)));
+      const bool known = std::ranges::find(observed_, name) != observed_.end();
+      if (!known && observables_sound_) {
+        note(place, "/observable",
+             fmt::format("\"{}\" is not observed (observed: {}).{}", name, listed(observed_),
+                         did_you_mean(name, observed_)));
       }
-      check(place, requests[i].settings);
+      if (protocol_sound_) check(place, requests[i].settings);
     }
   }
 
@@ -43,30 +50,40 @@ class AnalysisCheck {
     const std::uint64_t analysed =
         settings.last.value_or(std::max(fewest_spectrum_taps, taps_ / 2));
     if (settings.segment && *settings.segment > analysed) {
-      note(place + "/segment", fmt::format("{} taps are more than the {} that are analysed",
-                                           *settings.segment, analysed));
+      note(place, "/segment",
+           fmt::format("{} taps are more than the {} that are analysed", *settings.segment,
+                       analysed));
     }
   }
 
   void check(const std::string& place, const AgeingSettings& settings) {
     if (settings.waiting_times.empty() && settings.lags.empty() && taps_ < fewest_ageing_taps) {
-      note(place, fmt::format("needs {} taps, but the protocol has {}", fewest_ageing_taps, taps_));
+      note(place, "",
+           fmt::format("needs {} taps, but the protocol has {}", fewest_ageing_taps, taps_));
     }
     if (!settings.waiting_times.empty() && settings.waiting_times.back() >= taps_) {
-      note(place + "/waiting_times",
+      note(place, "/waiting_times",
            fmt::format("{} taps, but the protocol has {}, and a lag follows",
                        settings.waiting_times.back(), taps_));
     }
     if (settings.lags.empty()) return;
-    if (settings.lags.front() == 0) note(place + "/lags", "a lag is at least 1 tap");
+    if (settings.lags.front() == 0) note(place, "/lags", "a lag is at least 1 tap");
     if (settings.lags.back() > taps_) {
-      note(place + "/lags",
+      note(place, "/lags",
            fmt::format("{} taps, but the protocol has {}", settings.lags.back(), taps_));
     }
   }
 
   void check(const std::string& place, const HysteresisSettings& settings) {
     check_last(place, settings.last, 1);
+    const std::vector<Stage> steps = stages(scene_.protocol);
+    const auto same = [&](const Stage& stage) { return stage.tap == steps.front().tap; };
+    if (std::ranges::all_of(steps, same)) {
+      note(place, "",
+           "the protocol has taps of one strength only: hysteresis needs a ramp, and a loop one up "
+           "and "
+           "one down");
+    }
   }
 
   void check(const std::string& place, const SweepSettings& settings) {
@@ -76,17 +93,23 @@ class AnalysisCheck {
   void check_last(const std::string& place, const std::optional<std::uint64_t>& last,
                   std::uint64_t least) {
     if (last && *last > taps_) {
-      note(place + "/last", fmt::format("{} taps, but the protocol has {}", *last, taps_));
+      note(place, "/last", fmt::format("{} taps, but the protocol has {}", *last, taps_));
     } else if (taps_ < least) {
-      note(place, fmt::format("needs {} taps, but the protocol has {}", least, taps_));
+      note(place, "", fmt::format("needs {} taps, but the protocol has {}", least, taps_));
     }
   }
 
-  void note(std::string pointer, std::string message) {
-    faults_.push_back({std::move(pointer), std::move(message)});
+  /// At a request, or at one of its values where that has no fault already: what was read in the
+  /// place of a faulty value is a default.
+  void note(const std::string& place, const std::string& key, std::string message) {
+    if (!key.empty() && !sound(read_, place + key)) return;
+    faults_.push_back({place + key, std::move(message)});
   }
 
+  const Scene& scene_;
+  const std::vector<Fault> read_;  // faults that reading found
   std::vector<Fault>& faults_;
+  bool observables_sound_, protocol_sound_;
   std::vector<std::string> observed_;
   std::uint64_t taps_;
 };
@@ -117,9 +140,6 @@ std::vector<std::string> made_of(const Scene& scene, const std::string& observab
 }  // namespace
 
 void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
-  for (const char* part : {"/analyse", "/observe", "/protocol"}) {
-    if (!sound(faults, part)) return;
-  }
   AnalysisCheck check(scene, faults);
   check("steady", scene.analyse.steady);
   check("spectrum", scene.analyse.spectrum);
@@ -129,9 +149,7 @@ void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
 }
 
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults) {
-  for (const char* part : {"/analyse", "/sweep", "/fits"}) {
-    if (!sound(faults, part)) return;
-  }
+  if (!sound(faults, "/sweep")) return;
   std::vector<std::string> pointers;
   for (const SweepAxis& axis : scene.sweep) {
     for (const auto& column : axis.columns) pointers.push_back(column.first);
@@ -149,6 +167,7 @@ void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults) {
                                                         settings.against, listed(pointers))});
     }
     if (settings.quantity == "value") continue;
+    if (!sound(faults, "/fits")) continue;
     const std::vector<std::string> made = made_of(scene, observable);
     const std::string kind = settings.quantity.substr(0, settings.quantity.find('/'));
     if (kind == settings.quantity || std::ranges::find(made, kind) == made.end()) {

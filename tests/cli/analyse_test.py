@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 import unittest
 
 import h5py
@@ -32,7 +33,9 @@ class Analysed(Case):
         for table in tables:
             self.assertEqual(table["notes"]["taps"], "97 to 160")
             self.assertEqual(table["notes"]["realizations"], "3")
-            self.assertRegex(table["notes"]["verdict"], "^(reached$|not reached: )")
+            self.assertRegex(table["notes"]["verdict"],
+                             "^(reached: |not reached: |cannot decide with 3 realizations: )")
+            self.assertEqual(table["quantities"]["value_dof"]["values"], 2)
             value = table["quantities"]["value"]
             self.assertEqual(value["units"], "diameter")
             self.assertGreater(table["quantities"]["value_error"]["values"], 0)
@@ -66,12 +69,73 @@ class Analysed(Case):
         # Blocks of one tap: variance of single taps / (n - 1) over all 384 of them.
         error = steady["quantities"]["block_error"]["values"][0]
         self.assertAlmostEqual(from_lines / (error ** 2 * 384 * 127 / 128), 1, places=9)
-        self.assertIn("drift", table["notes"]["verdict"])
+        self.assertIn("drift", table["notes"]["drift"])
+        self.assertIn("a stationary AR(1) with", table["notes"]["verdict"])
         band = self.analyse(*asked, "--band", "0.01:0.2")["tables"][0]
         self.assertTrue(band["notes"]["band"].startswith("0.01 to 0.2 per tap"))
         self.assertTrue(math.isfinite(band["quantities"]["slope_error"]["values"]))
         text = self.jostle("analyse", *asked).stdout
         self.assertRegex(text, r"slope +-?\d+\.\d+ \+- \d")
+
+    def test_options_stand_before_the_name_of_an_analysis_too(self):
+        self.write(TAPPED)
+        self.run_scene()
+        behind = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "64")
+        before = self.analyse("tiny.h5", "--observable", "mean_height", "--last", "64", "steady")
+        self.assertEqual(before["tables"], behind["tables"])
+        for wrong, said in ((["--band", "0.1:0.2", "steady", "--observable", "mean_height"],
+                             "steady has no option --band"),
+                            (["--last", "64", "steady", "--last", "65", "--observable",
+                              "mean_height"], "--last is there twice"),
+                            (["steady"], "--observable is required")):
+            done = self.jostle("analyse", "tiny.h5", *wrong, expect=BAD_INPUT)
+            self.assertIn(said, done.stderr)
+
+    def test_people_read_half_widths_and_programs_errors(self):
+        self.write(TAPPED)
+        self.run_scene()
+        asked = ["tiny.h5", "steady", "--observable", "mean_height", "--sweep-point", "0"]
+        found = self.analyse(*asked)["tables"][0]["quantities"]
+        text = self.jostle("analyse", *asked).stdout
+        printed = float(re.search(r"^  value .* \+- (\S+) diameter", text, re.M).group(1))
+        # Student's t of two degrees of freedom at 68.27 %.
+        error = found["value_error"]["values"]
+        self.assertAlmostEqual(printed / (1.3213 * error), 1, delta=0.05)
+        self.assertNotIn("value_dof", text)
+        self.assertIn("half the 68 % interval by Student's t", text)
+
+    def test_differences_between_points_are_paired_where_streams_are_matched(self):
+        means = {}
+        for streams in ("matched", "independent"):
+            self.write(changed(TAPPED, name=streams, streams=streams, realizations=4,
+                               sweep={"/protocol/0/tap/dilate": [0.01, 0.04, 0.09]}))
+            self.run_scene()
+            asked = [f"{streams}.h5", "sweep", "--observable", "mean_height", "--last", "40"]
+            table = self.analyse(*asked)["tables"][0]
+            means = [self.series("mean_height", point, f"{streams}.h5")[-40:].mean(axis=0)
+                     for point in range(3)]
+            found = {name: table["quantities"][name]["values"] for name in
+                     ("from", "to", "difference", "difference_error", "difference_dof",
+                      "difference_p", "difference_p_corrected")}
+            for pair in range(2):
+                step = means[pair + 1] - means[pair]
+                self.assertAlmostEqual(found["difference"][pair] / step.mean(), 1, places=9)
+                if streams == "matched":
+                    error, dof = step.std(ddof=1) / 2, 3
+                else:
+                    squares = [means[i].var(ddof=1) / 4 for i in (pair, pair + 1)]
+                    error = sum(squares) ** 0.5
+                    dof = 3 * sum(squares) ** 2 / (squares[0] ** 2 + squares[1] ** 2)
+                self.assertAlmostEqual(found["difference_error"][pair] / error, 1, places=9)
+                self.assertAlmostEqual(found["difference_dof"][pair], dof, places=6)
+            least = min(found["difference_p"])
+            self.assertAlmostEqual(min(found["difference_p_corrected"]), min(1, 2 * least))
+            self.assertEqual("matched" in table["notes"]["differences"].split("not")[0],
+                             streams == "matched")
+            to_one = self.analyse(*asked, "--reference", "0.3")["tables"][0]["quantities"]
+            self.assertEqual([round(x, 12) for x in to_one["to"]["values"]], [0.1, 0.2])
+        refused = self.jostle("analyse", *asked, "--reference", "0.25", expect=BAD_INPUT).stdout
+        self.assertIn("there are 0.1, 0.2, 0.3", refused)
 
     def test_what_cannot_be_analysed_is_refused_in_words(self):
         self.write(TINY)
@@ -133,6 +197,9 @@ class Analysed(Case):
         # Later less earlier branch, by trapezia over 0.1 to 0.3.
         area = 0.1 * ((steps[4] - steps[0]) / 2 + (steps[3] - steps[1]))
         self.assertAlmostEqual(values["area"]["values"][0], area.mean(), places=12)
+        self.assertEqual(values["area_dof"]["values"], [2])
+        self.assertRegex(values["area_verdict"]["values"][0],
+                         "^(the branches differ|cannot decide with 3 realizations)")
         self.assertAlmostEqual(values["area_error"]["values"][0] / (area.std(ddof=1) / 3 ** 0.5), 1,
                                places=9)
 

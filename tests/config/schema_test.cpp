@@ -81,6 +81,7 @@ const std::vector<std::string> cross_field_messages{
     "list a value once",
     "is empty: the first tap must be the lower",
     "is not observed (observed:",
+    "hysteresis needs a ramp",
     "after the last one,",
     "the lowest frequency comes first",
     "but the protocol has",
