@@ -51,6 +51,15 @@ class LadderMaker {
     intervals(rule);
   }
 
+  void stops(const HeightChangeStop& rule) {
+    for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
+      HeightChangeStop other = rule;
+      other.change = rounded(rule.change * factor);
+      if (other.change <= 1) stop(other, factor, fmt::format("change = {:.3g} d", other.change));
+    }
+    intervals(rule);
+  }
+
   template <class OfMeanHeight>
   void intervals(const OfMeanHeight& rule) {
     for (const std::uint64_t interval : {rule.every_sweeps / 10, rule.every_sweeps * 10}) {

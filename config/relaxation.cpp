@@ -58,11 +58,16 @@ Move read_metropolis(const Reader& in) {
 }
 
 StopRule read_mean_height_stop(const Reader& in) {
-  MeanHeightStop stop;
-  if (!in.is_object_of({"eta", "every_sweeps"})) return stop;
-  in.read("eta", stop.eta, strictly_between(0, 1));
-  in.read_whole("every_sweeps", stop.every_sweeps, 1, most_sweeps);
-  return stop;
+  MeanHeightStop relative;
+  if (!in.is_object_of({"eta", "change", "every_sweeps"})) return relative;
+  const auto eta = in.find("eta"), change = in.find("change");
+  if (eta) relative.eta = eta->number(strictly_between(0, 1)).value_or(relative.eta);
+  in.read_whole("every_sweeps", relative.every_sweeps, 1, most_sweeps);
+  if (!change) return relative;
+  if (eta) in.fault("expected only one of the keys eta (relative), change (in diameters)");
+  HeightChangeStop absolute{.every_sweeps = relative.every_sweeps};
+  absolute.change = change->number(above(0, 1)).value_or(absolute.change);
+  return absolute;
 }
 
 StopRule read_bulk_fraction_stop(const Reader& in) {
@@ -111,6 +116,10 @@ struct StopWriter {
   Json operator()(const MeanHeightStop& stop) const {
     return {
         {"mean_height", {{"eta", plain_number(stop.eta)}, {"every_sweeps", stop.every_sweeps}}}};
+  }
+  Json operator()(const HeightChangeStop& stop) const {
+    return {{"mean_height",
+             {{"change", plain_number(stop.change)}, {"every_sweeps", stop.every_sweeps}}}};
   }
   Json operator()(const BulkFractionStop& stop) const {
     return {{"bulk_fraction",

@@ -13,6 +13,9 @@ struct MeasurementInterval {
   std::uint64_t operator()(const MeanHeightStop& rule) const {
     return rule.every_sweeps * n_spheres;
   }
+  std::uint64_t operator()(const HeightChangeStop& rule) const {
+    return rule.every_sweeps * n_spheres;
+  }
   std::uint64_t operator()(const BulkFractionStop& rule) const { return rule.every_trials; }
   std::uint64_t operator()(const SweepsStop& rule) const { return rule.sweeps * n_spheres; }
 };
@@ -24,11 +27,9 @@ struct Measure {
   RelaxationProgress& progress;
 
   bool operator()(const MeanHeightStop& rule) const {
-    const double before = progress.last_value;
-    const double now = progress.last_value = loop.mean_height();
-    if (!std::exchange(progress.measured, true)) return false;
-    return std::abs(now - before) < rule.eta * before;
+    return changes_less_than(rule.eta * progress.last_value);
   }
+  bool operator()(const HeightChangeStop& rule) const { return changes_less_than(rule.change); }
   bool operator()(const BulkFractionStop& rule) const {
     if (progress.trials == 0 && !rule.measure_start) return false;
     const double before = progress.last_value;
@@ -39,6 +40,15 @@ struct Measure {
   }
   bool operator()(const SweepsStop& rule) const {
     return progress.trials >= rule.sweeps * loop.n_spheres();
+  }
+
+ private:
+  // Whether <Z> has changed by less than so many diameters; not at the first test.
+  bool changes_less_than(double diameters) const {
+    const double before = progress.last_value;
+    const double now = progress.last_value = loop.mean_height();
+    if (!std::exchange(progress.measured, true)) return false;
+    return std::abs(now - before) < diameters;
   }
 };
 

@@ -29,6 +29,14 @@ struct MeanHeightStop {
   bool operator==(const MeanHeightStop&) const = default;
 };
 
+/// Stop when |Z' - Z| < `change` diameters between two tests: MeanHeightStop with eta <Z> fixed for
+/// beds of every depth. The first value is taken right after the tap. Ours.
+struct HeightChangeStop {
+  double change = 1e-4;  // diameters
+  std::uint64_t every_sweeps = 100;
+  bool operator==(const HeightChangeStop&) const = default;
+};
+
 /// Stop when the solids fraction in `window` changes by at most `change` between two measurements
 /// `every_trials` apart, `times` times in a row. Rosato et al. 2010, sec. II: change = 0.001,
 /// 1e6 trials, twice. It can stop a bed in mid-air.
@@ -47,7 +55,7 @@ struct SweepsStop {
   bool operator==(const SweepsStop&) const = default;
 };
 
-using StopRule = std::variant<MeanHeightStop, BulkFractionStop, SweepsStop>;
+using StopRule = std::variant<MeanHeightStop, BulkFractionStop, SweepsStop, HeightChangeStop>;
 
 /// A rule and the cap that ends a relaxation which never meets it. A capped relaxation is reported.
 struct Stop {

@@ -124,6 +124,16 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(snapshots["bin_width"]["default"] == Snapshots{}.bin_width);
 }
 
+TEST_CASE("A stop by mean height is relative or in diameters") {
+  const Scene scene = scene_of(text_of(good_scenes / "stop_in_diameters.json"));
+  CHECK(scene.relax.stop.rule == StopRule{HeightChangeStop{.change = 2e-4, .every_sweeps = 50}});
+  REQUIRE(scene.relax_start);
+  CHECK(scene.relax_start->stop.rule == StopRule{HeightChangeStop{.change = 1}});
+  const auto stop = resolved(scene)["relax"]["stop"]["mean_height"];
+  CHECK(stop["change"] == 2e-4);
+  CHECK_FALSE(stop.contains("eta"));
+}
+
 TEST_CASE("The scenes of the reference page are scenes") {
   const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
   const std::string fence = "```json\n";

@@ -88,6 +88,19 @@ TEST_CASE("A bulk fraction is read through a narrower and a wider window, too") 
   CHECK(windows.size() == 3);
 }
 
+TEST_CASE("A ladder of an absolute stop goes up and down from the scene's change") {
+  Scene scene = shipped("quickstart.json");
+  scene.relax.stop.rule = HeightChangeStop{.change = 1e-3, .every_sweeps = 50};
+  const std::vector<Rung> rungs = ladder(scene);
+  const auto all = names(rungs);
+  for (const char* name : {"change = 0.1 d", "change = 0.01 d", "change = 0.0001 d",
+                           "change = 1e-05 d", "test every 5 sweeps", "test every 500 sweeps"}) {
+    CAPTURE(name);
+    CHECK(all.contains(name));
+  }
+  CHECK(rungs[most_complete(rungs).last].name == "change = 1e-05 d");
+}
+
 TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from the same beds") {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(
            std::filesystem::path(SOURCE_ROOT) / "config" / "scenes")) {

@@ -76,8 +76,9 @@ TEST_CASE("A resume refuses snapshots that changed within the taps of the run") 
 
 TEST_CASE("A resume keeps the sampler") {
   CHECK(faults_of([](Json& scene) { scene["relax"] = {{"sampler", "exhaustive"}}; }).empty());
-  CHECK(faults_of([](Json& scene) { scene["relax"] = {{"sampler", "skipping"}}; }) ==
-        "/relax/sampler: was \"exhaustive\", is \"skipping\": a resumed run keeps it\n");
+  CHECK(faults_of([](Json& scene) {
+          scene["relax"] = {{"sampler", "skipping"}};
+        }) == "/relax/sampler: was \"exhaustive\", is \"skipping\": a resumed run keeps it\n");
 }
 
 TEST_CASE("A resume names everything that changed") {

@@ -46,6 +46,35 @@ TEST_CASE("the mean-height rule stops at the first small relative change") {
   CHECK(progress.accepted == twin->tally().accepted);
 }
 
+TEST_CASE("the absolute rule stops at the first small change in diameters") {
+  const Packing start = bed();
+  const auto loop = loaded(start);
+  RelaxationProgress progress;
+  relax(*loop, {HeightChangeStop{4e-3, 50}, 100'000}, {}, progress, endless);
+  REQUIRE(progress.status == RelaxationStatus::settled);
+
+  const auto twin = loaded(start);
+  double before = twin->mean_height(), now = 0;
+  std::uint64_t trials = 0;
+  for (;;) {
+    twin->run(50 * 40);
+    trials += 50 * 40;
+    now = twin->mean_height();
+    if (std::abs(now - before) < 4e-3) break;
+    before = now;
+  }
+  CHECK(progress.trials == trials);
+  CHECK(progress.last_value == now);
+
+  // Cut into slices, as by a checkpoint, it takes the same course.
+  const auto sliced = loaded(start);
+  RelaxationProgress in_slices;
+  while (in_slices.status == RelaxationStatus::running) {
+    relax(*sliced, {HeightChangeStop{4e-3, 50}, 100'000}, {}, in_slices, 700);
+  }
+  CHECK(in_slices == progress);
+}
+
 TEST_CASE("the bulk-fraction rule wants its number of small changes in a row") {
   const Packing start = bed();
   const HeightWindow window{1, 4};

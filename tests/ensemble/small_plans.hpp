@@ -56,6 +56,11 @@ inline std::vector<NamedPlan> various_plans() {
                                               .window = HeightWindow{0.5, 2.5}},
                      .max_sweeps = 300};
 
+  Plan& absolute = add("walls, pour between them, polar, mean height in diameters");
+  absolute.container = WalledBox{4.5, 4.2};
+  absolute.relax.stop = {.rule = HeightChangeStop{.change = 1e-4, .every_sweeps = 20},
+                         .max_sweeps = 2000};
+
   Plan& shaken = add("periodic, shake, warm Metropolis that resets its step, sweeps");
   shaken.protocol = {{Shake{.lambda = 0.05, .lateral_radius = 0.1}, 2}, {DilateFloorHeld{}, 3}};
   shaken.relax.move = MetropolisMove{.max_step = 0.15, .beta = 5, .adaptation = adaptation};
