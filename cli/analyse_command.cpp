@@ -18,6 +18,8 @@
 #include "cli/scene_file.hpp"
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
+#include "config/json_text.hpp"
+#include "config/suggestion.hpp"
 
 namespace jostle {
 
@@ -27,6 +29,7 @@ struct AnalyseArguments {
   std::vector<std::string> inputs, observables;
   std::string point, csv;
   bool json = false, not_stored = false, force = false;
+  Live live = Live::no;
   int threads = 0;
   // Of single analyses.
   std::uint64_t last = 0, segment = 0;
@@ -123,11 +126,12 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
     {
-      const ResultsFile file = open_results(input);
+      const ResultsFile file = open_results(input, arguments.live);
       tables = analyse(file, chosen_points(file.study(), arguments.point), analyses, threads);
     }
     output.show(tables, input);
-    if (!arguments.not_stored) keep_tables(input, "analysis", tables, by);
+    if (!arguments.not_stored && arguments.live == Live::no)
+      keep_tables(input, "analysis", tables, by);
   }
   return output.end(by);
 }
@@ -154,7 +158,8 @@ int run_sweep(const AnalyseArguments& arguments) {
   std::vector<Table> tables;
   {
     std::vector<ResultsFile> files;
-    for (const std::string& input : arguments.inputs) files.push_back(open_results(input));
+    for (const std::string& input : arguments.inputs)
+      files.push_back(open_results(input, arguments.live));
     require_different_runs(files);
     std::vector<const ResultsFile*> all;
     for (const ResultsFile& file : files) all.push_back(&file);
@@ -166,7 +171,7 @@ int run_sweep(const AnalyseArguments& arguments) {
     names.append(names.empty() ? "" : ", ").append(input);
   }
   output.show(tables, names);
-  if (!arguments.not_stored && arguments.inputs.size() == 1) {
+  if (!arguments.not_stored && arguments.live == Live::no && arguments.inputs.size() == 1) {
     keep_tables(arguments.inputs.front(), "analysis", tables, by);
   }
   return output.end(by);
@@ -185,8 +190,9 @@ CLI::Validator existing_file() {
   return CLI::Validator(
       [](const std::string& text) -> std::string {
         if (CLI::ExistingFile(std::string(text)).empty()) return {};
-        return fmt::format("{}: there is no such file, and no such analysis; there are {}", text,
-                           "steady, spectrum, ageing, hysteresis, sweep");
+        const std::vector<std::string> kinds{"steady", "spectrum", "ageing", "hysteresis", "sweep"};
+        return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
+                           joined(kinds, ", "), did_you_mean(text, kinds));
       },
       "FILE");
 }
@@ -345,6 +351,7 @@ void add_analyse(CLI::App& app, int& code) {
   command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results files as they are");
+  add_live(*command, a.live);
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");
@@ -357,7 +364,7 @@ void add_analyse(CLI::App& app, int& code) {
   add_sweep(kinds, a, code);
   command->footer(
       "Examples:\n"
-      "  jostle analyse quickstart.h5 steady --observable mean_height --last 1000\n"
+      "  jostle analyse quickstart.h5 steady --observable mean_height --last 50\n"
       "  jostle analyse *.h5 spectrum --observable mean_height --band 0.001:0.1 --json\n"
       "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,100,1000\n"
       "  jostle analyse fig4.h5 hysteresis --observable bulk_fraction\n"

@@ -20,8 +20,8 @@ CLI::Validator file_to_write();
 /// Has every option that holds unsigned numbers, of all commands, refuse negative ones.
 void refuse_negative_counts(CLI::App& app);
 
-/// For a command line that does not begin with a command: the word that should be one is named with
-/// those there are. Empty for others.
-std::string unknown_command(const CLI::App& app);
+/// For a command line that could not be read: a word that should be a command, or an option that
+/// its command does not have, with those there are or the nearest of them. Empty for others.
+std::string unknown_word(const CLI::App& app);
 
 }  // namespace jostle

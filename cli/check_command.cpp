@@ -12,7 +12,10 @@
 #include "cli/effects.hpp"
 #include "cli/pilot.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/scene_warnings.hpp"
 #include "cli/text_table.hpp"
+#include "config/json_text.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 namespace {
@@ -22,6 +25,7 @@ constexpr double process_bytes = 40e6;               // libraries and bookkeepin
 
 struct CheckArguments {
   std::string scene;
+  int threads = 0;  // 0: what the process may use
   bool no_pilot = false;
 };
 
@@ -35,9 +39,9 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
 void print_size(const LoadedScene& loaded, const Study& study) {
   std::uint64_t taps = 0;
   for (const auto& point : study.points) taps += point.taps * study.realizations;
-  fmt::print("size\n  {} sweep point{} x {} realization{}, {} spheres, {} taps in all\n",
-             study.points.size(), study.points.size() == 1 ? "" : "s", study.realizations,
-             study.realizations == 1 ? "" : "s", loaded.scene.n_spheres, taps);
+  fmt::print("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
+             counted(study.realizations, "realization"), counted(loaded.scene.n_spheres, "sphere"),
+             counted(taps, "tap"));
   for (const auto& point : study.points) {
     if (!point.label.empty()) fmt::print("  {}\n", point.label);
   }
@@ -50,19 +54,23 @@ void print_size(const LoadedScene& loaded, const Study& study) {
 }
 
 void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
-  std::string spheres = fmt::to_string(estimate.n_spheres);
-  if (estimate.n_spheres < plan.n_spheres) spheres += fmt::format(" of {}", plan.n_spheres);
-  fmt::print(
-      "  {}{}{} spheres, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a "
-      "realization\n",
-      plan.label, plan.label.empty() ? "" : ": ", spheres,
-      format_count(static_cast<double>(estimate.trials)), format_count(estimate.trials_per_second),
-      estimate.settled ? "about" : "at least", estimate.sweeps_per_tap,
-      estimate.settled ? "about" : "at least", format_duration(estimate.realization));
+  std::string pilot = counted(plan.n_spheres, "sphere");
+  if (estimate.n_spheres < plan.n_spheres) {
+    pilot = fmt::format("{} of {}", estimate.n_spheres, pilot);
+  }
+  if (estimate.n_strengths > 1) {
+    pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
+  }
+  fmt::print("  {}{}{}, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a realization\n",
+             plan.label, plan.label.empty() ? "" : ": ", pilot,
+             format_count(static_cast<double>(estimate.trials)),
+             format_count(estimate.trials_per_second), estimate.settled ? "about" : "at least",
+             estimate.sweeps_per_tap, estimate.settled ? "about" : "at least",
+             format_duration(estimate.realization));
 }
 
-void print_pilot(const LoadedScene& loaded) {
-  fmt::print("cost, extrapolated from the first tap of a pilot\n");
+void print_pilot(const LoadedScene& loaded, int cpus) {
+  fmt::print("cost, extrapolated from the first taps of a pilot\n");
   const auto points = pilot_points(loaded.plans.size());
   Seconds mean{0};
   std::size_t bytes = 0;
@@ -75,11 +83,11 @@ void print_pilot(const LoadedScene& loaded) {
     settled = settled && estimate.settled;
   }
   const std::size_t realizations = loaded.plans.size() * loaded.scene.realizations;
-  const std::size_t threads = std::min(static_cast<std::size_t>(available_cpus()), realizations);
+  const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t rounds = (realizations + threads - 1) / threads;
   const char* const about = settled ? "about" : "at least";
-  fmt::print("  time: {} {} on {} thread{}, {:.3g} core-hours\n", about,
-             format_duration(mean * static_cast<double>(rounds)), threads, threads == 1 ? "" : "s",
+  fmt::print("  time: {} {} on {}, {:.3g} core-hours\n", about,
+             format_duration(mean * static_cast<double>(rounds)), counted(threads, "thread"),
              mean.count() * static_cast<double>(realizations) / 3600);
   fmt::print("  memory: about {}\n",
              format_bytes(process_bytes + static_cast<double>(threads * bytes)));
@@ -90,10 +98,12 @@ void check(const CheckArguments& arguments) {
   fmt::print("{}\n\n", loaded.resolved);
   fmt::print("{}", effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
   print_size(loaded, study_of(loaded));
+  const std::vector<std::string> warnings = scene_warnings(loaded);
+  if (!warnings.empty()) fmt::print("warnings\n  {}\n", joined(warnings, "\n  "));
   std::fflush(stdout);
   if (arguments.no_pilot) return;
   try {
-    print_pilot(loaded);
+    print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());
   } catch (const StartError& error) {
     throw BadInput(fmt::format("{}: /start: {}", arguments.scene, error.what()));
   }
@@ -105,6 +115,11 @@ void add_check(CLI::App& app, int& code) {
   auto* command = app.add_subcommand("check", "Say what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
   command->add_option("scene", arguments->scene, "The scene, a JSON file")->required();
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Estimate for so many (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
   command->add_flag("--no-pilot", arguments->no_pilot,
                     "Leave out the short trial that time and memory are estimated from");
   command->footer(

@@ -8,6 +8,7 @@
 // `code` once the parser has called it.
 namespace jostle {
 
+void add_new(CLI::App& app, int& code);
 void add_run(CLI::App& app, int& code);
 void add_check(CLI::App& app, int& code);
 void add_cost(CLI::App& app, int& code);

@@ -10,6 +10,7 @@
 #include "cli/available_cpus.hpp"
 #include "cli/commands.hpp"
 #include "cli/cost_report.hpp"
+#include "cli/cost_rounds.hpp"
 #include "cli/failure.hpp"
 #include "cli/fit_source.hpp"
 #include "cli/keep_tables.hpp"
@@ -23,8 +24,11 @@
 #include "cli/stop_request.hpp"
 #include "cli/table_output.hpp"
 #include "config/grids.hpp"
+#include "config/json_text.hpp"
+#include "config/suggestion.hpp"
 #include "config/sweep.hpp"
 #include "ensemble/run.hpp"
+#include "results/live_run.hpp"
 #include "results/run_store.hpp"
 
 namespace jostle {
@@ -60,15 +64,17 @@ Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
 }
 
 std::string observable_name(const Scene& scene, const std::string& wanted) {
-  std::string names, found;
+  std::string found;
+  std::vector<std::string> names;
   for (const Observable& observable : scene.observables) {
     const std::string name = label(observable).name;
-    names.append(names.empty() ? "" : ", ").append(name);
+    names.push_back(name);
     if (name == (wanted.empty() ? "bottom_fraction" : wanted)) found = name;
   }
   if (!found.empty()) return found;
   if (wanted.empty()) return label(scene.observables.front()).name;
-  throw BadInput(fmt::format("--observable {}: the scene observes {}", wanted, names));
+  throw BadInput(fmt::format("--observable {}: the scene observes {}.{}", wanted,
+                             joined(names, ", "), did_you_mean(wanted, names)));
 }
 
 std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const LoadedScene& pilot,
@@ -113,8 +119,14 @@ void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
 class Rounds {
  public:
   Rounds(const CostArguments& arguments, const LoadedScene& pilot, const Study& study,
-         RunStore& store, std::size_t longest)
-      : arguments_(arguments), pilot_(pilot), study_(study), store_(store), longest_(longest) {}
+         RunStore& store, const std::string& output, std::size_t longest)
+      : arguments_(arguments),
+        pilot_(pilot),
+        study_(study),
+        store_(store),
+        output_(output),
+        longest_(longest),
+        worked_before_(run_status(output).realizations) {}
 
   /// Whether they were completed, not stopped. None is added where all so far failed.
   bool run(int threads) {
@@ -130,14 +142,10 @@ class Rounds {
   std::string stopped_by() const { return stop_.reason(); }
 
  private:
-  /// As many rounds as the budget has room for, at the pace so far; one more to find it.
   std::uint32_t affordable(std::uint32_t done) const {
     const Seconds spent = std::chrono::steady_clock::now() - began_;
-    if (computed_ == 0) return spent < arguments_.budget ? done + 1 : done;
-    const double a_round = spent.count() / (static_cast<double>(computed_) /
-                                            static_cast<double>(study_.points.size()));
-    const double more = std::max(0.0, (arguments_.budget - spent).count() / a_round);
-    return done + static_cast<std::uint32_t>(std::min(more, 1e6));
+    return affordable_rounds(done, arguments_.budget, spent,
+                             rounds_done(worked_before_, ResultsFile(output_).realizations()));
   }
 
   bool complete(int threads) {
@@ -165,7 +173,9 @@ class Rounds {
   const LoadedScene& pilot_;
   Study study_;
   RunStore& store_;
+  std::string output_;
   std::size_t longest_;
+  std::vector<RealizationSummary> worked_before_;  // by earlier processes
   StopRequest stop_;
   Progress progress_;
   std::uint64_t computed_ = 0, failed_ = 0;  // realizations
@@ -214,7 +224,7 @@ int run_cost(const CostArguments& arguments) {
   if (arguments.rounds > 0) study.realizations = std::min(study.realizations, arguments.rounds);
   try {
     auto store = open_store(arguments, pilot, study, output, by);
-    Rounds rounds(arguments, pilot, study, *store, most_complete(rungs).last);
+    Rounds rounds(arguments, pilot, study, *store, output, most_complete(rungs).last);
     if (!rounds.run(threads)) {
       print_to_standard_error(fmt::format("jostle: stopped by {}; --resume goes on with {}\n",
                                           rounds.stopped_by(), output));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ensemble/counted.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {
@@ -82,9 +83,10 @@ std::string enough_line(const EnoughStatus& status) {
   const char* const verdict = status.met                          ? "enough"
                               : status.next > status.realizations ? "not enough yet"
                                                                   : "NOT enough, but the limit";
-  return fmt::format("{} realizations are {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
-                     status.realizations, verdict, text(2), text(1), values[farthest],
-                     limits[farthest]);
+  return fmt::format("{} {} {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
+                     counted(status.realizations, "realization"),
+                     status.realizations == 1 ? "is" : "are", verdict, text(2), text(1),
+                     values[farthest], limits[farthest]);
 }
 
 }  // namespace jostle

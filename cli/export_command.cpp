@@ -10,6 +10,8 @@
 #include "cli/output_file.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/text_table.hpp"
+#include "ensemble/counted.hpp"
 #include "results/export.hpp"
 #include "results/publish.hpp"
 #include "results/results_file.hpp"
@@ -26,6 +28,7 @@ struct ExportArguments {
   std::vector<std::string> taps;
   std::uint32_t realization = 0;
   bool realization_given = false, force = false;
+  Live live = Live::no;
 };
 
 KeptTaps tap_choice(const std::vector<std::string>& words) {
@@ -46,46 +49,56 @@ KeptTaps tap_choice(const std::vector<std::string>& words) {
   return choice;
 }
 
-RealizationId wanted(const ExportArguments& arguments) {
-  if (!is_results_file(arguments.input)) {
-    if (!arguments.point.empty() || arguments.realization_given) {
-      throw BadInput(fmt::format(
-          "{}: not a results file: --sweep-point and --realization mean nothing", arguments.input));
-    }
-    if (!arguments.input.ends_with(".xyz") && !arguments.input.ends_with(".extxyz")) {
-      throw BadInput(fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)",
-                                 arguments.input));
-    }
-    return {};
+/// Packings, and what they are called.
+struct Wanted {
+  std::vector<ExportedFrame> frames;
+  std::string source;  // for people
+  std::string suffix;  // tells the default name from those of other packings of the file
+};
+
+Wanted wanted(const ExportArguments& arguments) {
+  const KeptTaps taps = tap_choice(arguments.taps);
+  const std::string& input = arguments.input;
+  if (is_results_file(input)) {
+    const ResultsFile file = open_results(input, arguments.live);
+    const std::uint32_t point =
+        arguments.point.empty() ? 0 : chosen_points(file.study(), arguments.point).front();
+    const RealizationId id{point, arguments.realization};
+    Wanted found{kept_frames(file, id, taps),
+                 fmt::format("sweep point {}, realization {}, tap", id.point, id.realization), ""};
+    if (file.study().points.size() > 1) found.suffix += fmt::format("_point{}", id.point);
+    if (arguments.realization_given) found.suffix += fmt::format("_realization{}", id.realization);
+    return found;
   }
-  const ResultsFile file = open_results(arguments.input);
-  if (arguments.point.empty()) return {0, arguments.realization};
-  return {chosen_points(file.study(), arguments.point).front(), arguments.realization};
+  if (!arguments.point.empty() || arguments.realization_given || arguments.live == Live::yes) {
+    throw BadInput(fmt::format(
+        "{}: not a results file: --sweep-point, --realization and --live mean nothing", input));
+  }
+  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
+    throw BadInput(
+        fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+  }
+  return {kept_frames(input, taps), fmt::format("{}, frame", input), ""};
 }
 
 int export_packings(const ExportArguments& arguments) {
   const ExportFormat format = formats.at(arguments.format);
-  const std::string output =
-      !arguments.output.empty()
-          ? arguments.output
-          : std::filesystem::path(arguments.input).stem().string() + "." + extension(format);
-  const RealizationId id = wanted(arguments);
-  const auto frames = kept_frames(arguments.input, id, tap_choice(arguments.taps));
-  const auto files = exported_files(format, output, frames);
+  const Wanted found = wanted(arguments);
+  const std::string output = !arguments.output.empty()
+                                 ? arguments.output
+                                 : std::filesystem::path(arguments.input).stem().string() +
+                                       found.suffix + "." + extension(format);
+  const auto files = exported_files(format, output, found.frames);
   // Nothing is written where one of the files may not be.
   for (const ExportedFile& file : files) {
     require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
     require_text_output("-o", file.path, std::span(&arguments.input, 1), arguments.force);
   }
   std::vector<std::uint64_t> taps;
-  for (const ExportedFrame& frame : frames) taps.push_back(frame.tap);
+  for (const ExportedFrame& frame : found.frames) taps.push_back(frame.tap);
   for (const ExportedFile& file : files) publish(file.path, std::as_bytes(std::span(file.text)));
-  const std::string source =
-      is_results_file(arguments.input)
-          ? fmt::format("sweep point {}, realization {}, tap", id.point, id.realization)
-          : fmt::format("{}, frame", arguments.input);
-  fmt::print("{}: {} {}, {} spheres\n", files.back().path, source, list_of(taps),
-             frames.front().packing.centres.size());
+  fmt::print("{}: {} {}, {}\n", files.back().path, found.source, list_of(taps),
+             counted(found.frames.front().packing.centres.size(), "sphere"));
   return exit_ok;
 }
 
@@ -103,8 +116,8 @@ void add_export(CLI::App& app, int& code) {
       ->check(CLI::IsMember({"extxyz", "lammps", "vtp"}));
   command
       ->add_option("-o,--output", a.output,
-                   "The file to write (default: the input's name with .xyz, .dump or .vtp, in "
-                   "the current folder)")
+                   "The file to write (default: the input's name, of a sweep with _pointP, with "
+                   ".xyz, .dump or .vtp, in the current folder)")
       ->check(file_to_write());
   command->add_option("--sweep-point", a.point,
                       "Its number, or POINTER=VALUE of the sweep (default: the first)");
@@ -115,6 +128,7 @@ void add_export(CLI::App& app, int& code) {
                    "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
                    "commas, or all (default: the last)")
       ->delimiter(',');
+  add_live(*command, a.live);
   command->add_flag("--force", a.force, "Replace files that exist");
   command->footer(
       "Examples:\n"

@@ -18,6 +18,8 @@
 #include "cli/provenance.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "config/json_text.hpp"
+#include "config/suggestion.hpp"
 #include "fitting/models.hpp"
 
 namespace jostle {
@@ -33,15 +35,17 @@ struct FitArguments {
   int threads = 0;
   bool json = false, force = false, not_stored = false, verbose = false;
   bool realizations = false;  // columns of a curve file
+  Live live = Live::no;
   bool resampling_asked_for = false;
 };
 
 std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
   auto models = models_named(name);
   if (!models.empty()) return models;
-  std::string names;
-  for (const auto& model : all_models()) names += ", " + model->name();
-  throw BadInput(fmt::format("--model {}: there is none; there are all{}", name, names));
+  std::vector<std::string> names{"all"};
+  for (const auto& model : all_models()) names.push_back(model->name());
+  throw BadInput(fmt::format("--model {}: there is none; there are {}.{}", name,
+                             joined(names, ", "), did_you_mean(name, names)));
 }
 
 std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {
@@ -73,7 +77,8 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
     }
     // Tap 0 is the start: a law of taps begins with the first.
     const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
-    return results_curves(arguments.input, arguments.observable, arguments.point, range);
+    return results_curves(arguments.input, arguments.observable, arguments.point, range,
+                          arguments.live);
   }
   if (!arguments.observable.empty() || !arguments.point.empty()) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
@@ -153,7 +158,9 @@ int run_fits(const FitArguments& arguments) {
         {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
     std::fputs((object.dump(2) + "\n").c_str(), stdout);
   }
-  if (!tables.empty() && !arguments.not_stored) keep_tables(arguments.input, "fits", tables, by);
+  if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
+    keep_tables(arguments.input, "fits", tables, by);
+  }
   return any ? exit_ok : exit_bad_input;
 }
 
@@ -196,6 +203,7 @@ void add_fit(CLI::App& app, int& code) {
   command->add_option("--csv", a.csv, "Also write the curve with its fits to this file")
       ->check(file_to_write());
   command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
+  add_live(*command, a.live);
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->footer(
       "Examples:\n"

@@ -78,8 +78,8 @@ FitRange read_range(const std::string& option, const std::string& text) {
 }
 
 std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
-                                      const std::string& point, const FitRange& range) {
-  const ResultsFile file = open_results(path);
+                                      const std::string& point, const FitRange& range, Live live) {
+  const ResultsFile file = open_results(path, live);
   std::vector<FitSource> sources;
   for (const std::uint32_t chosen : chosen_points(file.study(), point)) {
     sources.push_back(point_curve(file, chosen, observable, range));

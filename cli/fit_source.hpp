@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/results_input.hpp"
 #include "fitting/curve.hpp"
 #include "results/study.hpp"
 
@@ -30,6 +31,7 @@ FitRange read_range(const std::string& option, const std::string& text);
 /// empty, for all. Realizations that failed are left out; taps that not all others have reached
 /// too. Throws BadInput naming what there is, ResultsError for the file.
 std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
-                                      const std::string& point, const FitRange& range);
+                                      const std::string& point, const FitRange& range,
+                                      Live live = Live::no);
 
 }  // namespace jostle

@@ -10,6 +10,7 @@
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/text_table.hpp"
+#include "results/error.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "results/tables.hpp"
@@ -124,11 +125,20 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
                            format_bytes(double(status.parts_bytes))));
   for (const std::string& table : table_names(file.path())) line("table", "/" + table);
   for (const auto& process : file.provenance()) {
-    line("made by",
-         fmt::format("jostle {} ({}) on {}, {}, {} threads", process.version, process.git_revision,
-                     process.host, process.started, process.threads));
+    line("made by", fmt::format("jostle {} ({}) on {}, {}, {} thread{}", process.version,
+                                process.git_revision, process.host, process.started,
+                                process.threads, process.threads == "1" ? "" : "s"));
   }
-  return text + effects_text(scene) + "\n" + report(file, status.realizations);
+  std::string curves;
+  try {
+    const ResultsFile live = live_results(file.path(), Content::without_snapshots);
+    if (status.parts_bytes > 0) line("curves", "so far, with the last checkpoints");
+    curves = report(live);
+  } catch (const ResultsError& error) {  // no room for a temporary file, for one
+    line("curves", fmt::format("of the last stop, without checkpoints: {}", error.what()));
+    curves = report(file);
+  }
+  return text + effects_text(scene) + "\n" + curves;
 }
 
 struct InfoArguments {

@@ -19,9 +19,10 @@ namespace {
 
 constexpr const char* footer =
     "Examples:\n"
-    "  jostle check config/scenes/quickstart.json   what a scene means and costs\n"
-    "  jostle run config/scenes/quickstart.json     writes quickstart.h5\n"
-    "  jostle info quickstart.h5                    what is in it\n"
+    "  jostle new quickstart          writes quickstart.json, a scene to start from\n"
+    "  jostle check quickstart.json   what it means and costs\n"
+    "  jostle run quickstart.json     writes quickstart.h5\n"
+    "  jostle info quickstart.h5      what is in it\n"
     "  jostle fit quickstart.h5 --observable bottom_fraction\n"
     "  jostle analyse quickstart.h5 steady --observable mean_height\n"
     "  jostle structure quickstart.h5 --part profile,voronoi\n"
@@ -37,6 +38,7 @@ int parse_and_run(int argc, char** argv) {
   app.footer(footer);
   app.require_subcommand(1);
   int code = exit_ok;
+  add_new(app, code);
   add_run(app, code);
   add_check(app, code);
   add_cost(app, code);
@@ -53,7 +55,7 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_command(app);
+    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(app);
     if (!unknown.empty()) throw BadInput(unknown);
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }

@@ -8,6 +8,7 @@
 
 #include "cli/scene_file.hpp"
 #include "config/json_text.hpp"
+#include "config/suggestion.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {
@@ -38,8 +39,8 @@ ObservableLabel label_named(const ResultsFile& file, std::uint32_t point,
   for (const ObservableLabel& label : labels) names.push_back(label.name);
   const std::string others = points_with(file, observable);
   if (others.empty()) {
-    throw BadInput(fmt::format("--observable {}: there is none; {} has {}", observable, file.path(),
-                               joined(names, ", ")));
+    throw BadInput(fmt::format("--observable {}: there is none; {} has {}.{}", observable,
+                               file.path(), joined(names, ", "), did_you_mean(observable, names)));
   }
   throw BadInput(
       fmt::format("--observable {}: there is none at sweep point {}, which has {}. It is at {}: "

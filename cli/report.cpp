@@ -63,7 +63,11 @@ std::string cell(double value, int decimals) {
 
 std::string tap_table(const PointSeries& series, std::uint64_t last) {
   const auto taps = reported_taps(last);
+  const std::vector<std::uint32_t>& reached = series.sweeps.count;
+  const bool partial = std::ranges::any_of(
+      taps, [&](std::uint64_t tap) { return reached[tap] != reached[taps.front()]; });
   std::vector<std::string> headers{"tap"};
+  if (partial) headers.emplace_back("M");
   std::vector<int> decimals;
   for (const auto& column : series.observables) {
     decimals.push_back(decimals_of(column, taps));
@@ -73,6 +77,7 @@ std::string tap_table(const PointSeries& series, std::uint64_t last) {
   TextTable table(headers);
   for (const std::uint64_t tap : taps) {
     std::vector<std::string> row{fmt::to_string(tap)};
+    if (partial) row.push_back(fmt::to_string(reached[tap]));
     for (std::size_t i = 0; i < series.observables.size(); ++i) {
       const auto& column = series.observables[i];
       for (const double value : {column.mean[tap], column.error[tap], column.sigma[tap]}) {
@@ -204,7 +209,8 @@ std::vector<std::uint64_t> reported_taps(std::uint64_t last) {
   return taps;
 }
 
-std::string report(const ResultsFile& file, const std::vector<RealizationSummary>& realizations) {
+std::string report(const ResultsFile& file) {
+  const std::vector<RealizationSummary> realizations = file.realizations();
   std::string text;
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
     if (!text.empty()) text += '\n';

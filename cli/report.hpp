@@ -9,11 +9,10 @@
 namespace jostle {
 
 /// For every sweep point a table over taps, about three a decade, of mean +- standard error and
-/// sigma of every observable, with mean sweeps and acceptance of the relaxations; below it capped
-/// relaxations, cost, and failed realizations with seed and reason. `realizations` are the file's,
-/// or those of a live run (run_status), which is ahead of its file: the tables over taps are the
-/// file's.
-std::string report(const ResultsFile& file, const std::vector<RealizationSummary>& realizations);
+/// sigma of every observable, with mean sweeps and acceptance of the relaxations, and the number M
+/// of realizations where not all reached every tap; below it capped relaxations, cost, and failed
+/// realizations with seed and reason.
+std::string report(const ResultsFile& file);
 
 /// A line for every realization that failed, with its seed and reason.
 std::string failure_lines(const ResultsFile& file);

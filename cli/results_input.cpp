@@ -1,5 +1,6 @@
 #include "cli/results_input.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "cli/scene_file.hpp"
 #include "cli/standard_error.hpp"
+#include "results/live_run.hpp"
 
 namespace jostle {
 
@@ -37,19 +39,28 @@ bool is_same_file(const std::string& a, const std::string& b) {
          fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
-ResultsFile open_results(const std::string& path) {
-  ResultsFile file(path);
+void add_live(CLI::App& command, Live& live) {
+  command.add_flag_callback(
+      "--live", [&live] { live = Live::yes; },
+      "Read the checkpoints of an unfinished run too; its results file stays as it is");
+}
+
+ResultsFile open_results(const std::string& path, Live live) {
+  ResultsFile file = live == Live::yes ? live_results(path) : ResultsFile(path);
   if (file.state() == RunState::running) {
-    throw BadInput(
-        fmt::format("{}: its run goes on or was killed, and its file has no taps yet. Finish it "
-                    "with jostle run SCENE --resume; jostle info {} says how far it is.",
-                    path, path));
+    throw BadInput(fmt::format(
+        "{}: its run goes on or was killed, and {}. Finish it with jostle run SCENE --resume; "
+        "jostle info {} says how far it is.",
+        path,
+        live == Live::yes ? "it has no checkpoint yet"
+                          : "its file has no taps yet; --live reads its checkpoints",
+        path));
   }
   if (file.state() == RunState::interrupted) {
-    print_to_standard_error(
-        fmt::format("jostle: {}: its run is unfinished: here are the taps of its last stop. Finish "
-                    "it with jostle run SCENE --resume.\n",
-                    path));
+    print_to_standard_error(fmt::format(
+        "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "
+        "jostle run SCENE --resume.\n",
+        path, live == Live::yes ? "checkpoints" : "stop"));
   }
   return file;
 }

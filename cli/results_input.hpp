@@ -6,6 +6,10 @@
 
 #include "results/results_file.hpp"
 
+namespace CLI {
+class App;
+}
+
 // What commands read results from.
 namespace jostle {
 
@@ -15,9 +19,15 @@ bool is_results_file(const std::string& path);
 /// Whether two names are of one file, there already or not.
 bool is_same_file(const std::string& a, const std::string& b);
 
-/// A results file whose data are wanted. Throws BadInput for a run that has none in its file yet;
-/// says on stderr where it is unfinished. Throws ResultsError for the file.
-ResultsFile open_results(const std::string& path);
+/// What is read of a run that goes on or was killed: its file alone, or its checkpoints too.
+enum class Live { no, yes };
+
+/// The flag --live.
+void add_live(CLI::App& command, Live& live);
+
+/// A results file whose data are wanted. Throws BadInput for a run that has none yet; says on
+/// stderr where it is unfinished. Throws ResultsError for the file.
+ResultsFile open_results(const std::string& path, Live live = Live::no);
 
 /// Throws BadInput where a file is named twice: it would count as more data than there are.
 void require_different(std::span<const std::string> paths);

@@ -22,10 +22,12 @@
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/scene_tables.hpp"
+#include "cli/scene_warnings.hpp"
 #include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/text_table.hpp"
+#include "ensemble/counted.hpp"
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
 #include "results/tables.hpp"
@@ -157,8 +159,8 @@ std::string resume_command(const RunArguments& arguments) {
 
 /// What this process computed, all sweep points together.
 std::string process_line(const Progress& progress, Seconds elapsed, int threads) {
-  std::string line = fmt::format("this run: {} on {} thread{}", format_duration(elapsed), threads,
-                                 threads == 1 ? "" : "s");
+  std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
+                                 counted(static_cast<std::uint64_t>(threads), "thread"));
   const auto trials = static_cast<double>(progress.trials_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
   if (trials > 0 && relaxing > 0) {
@@ -198,8 +200,9 @@ bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun
   const bool retry_failed = arguments.retry_failed && work.rounds++ == 0;
   const auto pending = run.store->pending(retry_failed);
   RunSummary summary;
-  spdlog::info("{}: {} realizations of {} to do on {} threads", run.output, pending.size(),
-               loaded.plans.size() * run.study.realizations, threads);
+  spdlog::info("{}: {} of {} to do on {}", run.output, pending.size(),
+               counted(loaded.plans.size() * run.study.realizations, "realization"),
+               counted(static_cast<std::uint64_t>(threads), "thread"));
   {
     WorkAhead ahead = work_ahead(run, pending);
     ahead.realizations += work.progress.realizations_done;
@@ -235,7 +238,7 @@ bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, Op
 void print_results(const OpenedRun& run, const ProcessWork& work, int threads) {
   const ResultsFile file(run.output);
   const std::string text =
-      report(file, file.realizations()) +
+      report(file) +
       process_line(work.progress, std::chrono::steady_clock::now() - work.began, threads);
   std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
 }
@@ -281,6 +284,7 @@ int run(const RunArguments& arguments) {
   }
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   OpenedRun run = open_run(arguments, loaded, threads);
+  for (const std::string& warning : scene_warnings(loaded)) spdlog::info("warning: {}", warning);
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
     ProcessWork work(stop);

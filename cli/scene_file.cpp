@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "ensemble/counted.hpp"
 #include "results/error.hpp"
 #include "results/packing_file.hpp"
 
@@ -41,9 +42,8 @@ LoadedScene load_text(std::string text, const std::string& path) {
   loaded.files = {path};
   ParsedScene parsed = parse_scene(loaded.text);
   if (!parsed.scene) {
-    const std::size_t n = parsed.faults.size();
-    throw BadInput(fmt::format("{}: {} fault{}, nothing was run\n{}", path, n, n == 1 ? "" : "s",
-                               fault_lines(parsed.faults)));
+    throw BadInput(fmt::format("{}: {}, nothing was run\n{}", path,
+                               counted(parsed.faults.size(), "fault"), fault_lines(parsed.faults)));
   }
   loaded.scene = std::move(*parsed.scene);
   loaded.resolved = resolved(loaded.scene).dump(2);

@@ -18,6 +18,7 @@
 #include "cli/structure_run.hpp"
 #include "cli/table_output.hpp"
 #include "config/json_text.hpp"
+#include "config/suggestion.hpp"
 
 namespace jostle {
 
@@ -28,6 +29,7 @@ struct StructureArguments {
   std::vector<std::uint64_t> taps;
   std::string point, settings, csv;
   bool json = false, not_stored = false, force = false;
+  Live live = Live::no;
   int threads = 0;
 };
 
@@ -53,8 +55,8 @@ void require_parts(const std::vector<std::string>& named) {
   const std::vector<std::string> known = parts_of(all_structure());
   for (const std::string& part : named) {
     if (std::ranges::find(known, part) == known.end()) {
-      throw BadInput(
-          fmt::format("--part {}: there is no such part; there are {}", part, joined(known, ", ")));
+      throw BadInput(fmt::format("--part {}: there is no such part; there are {}.{}", part,
+                                 joined(known, ", "), did_you_mean(part, known)));
     }
   }
 }
@@ -118,7 +120,7 @@ int measure_structure(const StructureArguments& arguments) {
   require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {
-    const ResultsFile file = open_results(arguments.inputs.front());
+    const ResultsFile file = open_results(arguments.inputs.front(), arguments.live);
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
                           wanted(arguments, structure_asked_for(file)), arguments.taps, threads);
   } else {
@@ -128,7 +130,7 @@ int measure_structure(const StructureArguments& arguments) {
     tables = structure_of(arguments.inputs, wanted(arguments, {}), arguments.taps, threads);
   }
   const bool any = show(arguments, tables, by);
-  if (results && !arguments.not_stored) {
+  if (results && !arguments.not_stored && arguments.live == Live::no) {
     keep_tables(arguments.inputs.front(), "structure", tables, by);
   }
   return any ? exit_ok : exit_bad_input;
@@ -164,6 +166,7 @@ void add_structure(CLI::App& app, int& code) {
   command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
   command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
+  add_live(*command, a.live);
   command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
       ->check(CLI::Range(1, 4096))
       ->envname("JOSTLE_THREADS");

@@ -7,6 +7,8 @@
 
 #include "cli/half_widths.hpp"
 #include "cli/text_table.hpp"
+#include "config/json_text.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 
@@ -62,20 +64,22 @@ std::string cell(const Quantity& quantity, std::size_t index, Digits digits) {
 
 constexpr const char* interval_endings[] = {"_low_68", "_high_68", "_low_95", "_high_95"};
 
-/// Of an error two digits, of the value as many decimals.
-std::string value_and_error(const Quantity& value, const Quantity& error, std::size_t index) {
+/// The size of what a quantity measures: its largest value, and at least 1, the size of a sphere.
+double scale_of(const std::vector<double>& numbers) {
+  double scale = 1;
+  for (const double number : numbers) {
+    if (std::isfinite(number)) scale = std::max(scale, std::abs(number));
+  }
+  return scale;
+}
+
+std::string with_error(const Quantity& value, const Quantity& error, std::size_t index) {
   const auto* numbers = std::get_if<std::vector<double>>(&value.values);
   const auto* errors = std::get_if<std::vector<double>>(&error.values);
-  if (!numbers || !errors || !std::isfinite(numbers->at(index)) ||
-      !std::isfinite(errors->at(index)) || !(errors->at(index) > 0)) {
+  if (!numbers || !errors || std::isnan(numbers->at(index))) {
     return cell(value, index, Digits::few);
   }
-  if (errors->at(index) < 1e-6) {
-    return fmt::format("{:.8g} +- {:.2g}", numbers->at(index), errors->at(index));
-  }
-  const int decimals = decimals_for(errors->at(index));
-  return fmt::format("{:.{}f} +- {:.{}f}", numbers->at(index), decimals, errors->at(index),
-                     decimals);
+  return value_and_error(numbers->at(index), errors->at(index), scale_of(*numbers));
 }
 
 const Quantity* beside(const Quantity& quantity, const Block& block, const char* ending) {
@@ -120,7 +124,7 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
                        high);
   }
   const Quantity* error = error_of(quantity, block);
-  return error ? value_and_error(quantity, *error, index) : cell(quantity, index, Digits::few);
+  return error ? with_error(quantity, *error, index) : cell(quantity, index, Digits::few);
 }
 
 // Indices along the block's axes of a place in its flat, row-major values.
@@ -139,8 +143,8 @@ std::string single_values(const Block& block) {
   for (const Quantity* quantity : block.columns) {
     if (is_shown_beside(*quantity, block)) continue;
     const bool unitless = quantity->units.empty() || quantity->units == "1";
-    text +=
-        fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0), unitless ? "" : " " + quantity->units);
+    text += fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0),
+                        unitless ? "" : " " + quantity->units);
     text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
   }
   return text;
@@ -165,6 +169,17 @@ std::string columns_text(const Table& table, const Block& block) {
     text.add(cells);
   }
   return fmt::format("\n{}", text.text());
+}
+
+/// Says which columns are not shown, and why.
+std::string left_out(const Block& block, const char* why) {
+  std::string names;
+  for (const Quantity* quantity : block.columns) {
+    if (is_shown_beside(*quantity, block)) continue;
+    names.append(names.empty() ? "" : ", ").append(quantity->name);
+  }
+  const std::string along = joined(block.axes, ", ");
+  return fmt::format("  {:<22} {}{}\n", counted(n_rows(block), "row") + " of " + along, why, names);
 }
 
 nlohmann::json nested(const Table& table, const Quantity& quantity, std::size_t axis,
@@ -219,8 +234,12 @@ std::string table_text(const Table& stored, Detail detail) {
   for (const Block& block : blocks_of(table)) {
     if (block.axes.empty()) {
       text += single_values(block);
+    } else if (n_rows(block) == 0) {
+      text += left_out(block, "none: ");
     } else if (detail == Detail::full || n_rows(block) <= most_brief_rows) {
       text += columns_text(table, block);
+    } else {
+      text += left_out(block, "in --csv FILE and --json: ");
     }
   }
   return text;

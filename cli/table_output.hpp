@@ -10,7 +10,7 @@
 namespace jostle {
 
 enum class Detail {
-  brief,  // notes and single values, short columns
+  brief,  // notes and single values, short columns; long ones are named
   full
 };
 

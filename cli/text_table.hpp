@@ -22,6 +22,12 @@ class TextTable {
 /// Decimals that show a positive error to two digits: 4 for 0.0021. At most 12.
 int decimals_for(double error);
 
+/// A value with its error, both to the second digit of the error and with one power of ten:
+/// "0.5683 +- 0.0021", "1240 +- 85", "(2.04873 +- 0.00074)e-06". Where both are rounding noise of
+/// numbers of the size of `scale`, "0". An error that is not above 0 and finite is left out, and
+/// the value has six digits.
+std::string value_and_error(double value, double error, double scale = 1);
+
 /// 4.1e+07 as "41.0 M", 950 as "950".
 std::string format_count(double count);
 /// Bytes with a binary unit: "12.3 MiB".

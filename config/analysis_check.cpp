@@ -5,6 +5,7 @@
 #include "config/grids.hpp"
 #include "config/parts.hpp"
 #include "config/suggestion.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 
@@ -59,7 +60,8 @@ class AnalysisCheck {
   void check(const std::string& place, const AgeingSettings& settings) {
     if (settings.waiting_times.empty() && settings.lags.empty() && taps_ < fewest_ageing_taps) {
       note(place, "",
-           fmt::format("needs {} taps, but the protocol has {}", fewest_ageing_taps, taps_));
+           fmt::format("needs {}, but the protocol has {}", counted(fewest_ageing_taps, "tap"),
+                       taps_));
     }
     if (!settings.waiting_times.empty() && settings.waiting_times.back() >= taps_) {
       note(place, "/waiting_times",
@@ -70,7 +72,7 @@ class AnalysisCheck {
     if (settings.lags.front() == 0) note(place, "/lags", "a lag is at least 1 tap");
     if (settings.lags.back() > taps_) {
       note(place, "/lags",
-           fmt::format("{} taps, but the protocol has {}", settings.lags.back(), taps_));
+           fmt::format("{}, but the protocol has {}", counted(settings.lags.back(), "tap"), taps_));
     }
   }
 
@@ -93,9 +95,11 @@ class AnalysisCheck {
   void check_last(const std::string& place, const std::optional<std::uint64_t>& last,
                   std::uint64_t least) {
     if (last && *last > taps_) {
-      note(place, "/last", fmt::format("{} taps, but the protocol has {}", *last, taps_));
+      note(place, "/last",
+           fmt::format("{}, but the protocol has {}", counted(*last, "tap"), taps_));
     } else if (taps_ < least) {
-      note(place, "", fmt::format("needs {} taps, but the protocol has {}", least, taps_));
+      note(place, "",
+           fmt::format("needs {}, but the protocol has {}", counted(least, "tap"), taps_));
     }
   }
 

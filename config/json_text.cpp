@@ -30,6 +30,18 @@ std::string reason(std::string_view what) {
   return std::string(what);
 }
 
+/// What other dialects allow and JSON does not, at the byte where reading ended; else empty.
+std::string_view foreign_dialect(std::string_view text, std::size_t end) {
+  if (end == 0 || end > text.size()) return {};
+  const char last = text[end - 1];
+  if (last == '/' || last == '#') return "a comment: JSON has neither comments nor trailing commas";
+  if (last != ']' && last != '}') return {};
+  const std::size_t before = text.substr(0, end - 1).find_last_not_of(" \t\r\n");
+  if (before == text.npos || text[before] != ',') return {};
+  return "a comma before the end of a list or an object: JSON has neither comments nor trailing "
+         "commas";
+}
+
 /// Walks through the text and notes what a tree of values can no longer show.
 class TextChecker : public nlohmann::json_sax<Json> {
  public:
@@ -59,8 +71,9 @@ class TextChecker : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    faults_.push_back(
-        {"", fmt::format("not JSON: {}: {}", place(text_, position), reason(error.what()))});
+    const std::string_view dialect = foreign_dialect(text_, position);
+    const std::string why = dialect.empty() ? reason(error.what()) : std::string(dialect);
+    faults_.push_back({"", fmt::format("not JSON: {}: {}", place(text_, position), why)});
     return false;
   }
 

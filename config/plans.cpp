@@ -5,6 +5,7 @@
 
 #include "config/grids.hpp"
 #include "config/sweep.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 
@@ -28,8 +29,8 @@ class StartMaker {
     auto& centres = loaded_[file];
     if (!centres) centres = std::make_shared<const std::vector<Vec3>>(load_(file));
     if (centres->size() != n_spheres) {
-      throw StartError(fmt::format("{} holds {} spheres, the scene {}: set \"spheres\" to {}",
-                                   file.path, centres->size(), n_spheres, centres->size()));
+      throw StartError(fmt::format("{} holds {}, the scene {}: set \"spheres\" to {}", file.path,
+                                   counted(centres->size(), "sphere"), n_spheres, centres->size()));
     }
     return GivenPacking{centres};
   }

@@ -5,6 +5,7 @@
 #include "config/grids.hpp"
 #include "config/parts.hpp"
 #include "config/sweep.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 
@@ -52,8 +53,8 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
                                         const std::vector<ProtocolLine>& is) {
   const std::uint64_t n_was = total_taps(was), n_is = total_taps(is);
   if (n_is < n_was) {
-    return fmt::format("had {} taps, has {}: taps can be added at the end, not taken away", n_was,
-                       n_is);
+    return fmt::format("had {}, has {}: taps can be added at the end, not taken away",
+                       counted(n_was, "tap"), n_is);
   }
   const std::vector<Stage> before = merged(stages(was)), after = merged(stages(is));
   std::uint64_t tap = 1;
@@ -89,6 +90,21 @@ std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) 
     }
   }
   return std::nullopt;
+}
+
+/// Values may be added to a sweep: notes the points that are gone.
+void compare_sweeps(const Scene& was, const Scene& is, std::vector<Fault>& faults) {
+  std::vector<std::uint64_t> ids;
+  for (const SweepPoint& point : sweep_points(is.sweep)) ids.push_back(point_id(point));
+  std::ranges::sort(ids);
+  for (const SweepPoint& point : sweep_points(was.sweep)) {
+    if (std::ranges::binary_search(ids, point_id(point))) continue;
+    const std::string gone = point.values.empty() ? "the run has no sweep"
+                                                  : "the point " + point_label(point) + " is gone";
+    faults.push_back({"/sweep", gone + ": values can be added to what is swept, not taken away, "
+                                       "and nothing else can be swept"});
+    return;
+  }
 }
 
 /// Compares taps and snapshots of every sweep point, and notes the first that changed.
@@ -128,14 +144,16 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
   }
   Json before = resolved(*was.scene), after = resolved(*is.scene);
   for (Json* scene : {&before, &after}) {
-    for (const char* free : {"name", "description", "realizations", "protocol", "until", "fits",
-                             "analyse", "structure"}) {
+    for (const char* free : {"name", "description", "realizations", "protocol", "sweep", "until",
+                             "fits", "analyse", "structure"}) {
       scene->erase(free);
     }
     (*scene)["snapshots"].erase("taps");
   }
   compare(before, after, "", faults);
-  if (was.scene->sweep == is.scene->sweep) compare_points(*was.scene, *is.scene, faults);
+  const std::size_t before_sweeps = faults.size();
+  compare_sweeps(*was.scene, *is.scene, faults);
+  if (faults.size() == before_sweeps) compare_points(*was.scene, *is.scene, faults);
   return faults;
 }
 

@@ -190,9 +190,15 @@ std::string_view scene_schema();
 
 /// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, other limits of `until`, fits, analyses
+/// those, more realizations, more values of what is swept, other limits of `until`, fits, analyses
 /// and measured structure, and another name or description.
 std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
                                  const nlohmann::ordered_json& new_resolved);
+
+/// One scene of two (both as resolved() gives them) that differ in the values of their sweep alone,
+/// and maybe in name and description, which are the first one's: every axis with the values of
+/// both, the first one's first. Faults where anything else differs.
+ParsedScene join_sweeps(const nlohmann::ordered_json& resolved_scene,
+                        const nlohmann::ordered_json& other_resolved);
 
 }  // namespace jostle

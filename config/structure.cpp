@@ -47,7 +47,6 @@ const std::vector<NumberKey<CoordinationSettings>> number_keys<CoordinationSetti
     {"step", &CoordinationSettings::step, between(0.001, 1)}};
 template <>
 const std::vector<NumberKey<PairsSettings>> number_keys<PairsSettings> = {
-    {"r_max", &PairsSettings::r_max, between(1, 20)},
     {"bin_width", &PairsSettings::bin_width, between(0.001, 1)}};
 template <>
 const std::vector<NumberKey<OrderSettings>> number_keys<OrderSettings> = {
@@ -120,6 +119,17 @@ Json written_settings(const ProfileSettings& settings) {
   if (const auto& heights = settings.gradient) {
     out["gradient"] = written_bounds(heights->low, heights->high);
   }
+  return out;
+}
+
+void read_settings(const Reader& in, PairsSettings& settings) {
+  if (!has_keys<PairsSettings>(in, {"r_max"})) return;
+  read_numbers(in, settings);
+  if (const auto r_max = in.find("r_max")) settings.r_max = r_max->number(between(1, 20));
+}
+Json written_settings(const PairsSettings& settings) {
+  Json out = written_numbers(settings);
+  if (settings.r_max) out["r_max"] = plain_number(*settings.r_max);
   return out;
 }
 

@@ -9,7 +9,6 @@
 #include "results/error.hpp"
 #include "results/extended_xyz.hpp"
 #include "results/lammps_dump.hpp"
-#include "results/results_file.hpp"
 #include "results/vtk_points.hpp"
 
 namespace jostle {
@@ -46,8 +45,7 @@ void require(bool there, const ResultsFile& file, const std::string& wanted) {
       fmt::format("{}: holds no positions of {}{}", file.path(), wanted, all_kept(file)));
 }
 
-std::vector<ExportedFrame> snapshots_of(const std::string& path, RealizationId id) {
-  const ResultsFile file(path);
+std::vector<ExportedFrame> snapshots_of(const ResultsFile& file, RealizationId id) {
   const Study& study = file.study();
   const std::string name = fmt::format("sweep point {}, realization {}", id.point, id.realization);
   require(id.point < study.points.size() && id.realization < study.realizations, file, name);
@@ -84,6 +82,18 @@ std::vector<ExportedFrame> chosen(const std::string& path, std::vector<ExportedF
   std::erase_if(frames, [&](const ExportedFrame& frame) {
     return std::ranges::find(choice.taps, frame.tap) == choice.taps.end();
   });
+  return frames;
+}
+
+std::vector<ExportedFrame> with_columns(const std::string& path,
+                                        std::vector<ExportedFrame> frames) {
+  for (ExportedFrame& frame : frames) {
+    try {
+      frame.columns = particle_columns(frame.packing);
+    } catch (const std::invalid_argument& error) {
+      throw ResultsError(path, error.what());
+    }
+  }
   return frames;
 }
 
@@ -125,18 +135,13 @@ std::vector<ExportedFile> exported_files(ExportFormat format, const std::string&
   return files;
 }
 
-std::vector<ExportedFrame> kept_frames(const std::string& path, RealizationId id,
+std::vector<ExportedFrame> kept_frames(const ResultsFile& file, RealizationId id,
                                        const KeptTaps& choice) {
-  const bool xyz = path.ends_with(".xyz") || path.ends_with(".extxyz");
-  auto frames = chosen(path, xyz ? xyz_frames(path) : snapshots_of(path, id), choice);
-  for (ExportedFrame& frame : frames) {
-    try {
-      frame.columns = particle_columns(frame.packing);
-    } catch (const std::invalid_argument& error) {
-      throw ResultsError(path, error.what());
-    }
-  }
-  return frames;
+  return with_columns(file.path(), chosen(file.path(), snapshots_of(file, id), choice));
+}
+
+std::vector<ExportedFrame> kept_frames(const std::string& extended_xyz, const KeptTaps& choice) {
+  return with_columns(extended_xyz, chosen(extended_xyz, xyz_frames(extended_xyz), choice));
 }
 
 }  // namespace jostle

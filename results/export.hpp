@@ -7,6 +7,7 @@
 
 #include "ensemble/sink.hpp"
 #include "results/particle_columns.hpp"
+#include "results/results_file.hpp"
 
 // Packings for OVITO, ParaView and other programs.
 namespace jostle {
@@ -36,10 +37,11 @@ struct KeptTaps {
 /// "0, 10, 100".
 std::string list_of(std::span<const std::uint64_t> taps);
 
-/// The chosen packings of one realization of a results file, or of an extended XYZ file (name ends
-/// in .xyz or .extxyz), in the order of the file and with the columns of particle_columns. Throws
-/// std::invalid_argument, listing what there is, where one is missing; ResultsError for the file.
-std::vector<ExportedFrame> kept_frames(const std::string& path, RealizationId id,
+/// The chosen packings of one realization of a results file, or of an extended XYZ file, in the
+/// order of the file and with the columns of particle_columns. Throws std::invalid_argument,
+/// listing what there is, where one is missing; ResultsError for the file.
+std::vector<ExportedFrame> kept_frames(const ResultsFile& file, RealizationId id,
                                        const KeptTaps& choice);
+std::vector<ExportedFrame> kept_frames(const std::string& extended_xyz, const KeptTaps& choice);
 
 }  // namespace jostle

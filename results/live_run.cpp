@@ -3,9 +3,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
 #include <utility>
 
 #include "results/error.hpp"
+#include "results/publish.hpp"
+#include "results/results_writer.hpp"
 #include "results/run_parts.hpp"
 
 namespace jostle {
@@ -46,7 +51,63 @@ RunStatus look_once(const std::string& results_path) {
   return status;
 }
 
+/// A folder of its own among the temporary files, gone with this.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "jostle-live-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) fail_on_disk(name, "make", errno);
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The file and its parts in one. Throws ResultsError also where a fold takes parts away meanwhile.
+ResultsFile joined_once(const std::string& results_path, Content content) {
+  ResultsFile file(results_path);
+  const auto with_parts = realizations_with_parts(results_path);
+  if (with_parts.empty()) return file;
+  const auto record = [&](RealizationId id) {
+    RealizationRecord base = file.record(id, content);
+    if (!std::ranges::binary_search(with_parts, id)) return base;
+    const std::size_t n_columns =
+        file.study().points[id.point].observables.size() + n_relaxation_columns;
+    base = join(std::move(base), results_path, {file.run_id(), id}, n_columns);
+    if (content == Content::without_snapshots) base.snapshots.clear();
+    return base;
+  };
+  const TemporaryFolder folder;
+  const std::string joined = (folder.path() / "live.h5").string();
+  write_results(joined, {file.study(), file.shard(), file.provenance(), file.run_id(), record});
+  return {joined, results_path};  // open, it outlives its name
+}
+
 }  // namespace
+
+ResultsFile live_results(const std::string& results_path, Content content) {
+  constexpr int most_tries = 20;
+  for (int tries = 1;; ++tries) {
+    const auto before = version_of(results_path);
+    const auto parts = realizations_with_parts(results_path);
+    try {
+      ResultsFile file = joined_once(results_path, content);
+      if (version_of(results_path) == before || tries == most_tries) return file;
+    } catch (const ResultsError&) {
+      const bool folded =
+          version_of(results_path) != before || realizations_with_parts(results_path) != parts;
+      if (!folded || tries == most_tries) throw;
+    }
+  }
+}
 
 RunStatus run_status(const std::string& results_path) {
   for (;;) {

@@ -29,4 +29,9 @@ struct RunStatus {
 /// Looks without disturbing: a live run may go on while this reads.
 RunStatus run_status(const std::string& results_path);
 
+/// The file as it would be if the run stopped at its last checkpoints; where it has no parts, the
+/// file itself. Nothing beside it is touched: what is joined is a temporary file, in the folder
+/// that TMPDIR names, which is gone when this returns. Throws ResultsError.
+ResultsFile live_results(const std::string& results_path, Content content = Content::everything);
+
 }  // namespace jostle

@@ -17,7 +17,12 @@
 namespace jostle {
 namespace {
 
-using Owners = std::map<RealizationId, const ResultsFile*>;
+/// Where a realization of the merged study is read from.
+struct Source {
+  const ResultsFile* file;
+  RealizationId stored;  // by the file's own numbers of points
+};
+using Owners = std::map<RealizationId, Source>;
 
 std::string named(RealizationId id) {
   return fmt::format("realization {} of sweep point {}", id.realization, id.point);
@@ -29,30 +34,44 @@ void check_same_study(const ResultsFile& first, const ResultsFile& other) {
       first.study().points.size() != other.study().points.size())
     throw ResultsError(other.path(), "holds another scene than " + first.path() +
                                          "; compare /scene/resolved of both");
-  if (const auto point = other_start(first.study(), other.study()))
+}
+
+/// Points of one scene start alike.
+void check_same_starts(const ResultsFile& first, const ResultsFile& other) {
+  if (const auto point = other_start(other.study(), first.study()))
     throw ResultsError(other.path(),
                        fmt::format("starts sweep point {} from another packing than {}: "
                                    "the file it was read from had changed",
                                    *point, first.path()));
 }
 
-void claim(Owners& owners, const ResultsFile& file) {
+void claim(Owners& owners, const ResultsFile& file, const Study& study) {
   if (file.state() != RunState::complete || parts_exist(file.path()))
     throw ResultsError(file.path(), "is not finished; finish it by jostle run --resume");
+  if (file.study().realizations != study.realizations)
+    throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; add "
+                                                "some by jostle run --resume",
+                                                file.study().realizations, study.realizations));
   for (const RealizationSummary& summary : file.realizations()) {
     if (summary.status == RealizationStatus::missing) continue;
-    const auto [owner, is_new] = owners.emplace(summary.id, &file);
+    const auto point = point_with(study, file.study().points[summary.id.point].id);
+    if (!point)
+      throw ResultsError(file.path(), fmt::format("holds sweep point {}, which is not of the "
+                                                  "merged scene",
+                                                  summary.id.point));
+    const RealizationId id{*point, summary.id.realization};
+    const auto [owner, is_new] = owners.emplace(id, Source{&file, summary.id});
     if (!is_new)
       throw ResultsError(file.path(), fmt::format("overlaps {}: both hold {}",
-                                                  owner->second->path(), named(summary.id)));
+                                                  owner->second.file->path(), named(id)));
   }
 }
 
 void check_gaps(const Owners& owners, const Study& study, const std::string& output) {
   for (const RealizationId id : realizations_of(study, {}))
     if (!owners.contains(id))
-      throw ResultsError(output, fmt::format("cannot be merged: no input holds {}; a shard is "
-                                             "missing",
+      throw ResultsError(output, fmt::format("cannot be merged: no input holds {}; a shard or "
+                                             "a point of the joined sweep is missing",
                                              named(id)));
 }
 
@@ -78,7 +97,7 @@ std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
 }  // namespace
 
 void merge_files(std::span<const std::string> inputs, const std::string& output,
-                 const Provenance& provenance, bool force) {
+                 const Provenance& provenance, bool force, const std::optional<Study>& whole) {
   const RunLock lock(output, force);
   struct stat status;
   if (!force && ::stat(output.c_str(), &status) == 0)
@@ -93,17 +112,21 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
   for (const std::string& input : inputs) files.emplace_back(input);
   Owners owners;
   for (const ResultsFile& file : files) {
-    check_same_study(files.front(), file);
-    claim(owners, file);
+    if (!whole) check_same_study(files.front(), file);
+    check_same_starts(files.front(), file);
+    claim(owners, file, whole ? *whole : files.front().study());
   }
-  check_gaps(owners, files.front().study(), output);
+  check_gaps(owners, whole ? *whole : files.front().study(), output);
   // Scenes that mean the same may be written differently: whatever the order of the inputs, one is
   // kept.
-  const Study& study = owners.begin()->second->study();
+  const Study& study = whole ? *whole : owners.begin()->second.file->study();
   require_free_space(output, bytes_of(inputs));
   remove_parts(output);
   write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
-                         [&](RealizationId id) { return owners.at(id)->record(id); }});
+                         [&](RealizationId id) {
+                           const Source& source = owners.at(id);
+                           return source.file->record(source.stored);
+                         }});
 }
 
 }  // namespace jostle

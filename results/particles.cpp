@@ -35,6 +35,9 @@ void write_box(hid_t group, const Container& container,
                                      widths[2] > 0 ? widths[2] : highest_top(frames)};
   const Hdf5Handle dataset = write_numbers(box, "edges", edges);
   write_label(dataset, {"edges", "diameter", "", ""});
+  const Hdf5Handle directions = write_bare_axis(box, "direction", 3);
+  const Hdf5Handle* const axes[] = {&directions};
+  attach_axes(dataset, axes);
 }
 
 }  // namespace

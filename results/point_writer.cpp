@@ -118,8 +118,9 @@ void PointWriter::write_restart(std::uint32_t realization, const RealizationReco
   put(bytes, essential(*record.state));
   const auto raw =
       std::span(reinterpret_cast<const std::uint8_t*>(bytes.bytes().data()), bytes.bytes().size());
-  write_numbers<std::uint8_t>(group_under("restart"), realization_name(realization), {raw.size()},
-                              raw);
+  // Its own axis: one of all realizations would have to name each of them.
+  const std::string name = realization_name(realization);
+  make_axis(write_numbers<std::uint8_t>(group_under("restart"), name, {raw.size()}, raw), name);
 }
 
 void PointWriter::finish() {

@@ -15,10 +15,10 @@
 namespace jostle {
 namespace {
 
-Hdf5Handle open_sealed(const std::string& path) {
+Hdf5Handle open_sealed(const std::string& path, const std::string& known_as) {
   verify_seal(path);
   silence_hdf5();
-  return naming_file(path, [&] {
+  return naming_file(known_as, [&] {
     return Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   });
 }
@@ -55,7 +55,8 @@ std::vector<Work> read_work(const Hdf5Handle& timing) {
 
 class ResultsFile::Impl {
  public:
-  explicit Impl(const std::string& name) : path(name), file(open_sealed(name)) {
+  Impl(const std::string& name, const std::string& known_as)
+      : path(known_as), file(open_sealed(name, known_as)) {
     naming_file(path, [&] {
       study = read_study(file);
       provenance = read_provenance(file);
@@ -111,7 +112,9 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   return tables;
 }
 
-ResultsFile::ResultsFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+ResultsFile::ResultsFile(const std::string& path) : ResultsFile(path, path) {}
+ResultsFile::ResultsFile(const std::string& path, const std::string& known_as)
+    : impl_(std::make_unique<Impl>(path, known_as)) {}
 ResultsFile::~ResultsFile() = default;
 ResultsFile::ResultsFile(ResultsFile&&) noexcept = default;
 
@@ -243,10 +246,10 @@ std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
   });
 }
 
-RealizationRecord ResultsFile::record(RealizationId id) const {
+RealizationRecord ResultsFile::record(RealizationId id, Content content) const {
   RealizationRecord record;
   if (!impl_->has_points || id.realization >= study().realizations) return record;
-  record.snapshots = snapshots(id);
+  if (content == Content::everything) record.snapshots = snapshots(id);
   naming_file(impl_->path, [&] {
     const PointTables& tables = impl_->tables(id.point);
     record.status = static_cast<RealizationStatus>(tables.statuses.at(id.realization));

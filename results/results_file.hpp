@@ -49,6 +49,8 @@ struct RealizationValues {
   ObservableLabel label;
   std::vector<double> values;
 };
+/// What of a realization is wanted.
+enum class Content { everything, without_snapshots };
 
 struct RealizationSummary {
   RealizationId id;
@@ -64,6 +66,8 @@ struct RealizationSummary {
 class ResultsFile {
  public:
   explicit ResultsFile(const std::string& path);
+  /// One that stands in for `known_as`: path() and errors name that.
+  ResultsFile(const std::string& path, const std::string& known_as);
   ~ResultsFile();
   ResultsFile(ResultsFile&&) noexcept;
 
@@ -88,8 +92,8 @@ class ResultsFile {
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
   /// What fitting did to each pour between walls (fitting_columns); nothing of another start.
   std::vector<RealizationValues> fittings(std::uint32_t point) const;
-  /// Everything stored of one realization.
-  RealizationRecord record(RealizationId id) const;
+  /// Everything stored of one realization, or that without its snapshots.
+  RealizationRecord record(RealizationId id, Content content = Content::everything) const;
   /// Where it goes on; nothing for missing and failed ones.
   std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "results/checksum.hpp"
 #include "results/error.hpp"
@@ -38,6 +40,11 @@ bool differs(const Study& stored, const Study& study) {
   return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
 }
 
+/// Whether realizations have the same numbers in both: what parts are named by.
+bool same_points(const Study& stored, const Study& study) {
+  return std::ranges::equal(stored.points, study.points, {}, &StudyPoint::id, &StudyPoint::id);
+}
+
 }  // namespace
 
 class RunStore::Impl {
@@ -67,6 +74,7 @@ class RunStore::Impl {
  private:
   void open_file();
   void check_shard_and_points() const;
+  void fold_parts_of_the_stored_points();
 
   RunLock lock;
 };
@@ -86,13 +94,14 @@ void RunStore::Impl::go_on(const Provenance& provenance) {
   run_id = file->run_id();
   processes = file->provenance();
   processes.push_back(provenance);
-  in_parts = verify_parts(path, run_id, study);
+  in_parts = verify_parts(path, run_id, file->study());
   remove_file(temporary_name(path));
   // What lies there already is a part of the estimate: a chain of runs that fits at first fits to
   // its end.
   const std::uint64_t needed = disk_estimate(study, shard),
                       have = parts_bytes(path) + file_bytes(path);
   if (needed > have) require_room_for_run(path, needed - have);
+  if (!same_points(file->study(), study)) fold_parts_of_the_stored_points();
   if (differs(file->study(), study))
     fold();
   else
@@ -106,9 +115,15 @@ void RunStore::Impl::check_shard_and_points() const {
                                          "with --shard {}/{}",
                                          stored.index, stored.count, shard.index, shard.count,
                                          stored.index, stored.count));
-  if (file->study().points.size() != study.points.size())
-    throw ResultsError(path, fmt::format("has {} sweep points, but the scene has {}",
-                                         file->study().points.size(), study.points.size()));
+  for (const StudyPoint& point : file->study().points)
+    if (!point_with(study, point.id))
+      throw ResultsError(path, fmt::format("has the sweep point {}, but the scene has not: values "
+                                           "can be added to a sweep, not taken away",
+                                           point.label));
+  if (shard.count > 1 && !same_points(file->study(), study))
+    throw ResultsError(path,
+                       "holds a share of its realizations, so its sweep cannot grow: merge "
+                       "all shares, and resume the merged file with the new values");
   if (const auto point = other_start(file->study(), study))
     throw ResultsError(path,
                        fmt::format("was begun from another packing: the file that sweep point "
@@ -122,10 +137,23 @@ void RunStore::Impl::open_file() {
   for (RealizationSummary& summary : file->realizations()) folded[summary.id] = summary;
 }
 
+/// Parts are named by the numbers of points. Those of a file whose points get other numbers go into
+/// it first, and away: a kill at any moment leaves a file and parts that agree.
+void RunStore::Impl::fold_parts_of_the_stored_points() {
+  if (!in_parts.empty()) {
+    const Study grown = std::exchange(study, file->study());
+    fold();
+    study = grown;
+  }
+  remove_parts(path);
+  in_parts.clear();
+}
+
 /// Replaces the file by one that also holds what the parts hold.
 void RunStore::Impl::fold() {
   const auto record = [&](RealizationId id) {
-    RealizationRecord base = file->record(id);
+    const auto stored = point_with(file->study(), study.points[id.point].id);
+    RealizationRecord base = stored ? file->record({*stored, id.realization}) : RealizationRecord{};
     if (!in_parts.contains(id)) return base;
     return join(std::move(base), path, {run_id, id}, n_columns(id));
   };

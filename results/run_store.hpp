@@ -22,8 +22,10 @@ class RunStore : public Sink {
   static std::unique_ptr<RunStore> create(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
                                           bool force = false);
-  /// Goes on with a file. `study` is the stored one, or it has more taps at the end or more
-  /// realizations: the caller compares the scenes (ResultsFile::study) and refuses other changes.
+  /// Goes on with a file. `study` is the stored one, or it has more taps at the end, more
+  /// realizations or more sweep points, in any order: the caller compares the scenes
+  /// (ResultsFile::study) and refuses other changes. Points are known by their ids. A share of a
+  /// run keeps its points: which realizations are its own depends on their number.
   /// The shard must be the stored one. `force` only takes over the lock of another host.
   static std::unique_ptr<RunStore> resume(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,

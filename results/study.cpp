@@ -88,9 +88,17 @@ Study make_study(std::span<const Plan> plans, std::string scene, std::string res
   return study;
 }
 
+std::optional<std::uint32_t> point_with(const Study& study, std::uint64_t id) {
+  const auto found = std::ranges::find(study.points, id, &StudyPoint::id);
+  if (found == study.points.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - study.points.begin());
+}
+
 std::optional<std::uint32_t> other_start(const Study& a, const Study& b) {
-  for (std::uint32_t p = 0; p < std::min(a.points.size(), b.points.size()); ++p) {
-    const std::string &one = a.points[p].start_sum, &other = b.points[p].start_sum;
+  for (std::uint32_t p = 0; p < a.points.size(); ++p) {
+    const auto twin = point_with(b, a.points[p].id);
+    if (!twin) continue;
+    const std::string &one = a.points[p].start_sum, &other = b.points[*twin].start_sum;
     if (!one.empty() && !other.empty() && one != other) return p;
   }
   return std::nullopt;

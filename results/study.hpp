@@ -40,7 +40,12 @@ struct Study {
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations);
 
-/// The first sweep point that starts in both studies from files, but from different packings.
+/// The number of the sweep point with this id; nothing where there is none. A point keeps its id
+/// when values are added to a sweep, not its number.
+std::optional<std::uint32_t> point_with(const Study& study, std::uint64_t id);
+
+/// The first sweep point of `a` that starts in both studies from files, but from different
+/// packings.
 std::optional<std::uint32_t> other_start(const Study& a, const Study& b);
 
 /// The share number `index` of `count`, index in 1 .. count. A realization belongs to share

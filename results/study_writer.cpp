@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <numeric>
+#include <optional>
 
 #include "results/container_text.hpp"
 #include "results/hdf5_write.hpp"
@@ -35,6 +38,19 @@ Texts texts_of(const StudyPoint& point, Get get) {
   return texts;
 }
 
+using NamedTexts = std::vector<std::pair<std::string, Texts>>;
+
+/// Texts of one length; the first are the axis of the others.
+void write_texts_along(hid_t group, const NamedTexts& columns) {
+  const auto write = [&](const auto& column) {
+    return write_texts(group, column.first, {column.second.size()}, column.second);
+  };
+  const Hdf5Handle axis = write(columns.front());
+  make_axis(axis, columns.front().first);
+  const Hdf5Handle* const along[] = {&axis};
+  for (std::size_t i = 1; i < columns.size(); ++i) attach_axes(write(columns[i]), along);
+}
+
 void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
   const Hdf5Handle group = create_group(sweep, point_name(number));
   const ContainerText container = container_text(point.container);
@@ -50,20 +66,66 @@ void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
     pointers.push_back(pointer);
     values.push_back(value);
   }
-  write_texts(group, "pointers", {pointers.size()}, pointers);
-  write_texts(group, "values", {values.size()}, values);
-  const Shape n{point.observables.size()};
-  write_texts(group, "observables", n, texts_of(point, [](auto& one) { return one.name; }));
-  write_texts(group, "units", n, texts_of(point, [](auto& one) { return one.units; }));
-  write_texts(group, "long_names", n, texts_of(point, [](auto& one) { return one.long_name; }));
-  write_texts(group, "sources", n, texts_of(point, [](auto& one) { return one.source; }));
-  write_numbers(group, "snapshot_taps", point.snapshots.taps);
+  write_texts_along(group, {{"pointers", pointers}, {"values", values}});
+  write_texts_along(group,
+                    {{"observables", texts_of(point, [](auto& one) { return one.name; })},
+                     {"units", texts_of(point, [](auto& one) { return one.units; })},
+                     {"long_names", texts_of(point, [](auto& one) { return one.long_name; })},
+                     {"sources", texts_of(point, [](auto& one) { return one.source; })}});
+  make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
   const std::array<std::uint8_t, 3> kept = {point.snapshots.positions, point.snapshots.coordination,
                                             point.snapshots.height_histogram};
   write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
   write_attribute(group, "contact_cut", point.snapshots.contact_cut);
   write_attribute(group, "bin_width", point.snapshots.bin_width);
   if (!point.start_sum.empty()) write_attribute(group, "start_sha256", point.start_sum);
+}
+
+/// A pointer's values as numbers, [n_points]; nothing where one of them is none.
+std::optional<std::vector<double>> numbers_at(const Study& study, const std::string& pointer) {
+  std::vector<double> numbers;
+  for (const StudyPoint& point : study.points) {
+    const std::string text = value_at(point, pointer);
+    const char* const end = text.data() + text.size();
+    double number = 0;
+    const auto read = std::from_chars(text.data(), end, number);
+    if (text.empty() || read.ec != std::errc() || read.ptr != end) return std::nullopt;
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// What a pointer's values are called as a coordinate: its last token where that tells it from
+/// everything else in the table, else all of it with underscores.
+std::string coordinate_name(const std::string& pointer, const Texts& pointers) {
+  const auto last_token = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
+  const std::string name = last_token(pointer);
+  const Texts taken = {"point", "label", "id", "pointer", "value"};
+  const auto same = [&](const std::string& other) { return last_token(other) == name; };
+  const bool is_index = name.find_first_not_of("0123456789") == std::string::npos;
+  if (!is_index && std::ranges::count_if(pointers, same) == 1 &&
+      std::ranges::find(taken, name) == taken.end())
+    return name;
+  std::string whole = pointer.substr(1);
+  std::ranges::replace(whole, '/', '_');
+  return whole;
+}
+
+/// What is swept as numbers, a dataset a pointer; returns their names.
+std::string write_coordinates(hid_t sweep, const Study& study, const Texts& pointers,
+                              const Hdf5Handle& points) {
+  std::string names = "label";
+  const Hdf5Handle* const along_points[] = {&points};
+  for (const std::string& pointer : pointers) {
+    const auto numbers = numbers_at(study, pointer);
+    if (!numbers) continue;
+    const std::string name = coordinate_name(pointer, pointers);
+    const Hdf5Handle dataset = write_numbers(sweep, name, *numbers);
+    write_attribute(dataset, "long_name", "value of " + pointer);
+    attach_axes(dataset, along_points);
+    names += " " + name;
+  }
+  return names;
 }
 
 /// The sweep as a table for people and programs: label, id and values of every point.
@@ -93,6 +155,7 @@ void write_table(hid_t sweep, const Study& study) {
   make_axis(axis, "pointer");
   const Hdf5Handle value = write_texts(sweep, "value", {labels.size(), pointers.size()}, values);
   write_attribute(value, "long_name", std::string("JSON value at the pointer"));
+  write_attribute(value, "coordinates", write_coordinates(sweep, study, pointers, points));
   const Hdf5Handle* const axes[] = {&points, &axis};
   attach_axes(value, axes);
 }
@@ -128,10 +191,15 @@ void write_provenance(hid_t file, const FileContent& content, RunState state) {
   write_attribute(group, "state", std::string(names[static_cast<int>(state)]));
   const std::array<std::uint32_t, 2> shard = {content.shard.index, content.shard.count};
   write_attribute<std::uint32_t>(group, "shard", shard);
+  std::vector<std::uint32_t> numbers(content.provenance.size());
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  const Hdf5Handle processes = write_numbers(group, "process", numbers);
+  make_axis(processes, "process");
+  const Hdf5Handle* const along[] = {&processes};
   for (const auto& [name, field] : provenance_fields) {
     Texts texts;
     for (const Provenance& process : content.provenance) texts.push_back(process.*field);
-    write_texts(group, name, {texts.size()}, texts);
+    attach_axes(write_texts(group, name, {texts.size()}, texts), along);
   }
 }
 

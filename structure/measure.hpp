@@ -45,7 +45,8 @@ struct CoordinationSettings {
 };
 
 struct PairsSettings {
-  double r_max = 4, bin_width = 0.02;
+  std::optional<double> r_max = std::nullopt;  // default: widest_pairs() of the container
+  double bin_width = 0.02;
   bool operator==(const PairsSettings&) const = default;
 };
 

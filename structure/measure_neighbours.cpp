@@ -99,8 +99,9 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
 }
 
 Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
+  const double r_max = settings.r_max.value_or(widest_pairs(in.packing.container));
   const PairCorrelation pairs =
-      pair_correlation(in.packing, {.r_max = settings.r_max, .bin_width = settings.bin_width});
+      pair_correlation(in.packing, {.r_max = r_max, .bin_width = settings.bin_width});
   Measurement out;
   out.places = {{"r", pairs.r, "diameter", "distance of centres, middle of a bin"}};
   out.quantities = {{.name = "g",

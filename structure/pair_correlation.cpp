@@ -111,6 +111,14 @@ class CubicFit {
 
 }  // namespace
 
+double widest_pairs(const Container& container) {
+  constexpr double usual = 4, tenth = 0.1;
+  const double across = std::min(width_x(container), width_y(container));
+  const double widest =
+      has_walls(container) ? across / 2 - sphere_radius - 0.5 : narrowest_period(container) / 2;
+  return std::clamp(std::floor(widest / tenth + 1e-9) * tenth, 1.0, usual);
+}
+
 Region bulk_region(const Packing& packing, double r_max) {
   if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
     return {0, bulk->height, 0};

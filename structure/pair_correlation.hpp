@@ -16,6 +16,11 @@ struct PairCorrelationSettings {
   std::optional<Region> region = std::nullopt;  // of the central spheres; by default bulk_region
 };
 
+/// The r_max that suits a container: 4, but at most half a period of its box, and between walls or
+/// in a tube so that central spheres have a column of 1 diameter; at least 1, which is too wide for
+/// the narrowest of them. A multiple of 0.1.
+double widest_pairs(const Container& container);
+
 /// Where shells of r_max around a centre are whole, as far as the packing goes: r_max above the
 /// lowest centres that the floor allows and below 2<Z>, but at least the middle half of the heights
 /// up to there; r_max + 1/2 away from walls. All of a fully periodic box.

@@ -3,7 +3,7 @@
 import shutil
 import unittest
 
-from support import BAD_INPUT, BROKEN, STOPPED, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, SOURCE, STOPPED, TINY, Case, changed
 
 TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
                  observe=["mean_height"],
@@ -69,10 +69,47 @@ class Numbers(Refused):
 class Words(Refused):
     def test_a_command_that_is_not_there_is_named(self):
         self.results()
-        self.refused("analyze", answer='analyze: there is no such command; there are run, check')
+        self.refused("analyze", answer='analyze: there is no such command; there are new, run, check')
         self.refused("analyze", answer='Did you mean "analyse"?')
         self.refused("analyse", "tiny.h5", "stedy", "--observable", "mean_height",
                      answer="stedy: there is no such file, and no such analysis; there are steady")
+
+    def test_the_nearest_word_is_proposed(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        for arguments, answer in (
+                (["run", "scene.json", "--treads", 2],
+                 '--treads: jostle run has no such option; its --help lists them. Did you mean '
+                 '"--threads"?'),
+                (["analyse", "tiny.h5", "steady", "--observabel", "mean_height"],
+                 "--observabel: jostle analyse steady has no such option"),
+                (["analyse", "tiny.h5", "steady", "--observable=mean_height", "--lst=5"],
+                 'Did you mean "--last"?'),
+                (["analyse", "tiny.h5", "stedy"], 'Did you mean "steady"?'),
+                (["analyse", "tiny.h5", "steady", "--observable", "mean_hight"],
+                 'Did you mean "mean_height"?'),
+                (["fit", "tiny.h5", "--observable", "mean_hight"], 'Did you mean "mean_height"?'),
+                (["fit", "curve.csv", "--model", "invers_log"], 'Did you mean "inverse_log"?'),
+                (["structure", "tiny.h5", "--part", "profil"], 'Did you mean "profile"?'),
+                (["cost", "scene.json", "--observable", "mean_hight"],
+                 'Did you mean "mean_height"?')):
+            self.refused(*arguments, answer=answer)
+
+    def test_one_of_a_thing_is_one(self):
+        self.write(changed(TINY, spheres=1, realizations=1, sweep={},
+                           protocol=[{"tap": {"dilate": 0.05}, "count": 1}],
+                           snapshots={"taps": [1]}))
+        size = self.jostle("check", "scene.json", "--no-pilot").stdout
+        self.assertIn("1 sweep point x 1 realization, 1 sphere, 1 tap in all\n", size)
+        done = self.run_scene("--threads", 1)
+        self.assertIn("1 realization to do on 1 thread\n", done.stderr)
+        self.assertRegex(done.stdout, r"this run: .* on 1 thread[;\n]")
+        self.assertRegex(self.jostle("info", "tiny.h5").stdout, r"made by .*, 1 thread\n")
+        self.assertIn("1 file merged", self.jostle("merge", "tiny.h5", "-o", "one.h5").stdout)
+        exported = self.jostle("export", "tiny.h5", "--format", "extxyz").stdout
+        self.assertIn("tap 1, 1 sphere\n", exported)
+        self.write(changed(TINY, spheres=0), "bad.json")
+        self.refused("check", "bad.json", answer="bad.json: 1 fault, nothing was run")
 
     def test_an_observable_of_other_sweep_points_is_found(self):
         self.results()
@@ -149,6 +186,36 @@ class Unfinished(Refused):
             done = self.jostle(*arguments, expect=None)
             self.assertIn("tiny.h5: its run is unfinished", done.stderr)
             self.assertIn("jostle run SCENE --resume", done.stderr)
+
+
+class Doubtful(Case):
+    def test_what_a_scene_may_not_mean_is_said_by_check_and_run(self):
+        doubtful = changed(TINY, relax={"polar": {"theta0": 45}, "stop": {"sweeps": 2}},
+                           protocol=[{"tap": {"dilate": 2}, "count": 1}, {"tap": {"lift": 8}, "count": 1}],
+                           snapshots={"taps": []})
+        del doubtful["sweep"]
+        self.write(doubtful)
+        said = ("theta0 is an angle in radians", "45 degrees are 0.7854",
+                "dilate 2 stretches the bed to 3 times its height; 2 percent are 0.02",
+                "lift 8 drops the bed from 8 diameters")
+        checked = self.jostle("check", "scene.json").stdout
+        logged = self.run_scene().stderr
+        for text in said:
+            self.assertIn(text, checked)
+            self.assertIn(text, logged)
+        large = changed(TINY, realizations=1000, spheres=100000,
+                        container={"sides": "periodic", "width": 60},
+                        protocol=[{"tap": {"dilate": 0.05}, "count": 20000}],
+                        snapshots={"taps": {"from": 1, "to": 20000, "per_decade": 1000}})
+        self.write(large)
+        self.assertRegex(self.jostle("check", "scene.json", "--no-pilot").stdout,
+                         r"the results may take \d+\.\d TiB of disk")
+
+    def test_what_the_papers_do_is_not_doubted(self):
+        for path in sorted((SOURCE / "config/scenes").rglob("*.json")):
+            with self.subTest(scene=path.name):
+                text = self.jostle("check", path, "--no-pilot").stdout
+                self.assertNotIn("\nwarnings\n", text)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY
 
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
-        for command in ("run", "check", "schema", "info", "merge", "fit", "bench",
+        for command in ("new", "run", "check", "schema", "info", "merge", "fit", "bench",
                         "selftest", "export"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
@@ -101,7 +101,7 @@ class Scenes(Case):
         text = self.jostle("check", "scene.json").stdout
         resolved, rest = text.split("\n}\n", 1)
         self.assertEqual(json.loads(resolved + "\n}")["relax"]["polar"]["max_step"], 0.1)
-        self.assertIn("2 sweep points x 3 realizations", rest)
+        self.assertIn("2 sweep points x 3 realizations, 48 spheres, 24 taps in all", rest)
         for part in ("effects", "pilot", "time: ", "memory: ", "disk: "):
             self.assertIn(part, rest)
         without = self.jostle("check", "scene.json", "--no-pilot").stdout
@@ -109,9 +109,19 @@ class Scenes(Case):
         self.assertIn("disk: ", without)
 
     def test_check_bounds_its_pilot_for_a_large_scene(self):
-        self.write(changed(TINY, spheres=200000, container={"sides": "periodic", "width": 50}))
+        self.write(changed(TINY, spheres=200000, container={"sides": "periodic", "width": 50},
+                           sweep={}))
         text = self.jostle("check", "scene.json").stdout
         self.assertIn("20000 of 200000 spheres", text)
+
+    def test_check_tries_the_strengths_of_a_ramp_and_takes_threads_from_its_environment(self):
+        ramp = changed(TINY, sweep={}, realizations=8, protocol=[
+            {"ramp": {"lift": {"from": 0.1, "to": 0.5, "step": 0.05}}, "count": 2}])
+        self.write(ramp)
+        text = self.jostle("check", "scene.json", environment={"JOSTLE_THREADS": "4"}).stdout
+        self.assertIn("48 spheres, taps of 3 strengths", text)
+        self.assertRegex(text, r"time: .* on 4 threads")
+        self.assertIn("on 1 thread,", self.jostle("check", "scene.json", "--threads", 1).stdout)
 
     def test_the_schema_is_the_shipped_one(self):
         printed = self.jostle("schema").stdout

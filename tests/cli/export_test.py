@@ -34,8 +34,8 @@ class Export(Case):
     def test_extended_xyz_has_the_stored_bits_and_is_a_start(self):
         out = self.jostle("export", "tiny.h5", "--format", "extxyz", "--sweep-point", 1,
                           "--realization", 2).stdout
-        self.assertEqual(out, f"tiny.xyz: sweep point 1, realization 2, tap 4, {N} spheres\n")
-        lines = self.lines("tiny.xyz")
+        self.assertEqual(out, f"tiny_point1_realization2.xyz: sweep point 1, realization 2, tap 4, {N} spheres\n")
+        lines = self.lines("tiny_point1_realization2.xyz")
         self.assertEqual(len(lines), N + 2)
         for line, centre in zip(lines[2:], self.centres(1, 2)):
             words = line.split()
@@ -43,7 +43,7 @@ class Export(Case):
             self.assertEqual(float(words[4]), 0.5)
             self.assertTrue(0 < int(words[5]) <= 12)
             self.assertTrue(0.7 < float(words[6]) < 4)
-        scene = changed(TINY, name="again", start={"file": {"path": "tiny.xyz"}})
+        scene = changed(TINY, name="again", start={"file": {"path": "tiny_point1_realization2.xyz"}})
         del scene["sweep"]
         self.write(scene, "again.json")
         self.run_scene(scene="again.json")
@@ -51,9 +51,17 @@ class Export(Case):
             start = file["particles/point_0000_realization_00000/position/value"][0].tolist()
         self.assertEqual([bits(r) for r in start], [bits(r) for r in self.centres(1, 2)])
 
+    def test_packings_of_other_points_and_realizations_have_other_names(self):
+        for arguments in ([], ["--sweep-point", 1], ["--realization", 1],
+                          ["--sweep-point", 1, "--realization", 1]):
+            self.jostle("export", "tiny.h5", "--format", "extxyz", *arguments)
+        self.assertEqual([name for name in self.files() if name.endswith(".xyz")],
+                         ["tiny_point0.xyz", "tiny_point0_realization1.xyz", "tiny_point1.xyz",
+                          "tiny_point1_realization1.xyz"])
+
     def test_lammps_dump_has_a_frame_a_tap(self):
         self.jostle("export", "tiny.h5", "--format", "lammps", "--tap", "all")
-        lines = self.lines("tiny.dump")
+        lines = self.lines("tiny_point0.dump")
         self.assertEqual(len(lines), 2 * (N + 9))
         for frame, tap in enumerate((0, 4)):
             part = lines[frame * (N + 9):][:N + 9]
@@ -97,9 +105,9 @@ class Export(Case):
 
     def test_several_taps_in_vtk_are_listed_in_time(self):
         self.jostle("export", "tiny.h5", "--format", "vtp", "--tap", "0,4")
-        root = xml.etree.ElementTree.parse(self.folder / "tiny.pvd").getroot()
+        root = xml.etree.ElementTree.parse(self.folder / "tiny_point0.pvd").getroot()
         listed = {item.get("timestep"): item.get("file") for item in root.iter("DataSet")}
-        self.assertEqual(listed, {"0": "tiny_tap0.vtp", "4": "tiny_tap4.vtp"})
+        self.assertEqual(listed, {"0": "tiny_point0_tap0.vtp", "4": "tiny_point0_tap4.vtp"})
         for tap, name in listed.items():
             self.assertEqual(self.arrays(name)[1], float(tap))
 
@@ -110,14 +118,14 @@ class Export(Case):
                          bits(x for centre in self.centres(frame=0) for x in centre))
 
     def test_files_that_exist_are_kept_without_force(self):
-        (self.folder / "tiny.pvd").write_text("mine")
+        (self.folder / "tiny_point0.pvd").write_text("mine")
         refused = ["export", "tiny.h5", "--format", "vtp", "--tap", "all"]
-        self.assertIn("tiny.pvd exists and is kept",
+        self.assertIn("tiny_point0.pvd exists and is kept",
                       self.jostle(*refused, expect=BAD_INPUT).stderr)
-        self.assertEqual((self.folder / "tiny.pvd").read_text(), "mine")
-        self.assertFalse((self.folder / "tiny_tap0.vtp").exists())
+        self.assertEqual((self.folder / "tiny_point0.pvd").read_text(), "mine")
+        self.assertFalse((self.folder / "tiny_point0_tap0.vtp").exists())
         self.jostle(*refused, "--force")
-        self.assertNotEqual((self.folder / "tiny.pvd").read_text(), "mine")
+        self.assertNotEqual((self.folder / "tiny_point0.pvd").read_text(), "mine")
         self.assertIn("would destroy it", self.jostle("export", "tiny.h5", "--format", "lammps", "-o",
                                                   "tiny.h5", "--force", expect=BAD_INPUT).stderr)
 

@@ -30,6 +30,9 @@ class Install(Case):
         self.assertEqual(self.digest("tiny.h5"), self.digest("built.h5"))
         self.command(program, "check", prefix / "share/jostle/scenes/quickstart.json", "--no-pilot")
 
+        self.command(program, "new", "own", "--from", "philippe-bideau-2001/fig2")
+        self.command(program, "check", "own.json", "--no-pilot")
+
         self.command("cmake", "-G", "Ninja", "-S", SOURCE / "tests/cli/consumer", "-B", "consumer",
                      f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
                      f"-DEXAMPLES={SOURCE / 'docs/examples'}")

@@ -94,11 +94,28 @@ class Structure(Case):
     def test_a_part_that_is_not_there_says_so_and_the_rest_is_measured(self):
         self.write(TINY)
         self.run_scene()
-        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store")
+        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store",
+                            "--settings", '{"pair_correlation": {"r_max": 4}}')
         self.assertIn("half a period", found["point_0000/pair_correlation"]["notes"]["refused"])
         self.assertNotIn("refused", found["point_0000/sides"]["notes"])
         with h5py.File(self.folder / "tiny.h5") as file:
             self.assertNotIn("structure", file)
+
+    def test_pairs_reach_as_far_as_the_container_allows(self):
+        for sides, reach in (("periodic", 2), ("walls", 1)):
+            self.write(changed(TINY, container={"sides": sides, "width": 4}, spheres=64))
+            self.run_scene("--force")
+            found = self.tables("tiny.h5", "--part", "pair_correlation", "--no-store")
+            r = found["point_0000/pair_correlation"]["axes"]["r"]["values"]
+            self.assertAlmostEqual(r[-1], reach - 0.01)
+
+    def test_columns_that_are_not_printed_are_named(self):
+        self.write(TINY)
+        self.run_scene()
+        text = self.structure("tiny.h5", "--part", "profile,pair_correlation").stdout
+        self.assertRegex(text, r"\d+ rows of .*r +in --csv FILE and --json: g\n")
+        for block in text.strip().split("\n\npoint_")[1:]:
+            self.assertRegex(block, r"rows of|\n +\w+ +[\d.-]")
 
     def test_shards_are_measured_when_they_are_merged(self):
         self.write(changed(TINY, structure=SMALL))

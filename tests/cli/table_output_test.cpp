@@ -54,6 +54,28 @@ TEST_CASE("A brief table leaves long columns out") {
   CHECK(text.find("12.35") != std::string::npos);
   CHECK(text.find("y, z") != std::string::npos);
   CHECK(text.find("0.5") == std::string::npos);
+  CHECK(text.find("  40 rows of age, lag    in --csv FILE and --json: a\n") != std::string::npos);
+}
+
+TEST_CASE("A table says where it has no rows") {
+  Table table = example();
+  table.axes[1].values = std::vector<std::uint64_t>();
+  table.quantities[2].values = std::vector<double>();
+  for (const Detail detail : {Detail::brief, Detail::full}) {
+    CHECK(table_text(table, detail).find("  0 rows of age, lag     none: a\n") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("Rounding noise is seen beside the column it is in") {
+  Table table = {.name = "t",
+                 .axes = {{"n", {"n"}, std::vector<std::uint64_t>{1, 2}, "", "", ""}},
+                 .quantities = {{"x", {"n"}, std::vector{5000.0, 1e-12}, "1", "", ""},
+                                {"x_error", {"n"}, std::vector{2.5, 1e-12}, "1", "", ""}},
+                 .notes = {}};
+  const std::string text = table_text(table, Detail::full);
+  CHECK(text.find("5000.0 +- 2.5\n") != std::string::npos);
+  CHECK(text.find(" 2              0\n") != std::string::npos);
 }
 
 TEST_CASE("A table for programs nests its axes, and has null for what is no number") {

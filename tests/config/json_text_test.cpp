@@ -28,6 +28,25 @@ TEST_CASE("Equal keys of different objects are no duplicates") {
   CHECK(faults.empty());
 }
 
+TEST_CASE("Comments and trailing commas are named, with their place") {
+  const auto fault = [](const char* text) {
+    std::vector<Fault> faults;
+    CHECK_FALSE(read_json(text, faults).has_value());
+    return faults.size() == 1 ? faults.front().message : "not one fault";
+  };
+  const std::string comment = "a comment: JSON has neither comments nor trailing commas";
+  CHECK(fault("{\n  // the name\n  \"name\": 1}") == "not JSON: line 2, column 3: " + comment);
+  CHECK(fault("{\"a\": 1, /* one */ \"b\": 2}") == "not JSON: line 1, column 10: " + comment);
+  CHECK(fault("# scene\n{}") == "not JSON: line 1, column 1: " + comment);
+  const std::string comma =
+      "a comma before the end of a list or an object: JSON has neither comments nor trailing "
+      "commas";
+  CHECK(fault("{\"a\": [1, 2,]}") == "not JSON: line 1, column 13: " + comma);
+  CHECK(fault("{\n  \"a\": 1,\n}\n") == "not JSON: line 3, column 1: " + comma);
+  CHECK(fault("{\"a\": 1 2}").find("comma") == std::string::npos);
+  CHECK(fault("{]}").find("trailing") == std::string::npos);
+}
+
 TEST_CASE("Text that is not UTF-8 is not JSON") {
   std::vector<Fault> faults;
   CHECK_FALSE(read_json("{\"name\": \"\xff\"}", faults).has_value());

@@ -90,7 +90,7 @@ TEST_CASE("A resume names everything that changed") {
     scene["relax"]["polar"]["theta0"] = 1;
     scene["observe"] = {"mean_height"};
     scene["snapshots"]["keep"] = {"positions"};
-    scene["sweep"]["/protocol/0/tap/dilate"].push_back(0.03);
+    scene["sweep"]["/protocol/0/tap/dilate"] = {0.01, 0.03};
   });
   CHECK(
       faults ==
@@ -104,8 +104,72 @@ TEST_CASE("A resume names everything that changed") {
       "[\"mean_height\"]: a resumed run keeps it\n"
       "/snapshots/keep: was [\"positions\",\"coordination\",\"height_histogram\"], is "
       "[\"positions\"]: a resumed run keeps it\n"
-      "/sweep/~1protocol~10~1tap~1dilate: was [0.01,0.02], is [0.01,0.02,0.03]: a resumed run "
-      "keeps it\n");
+      "/sweep: the point dilate = 0.02 is gone: values can be added to what is swept, not taken "
+      "away, and nothing else can be swept\n");
+}
+
+TEST_CASE("A resume takes more values of what is swept, in any order") {
+  CHECK(faults_of([](Json& scene) {
+          scene["sweep"]["/protocol/0/tap/dilate"] = {0.005, 0.02, 0.03, 0.01};
+        }).empty());
+  // As another kind of axis, with equal points.
+  CHECK(faults_of([](Json& scene) {
+          scene["sweep"] =
+              Json::parse(R"({"zip": {"/protocol/0/tap/dilate": [0.01, 0.02, 0.05]}})");
+        }).empty());
+}
+
+TEST_CASE("A resume takes nothing else that is swept, and tries the taps of all old points") {
+  const char* const gone = "can be added to what is swept, not taken away";
+  CHECK_THAT(faults_of([](Json& scene) { scene["sweep"]["/spheres"] = {512}; }),
+             Catch::Contains(gone));
+  CHECK_THAT(faults_of([](Json& scene) { scene.erase("sweep"); }), Catch::Contains(gone));
+  CHECK_THAT(faults_of([](Json& scene) {
+               scene["sweep"]["/protocol/0/tap/dilate"].push_back(0.03);
+               scene["protocol"][1]["count"] = 11;
+             }),
+             Catch::Contains("tap 111 changed"));
+}
+
+TEST_CASE("Scenes that differ in the values of their sweep join") {
+  const auto with = [](const char* sweep, const char* name = "run") {
+    Json scene = Json::parse(run);
+    scene["sweep"] = Json::parse(sweep);
+    scene["name"] = name;
+    return scene;
+  };
+  const auto join = [](const Json& a, const Json& b) {
+    return join_sweeps(resolved(scene_of(a.dump())), resolved(scene_of(b.dump())));
+  };
+  const auto low = with(R"({"/protocol/0/tap/dilate": [0.02, 0.01], "/spheres": [512, 500]})");
+  const auto high =
+      with(R"({"/protocol/0/tap/dilate": [0.03, 0.02], "/spheres": [500, 400]})", "high");
+  const ParsedScene joined = join(low, high);
+  REQUIRE(joined.scene);
+  CHECK(resolved(*joined.scene) ==
+        resolved(scene_of(with(R"({"/protocol/0/tap/dilate": [0.02, 0.01, 0.03],
+                                   "/spheres": [512, 500, 400]})")
+                              .dump())));
+  const ParsedScene rows =
+      join(with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 7]}})"),
+           with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 9]}})"));
+  REQUIRE(rows.scene);
+  CHECK(resolved(*rows.scene)["sweep"].dump() ==
+        R"({"zip":[{"/spheres":[500,400,400],"/container/width":[8,7,9]}]})");
+
+  Json other = high;
+  other["seed"] = 2;
+  other["relax"] = Json::parse(R"({"polar": {"theta0": 1}})");
+  CHECK(lines(join(low, other).faults) ==
+        ": differs in /seed, /relax: only the values of a sweep may\n");
+  CHECK_THAT(
+      lines(join(low, with(R"({"/spheres": [500], "/protocol/0/tap/dilate": [0.1]})")).faults),
+      Catch::Contains("/sweep: the same must be swept"));
+  CHECK_FALSE(join(with("{}"), with("{}")).scene);
+  // What the sweep replaces may differ.
+  Json base = low;
+  base["spheres"] = 300;
+  CHECK(join(base, high).scene);
 }
 
 TEST_CASE("A resume refuses a scene that this program cannot read") {

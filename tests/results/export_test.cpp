@@ -172,7 +172,7 @@ TEST_CASE("kept packings are chosen by tap, and what there is is listed") {
   synthetic::run_to_end(path);
   const ResultsFile file(path);
   const auto records = file.snapshots({1, 2});
-  const auto all = kept_frames(path, {1, 2}, {.all = true});
+  const auto all = kept_frames(file, {1, 2}, {.all = true});
   REQUIRE(all.size() == 3);
   for (std::size_t f = 0; f < 3; ++f) {
     CHECK(all[f].tap == records[f].tap);
@@ -180,16 +180,16 @@ TEST_CASE("kept packings are chosen by tap, and what there is is listed") {
     CHECK(all[f].packing.container == Container(PeriodicBox{4, 5}));
     CHECK(all[f].columns.size() == 5);
   }
-  const auto two = kept_frames(path, {1, 2}, {.taps = {6, 0}});
+  const auto two = kept_frames(file, {1, 2}, {.taps = {6, 0}});
   REQUIRE(two.size() == 2);
   CHECK(two[0].tap == 0);
   CHECK(two[1].tap == 6);
-  const auto last = kept_frames(path, {1, 2}, {});
+  const auto last = kept_frames(file, {1, 2}, {});
   REQUIRE(last.size() == 1);
   CHECK(last[0].tap == 6);
-  CHECK_THROWS_WITH(kept_frames(path, {0, 0}, {.taps = {0, 3}}),
+  CHECK_THROWS_WITH(kept_frames(file, {0, 0}, {.taps = {0, 3}}),
                     Contains("holds no positions of tap 3; kept: 0, 2, 6"));
-  CHECK_THROWS_WITH(kept_frames(path, {0, 3}, {}),
+  CHECK_THROWS_WITH(kept_frames(file, {0, 3}, {}),
                     Contains("no positions of sweep point 0, realization 3; the file keeps\n"
                              "  sweep point 0, realization 0: taps 0, 2, 6"));
 }

@@ -90,6 +90,36 @@ def check_other_tables(path):
     assert (timing["distance_tests"] == 2 * timing["trials"]).all()
 
 
+def check_every_group_opens(path):
+    """And no dimension is nameless."""
+    groups = []
+    with h5py.File(path, "r") as file:
+        file.visititems(lambda name, item: groups.append("/" + name)
+                        if isinstance(item, h5py.Group) else None)
+    for group in groups:
+        for name, variable in open_group(path, group).load().variables.items():
+            assert not any("phony" in dim for dim in variable.dims), (group, name, variable.dims)
+    expected = ["/provenance", "/sweep/point_0000", "/restart/point_0001",
+                "/particles/point_0000_realization_00002/box"]
+    assert set(expected) <= set(groups), groups
+    point = open_group(path, "/sweep/point_0001")
+    assert point["units"].dims == point["sources"].dims == ("observables",)
+    assert point["units"].sel(observables="mean_height") == "diameter"
+    assert open_group(path, "/provenance")["host"].dims == ("process",)
+    box = open_group(path, "/particles/point_0000_realization_00002/box")
+    assert box["edges"].dims == ("direction",)
+
+
+def check_sweep_values_are_coordinates(path):
+    sweep = open_group(path, "/sweep")
+    assert {"epsilon", "label"} <= set(sweep.coords), sweep.coords
+    assert sweep["epsilon"].dims == ("point",) and sweep["epsilon"].dtype == np.float64
+    points = [open_group(path, f"/ensemble/point_{p:04}") for p in sweep["point"].values]
+    joined = xr.concat(points, dim=sweep["epsilon"])
+    second = joined["mean_height_mean"].swap_dims(point="epsilon").sel(epsilon=1.0)
+    assert (second == points[1]["mean_height_mean"]).all()
+
+
 def check_h5md(path):
     """The required elements of H5MD 1.1, and what docs/format.md adds."""
     with h5py.File(path, "r") as file:
@@ -125,6 +155,8 @@ def main():
         check_ensemble(path, table)
         check_snapshots(path, table)
         check_other_tables(path)
+        check_every_group_opens(path)
+        check_sweep_values_are_coordinates(path)
         check_h5md(path)
     print("h5py and xarray read the file as documented")
 

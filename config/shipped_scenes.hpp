@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace jostle {
+
+/// A scene of config/scenes, which the program carries.
+struct ShippedScene {
+  std::string_view name;  // "quickstart", "philippe-bideau-2001/fig2"
+  std::string_view text;
+};
+
+/// All of them, by name.
+std::span<const ShippedScene> shipped_scenes();
+
+}  // namespace jostle

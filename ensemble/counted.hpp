@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace jostle {
+
+/// A count with what it counts: "1 sphere", "2 spheres".
+inline std::string counted(std::uint64_t n, std::string_view one) {
+  std::string text = std::to_string(n);
+  text.append(" ").append(one);
+  if (n != 1) text += 's';
+  return text;
+}
+
+}  // namespace jostle

@@ -1,0 +1,106 @@
+"""Every example of every help text runs, on results as the quickstart scene makes them."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from support import JOSTLE, PLAIN, Case, changed
+
+COMMANDS = ("new", "run", "check", "cost", "schema", "info", "merge", "bench", "selftest", "fit",
+            "analyse", "structure", "export")
+
+# A hundred taps of a small bed, with everything that quickstart observes and keeps.
+QUICK = {
+    "name": "quickstart", "seed": 20010222, "realizations": 4,
+    "container": {"sides": "periodic", "width": 5}, "spheres": 120,
+    "protocol": [{"tap": {"dilate": 0.02}, "count": 100}],
+    "relax": {"polar": {}, "stop": {"mean_height": {"eta": 1e-3, "every_sweeps": 10}}},
+    "observe": ["mean_height", "bottom_fraction", "corrected_fraction", "bulk_fraction"],
+    "snapshots": {"taps": [0, 100]},
+}
+# As many taps as the papers' scenes have, and no more spheres than they need.
+LONG = changed(QUICK, container={"sides": "periodic", "width": 3}, spheres=30, snapshots={"taps": [0, 99]},
+               protocol=[{"tap": {"dilate": 0.02}, "count": 2000}],
+               relax={"polar": {}, "stop": {"sweeps": 10}})
+LOW = {"/protocol/0/tap/dilate": [0.01, 0.02]}
+HIGH = {"/protocol/0/tap/dilate": [0.05, 0.1, 0.2]}
+UP_AND_DOWN = [{"ramp": {"dilate": {"from": 0.01, "to": 0.25, "step_sqrt": 0.1}}, "count": 60},
+               {"ramp": {"dilate": {"from": 0.25, "to": 0.01, "step_sqrt": 0.1}}, "count": 60}]
+
+# What a test has no time or no place for, and what stands for it.
+INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed --json":
+           "jostle bench fluid_0.45 --json", "--budget 30m": "--rounds 2",
+           "--folder /scratch/me": "--folder .",
+           "jostle run quickstart.json": "jostle run small.json --force"}
+
+
+def examples(text):
+    """The commands of a help text; what stands after two blanks is said of them."""
+    return [re.split(r"\s{2,}", line.strip())[0] for line in text.splitlines()
+            if line.startswith("  jostle ")]
+
+
+def instead(command):
+    if command in INSTEAD:
+        return INSTEAD[command]
+    for what, other in INSTEAD.items():
+        command = command.replace(what, other) if what.startswith("--") else command
+    return command
+
+
+class Examples(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(QUICK, "small.json")
+        self.write(changed(QUICK, name="scene"))
+        self.jostle("run", "small.json", "--quiet")
+        runs = {"fig5": LONG, "fig9": QUICK, "fig10": LONG, "bell": changed(LONG, sweep=HIGH),
+                "low": changed(QUICK, sweep=LOW), "high": changed(QUICK, sweep=HIGH),
+                "fig4": changed(LONG, protocol=UP_AND_DOWN)}
+        for name, scene in runs.items():
+            self.write(scene, "of.json")
+            self.jostle("run", "of.json", "--quiet", "-o", f"{name}.h5")
+        for number, name in enumerate(("packing", "a", "b", "c")):
+            self.jostle("export", "quickstart.h5", "--format", "extxyz", "--realization",
+                        number % 4, "-o", f"{name}.xyz")
+        (self.folder / "measured.csv").write_text("t,X\n" + "".join(
+            f"{t},{0.62 - 0.053 * 2.718 ** -((t / 40) ** 0.5)}\n" for t in range(1, 200)))
+        (self.folder / "of.json").unlink()
+        self.program = self.folder / "bin"
+        self.program.mkdir()
+        (self.program / "jostle").symlink_to(JOSTLE)
+
+    def run_all(self, commands, folder):
+        environment = {**PLAIN, "PATH": f"{self.program}:{os.environ['PATH']}"}
+        for command in commands:
+            done = subprocess.run(["bash", "-c", instead(command)], cwd=folder, env=environment,
+                                  text=True, capture_output=True, timeout=600)
+            with self.subTest(command=command):
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_every_example_of_every_help_runs(self):
+        n = 0
+        for command in (None, *COMMANDS):
+            text = self.jostle(*filter(None, (command, "--help"))).stdout
+            found = examples(text)
+            self.assertGreaterEqual(len(found), 1, command)
+            n += len(found)
+            folder = self.folder / f"of_{command}"
+            folder.mkdir()
+            for path in self.folder.iterdir():
+                if path.is_file():
+                    shutil.copy(path, folder)
+            self.run_all(found, folder)
+        self.assertGreater(n, 35)
+
+    def test_no_command_is_forgotten(self):
+        listed = re.search(r"Subcommands:\n((?:  .*\n)+)", self.jostle("--help").stdout).group(1)
+        named = [line.split()[0] for line in listed.splitlines() if re.match(r"  \S", line)]
+        self.assertEqual(sorted(named), sorted(COMMANDS))
+
+
+if __name__ == "__main__":
+    unittest.main()
