@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "cli/arguments.hpp"
@@ -63,18 +64,19 @@ std::optional<Study> joined_study(const std::vector<std::string>& inputs) {
     scene = resolved(*joined.scene);
   }
   Study study{scene.dump(2), scene.dump(2), files.front().study().realizations, {}};
+  std::unordered_map<std::uint64_t, const StudyPoint*> held;
+  for (const ResultsFile& file : files) {
+    for (const StudyPoint& point : file.study().points) held[point.id] = &point;
+  }
   for (const SweepPoint& point : sweep_points(joined.scene->sweep)) {
-    const ResultsFile* holder = nullptr;
-    for (const ResultsFile& file : files) {
-      if (point_with(file.study(), point_id(point))) holder = &file;
-    }
-    if (holder == nullptr) {
+    const auto holder = held.find(point_id(point));
+    if (holder == held.end()) {
       throw ResultsError(files.front().path(),
                          fmt::format("cannot be merged: together the sweeps have the point {}, "
                                      "which no file holds; run it, as a resume of one of them",
                                      point_label(point)));
     }
-    study.points.push_back(holder->study().points[*point_with(holder->study(), point_id(point))]);
+    study.points.push_back(*holder->second);
   }
   return study;
 }

@@ -52,9 +52,10 @@ void claim(Owners& owners, const ResultsFile& file, const Study& study) {
     throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; add "
                                                 "some by jostle run --resume",
                                                 file.study().realizations, study.realizations));
+  const PointNumbers numbers(study);
   for (const RealizationSummary& summary : file.realizations()) {
     if (summary.status == RealizationStatus::missing) continue;
-    const auto point = point_with(study, file.study().points[summary.id.point].id);
+    const auto point = numbers.of(file.study().points[summary.id.point].id);
     if (!point)
       throw ResultsError(file.path(), fmt::format("holds sweep point {}, which is not of the "
                                                   "merged scene",

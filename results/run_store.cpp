@@ -115,8 +115,9 @@ void RunStore::Impl::check_shard_and_points() const {
                                          "with --shard {}/{}",
                                          stored.index, stored.count, shard.index, shard.count,
                                          stored.index, stored.count));
+  const PointNumbers numbers(study);
   for (const StudyPoint& point : file->study().points)
-    if (!point_with(study, point.id))
+    if (!numbers.of(point.id))
       throw ResultsError(path, fmt::format("has the sweep point {}, but the scene has not: values "
                                            "can be added to a sweep, not taken away",
                                            point.label));
@@ -151,8 +152,9 @@ void RunStore::Impl::fold_parts_of_the_stored_points() {
 
 /// Replaces the file by one that also holds what the parts hold.
 void RunStore::Impl::fold() {
+  const PointNumbers in_file(file->study());
   const auto record = [&](RealizationId id) {
-    const auto stored = point_with(file->study(), study.points[id.point].id);
+    const auto stored = in_file.of(study.points[id.point].id);
     RealizationRecord base = stored ? file->record({*stored, id.realization}) : RealizationRecord{};
     if (!in_parts.contains(id)) return base;
     return join(std::move(base), path, {run_id, id}, n_columns(id));

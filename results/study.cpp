@@ -88,15 +88,20 @@ Study make_study(std::span<const Plan> plans, std::string scene, std::string res
   return study;
 }
 
-std::optional<std::uint32_t> point_with(const Study& study, std::uint64_t id) {
-  const auto found = std::ranges::find(study.points, id, &StudyPoint::id);
-  if (found == study.points.end()) return std::nullopt;
-  return static_cast<std::uint32_t>(found - study.points.begin());
+PointNumbers::PointNumbers(const Study& study) {
+  for (std::uint32_t p = 0; p < study.points.size(); ++p) numbers_.emplace(study.points[p].id, p);
+}
+
+std::optional<std::uint32_t> PointNumbers::of(std::uint64_t id) const {
+  const auto found = numbers_.find(id);
+  if (found == numbers_.end()) return std::nullopt;
+  return found->second;
 }
 
 std::optional<std::uint32_t> other_start(const Study& a, const Study& b) {
+  const PointNumbers numbers(b);
   for (std::uint32_t p = 0; p < a.points.size(); ++p) {
-    const auto twin = point_with(b, a.points[p].id);
+    const auto twin = numbers.of(a.points[p].id);
     if (!twin) continue;
     const std::string &one = a.points[p].start_sum, &other = b.points[*twin].start_sum;
     if (!one.empty() && !other.empty() && one != other) return p;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,9 +41,17 @@ struct Study {
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations);
 
-/// The number of the sweep point with this id; nothing where there is none. A point keeps its id
-/// when values are added to a sweep, not its number.
-std::optional<std::uint32_t> point_with(const Study& study, std::uint64_t id);
+/// The numbers of a study's sweep points by their ids. A point keeps its id when values are added to
+/// a sweep, not its number.
+class PointNumbers {
+ public:
+  explicit PointNumbers(const Study& study);
+  /// Nothing where no point has this id.
+  std::optional<std::uint32_t> of(std::uint64_t id) const;
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+};
 
 /// The first sweep point of `a` that starts in both studies from files, but from different
 /// packings.

@@ -45,8 +45,8 @@ TEST_CASE("a run that was finished takes more sweep points, wherever they come")
   const TemporaryFolder folder;
   const Study study = grown();
   const Study before = synthetic::study();
-  REQUIRE(point_with(study, before.points[0].id) == 1u);
-  REQUIRE(point_with(study, before.points[1].id) == 3u);
+  REQUIRE(PointNumbers(study).of(before.points[0].id) == 1u);
+  REQUIRE(PointNumbers(study).of(before.points[1].id) == 3u);
   const std::string expected = digest_at_once(folder / "once.h5", study);
   synthetic::run_to_end(folder / "grown.h5");
   {
@@ -73,7 +73,7 @@ TEST_CASE("a run that was killed or stopped takes more sweep points, and keeps i
     const auto store = RunStore::resume(path, study, {}, provenance());
     const ResultsFile file(path);
     for (std::uint32_t r = 0; r < 3; ++r) {
-      const auto point = point_with(study, synthetic::study().points[1].id);
+      const auto point = PointNumbers(study).of(synthetic::study().points[1].id);
       CHECK(file.record({*point, r}).rows.size() > 0);
     }
     // Killed again, with parts of the new numbers.
