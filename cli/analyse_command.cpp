@@ -241,14 +241,15 @@ class Kinds {
   static void require_options_of(const CLI::App& command, const CLI::App& kind) {
     for (const CLI::Option* option : command.get_options()) {
       if (option->count() == 0 || !option->get_group().empty()) continue;
-      const auto* own = kind.get_option_no_throw(option->get_name());
+      const std::string name = "--" + option->get_single_name();
+      const auto* own = kind.get_option_no_throw(name);
       if (!own) {
         throw BadInput(fmt::format("{} has no option {}; jostle analyse {} --help lists them",
-                                   kind.get_name(), option->get_name(), kind.get_name()));
+                                   kind.get_name(), name, kind.get_name()));
       }
       if (own->count() > 0) {
-        throw BadInput(fmt::format("{} is there twice, before and after {}", option->get_name(),
-                                   kind.get_name()));
+        throw BadInput(
+            fmt::format("{} is there twice, before and after {}", name, kind.get_name()));
       }
     }
   }

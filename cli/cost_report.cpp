@@ -8,6 +8,7 @@
 
 #include "cli/durations.hpp"
 #include "cli/text_table.hpp"
+#include "ensemble/counted.hpp"
 
 namespace jostle {
 
@@ -128,9 +129,9 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
         "it.\nMore rounds make errors of biases smaller.\n",
         target, name);
   }
-  return fmt::format("For an error of {:g} in {} at tap {}: {}, {} realizations, about {}.\n",
-                     target, name, study.taps(), study.rungs()[choice->setting].name,
-                     choice->realizations, core_time(choice->core_seconds));
+  return fmt::format("For an error of {:g} in {} at tap {}: {}, {}, about {}.\n", target, name,
+                     study.taps(), study.rungs()[choice->setting].name,
+                     counted(choice->realizations, "realization"), core_time(choice->core_seconds));
 }
 
 }  // namespace

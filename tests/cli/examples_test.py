@@ -1,5 +1,6 @@
 """Every example of every help text runs, on results as the quickstart scene makes them."""
 
+import math
 import os
 import pathlib
 import re
@@ -22,19 +23,21 @@ QUICK = {
     "snapshots": {"taps": [0, 100]},
 }
 # As many taps as the papers' scenes have, and no more spheres than they need.
-LONG = changed(QUICK, container={"sides": "periodic", "width": 3}, spheres=30, snapshots={"taps": [0, 99]},
+LONG = changed(QUICK, container={"sides": "periodic", "width": 3}, spheres=30,
+               snapshots={"taps": [0, 99]},
                protocol=[{"tap": {"dilate": 0.02}, "count": 2000}],
-               relax={"polar": {}, "stop": {"sweeps": 10}})
+               relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-2, "every_sweeps": 10}}})
 LOW = {"/protocol/0/tap/dilate": [0.01, 0.02]}
 HIGH = {"/protocol/0/tap/dilate": [0.05, 0.1, 0.2]}
-UP_AND_DOWN = [{"ramp": {"dilate": {"from": 0.01, "to": 0.25, "step_sqrt": 0.1}}, "count": 60},
-               {"ramp": {"dilate": {"from": 0.25, "to": 0.01, "step_sqrt": 0.1}}, "count": 60}]
+UP_AND_DOWN = [{"ramp": {"dilate": {"sqrt_from": 0.1, "sqrt_to": 0.5, "sqrt_step": 0.1}}, "count": 60},
+               {"ramp": {"dilate": {"sqrt_from": 0.5, "sqrt_to": 0.1, "sqrt_step": 0.1}}, "count": 60}]
 
 # What a test has no time or no place for, and what stands for it.
 INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed --json":
            "jostle bench fluid_0.45 --json", "--budget 30m": "--rounds 2",
            "--folder /scratch/me": "--folder .",
-           "jostle run quickstart.json": "jostle run small.json --force"}
+           "jostle run quickstart.json": "jostle run small.json --force",
+           "jostle merge low.h5 high.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force"}
 
 
 def examples(text):
@@ -52,8 +55,8 @@ def instead(command):
 
 
 class Examples(Case):
-    def setUp(self):
-        super().setUp()
+    def make_files(self):
+        """Everything that the examples name."""
         self.write(QUICK, "small.json")
         self.write(changed(QUICK, name="scene"))
         self.jostle("run", "small.json", "--quiet")
@@ -68,6 +71,10 @@ class Examples(Case):
                         number % 4, "-o", f"{name}.xyz")
         (self.folder / "measured.csv").write_text("t,X\n" + "".join(
             f"{t},{0.62 - 0.053 * 2.718 ** -((t / 40) ** 0.5)}\n" for t in range(1, 200)))
+        (self.folder / "experiments.csv").write_text("t,first,second,third\n" + "".join(
+            "{},{},{},{}\n".format(t, *(0.6 - 0.06 / (1 + 0.5 * math.log(1 + t / 10)) +
+                                        1e-3 * math.cos(t * t * r) for r in (1, 2, 3)))
+            for t in range(1, 200)))
         (self.folder / "of.json").unlink()
         self.program = self.folder / "bin"
         self.program.mkdir()
@@ -82,6 +89,7 @@ class Examples(Case):
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_every_example_of_every_help_runs(self):
+        self.make_files()
         n = 0
         for command in (None, *COMMANDS):
             text = self.jostle(*filter(None, (command, "--help"))).stdout
