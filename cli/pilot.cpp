@@ -46,12 +46,17 @@ LatticeUnits lattice_units(const Plan& plan) {
   return {1, crystal->lattice == Lattice::hcp ? std::sqrt(3.0) : 1};
 }
 
-Container with_cut_footprint(const Plan& plan, double factor) {
+/// The container on about `share` of its area. Where one side of a box cannot be cut as far as the
+/// other, the other is cut further.
+Container with_cut_footprint(const Plan& plan, double share) {
   Container container = plan.container;
   const LatticeUnits units = lattice_units(plan);
+  const double factor = std::sqrt(share);
   const auto cut_box = [&](auto& box) {
-    box.width_x = cut_width(box.width_x, factor, units.x);
-    box.width_y = cut_width(box.width_y, factor, units.y);
+    const double left_x = cut_width(box.width_x, factor, units.x) / box.width_x;
+    const double left_y = cut_width(box.width_y, factor, units.y) / box.width_y;
+    box.width_x = cut_width(box.width_x, share / left_y, units.x);
+    box.width_y = cut_width(box.width_y, share / left_x, units.y);
   };
   if (auto* periodic = std::get_if<PeriodicBox>(&container)) cut_box(*periodic);
   if (auto* walled = std::get_if<WalledBox>(&container)) cut_box(*walled);
@@ -184,7 +189,7 @@ CutBed cut_down(const Plan& plan, std::uint32_t max_spheres) {
       has_gravity(plan.container) && !std::holds_alternative<GivenPacking>(plan.start);
   if (!may_be_cut || plan.n_spheres <= max_spheres) return bed;
   const double share = static_cast<double>(max_spheres) / plan.n_spheres;
-  bed.container = with_cut_footprint(plan, std::sqrt(share));
+  bed.container = with_cut_footprint(plan, share);
   const double left = footprint_area(bed.container) / footprint_area(plan.container);
   bed.n_spheres = std::max(1u, static_cast<std::uint32_t>(std::lround(left * plan.n_spheres)));
   bed.as_deep = bed.n_spheres <= most_oversize * max_spheres;

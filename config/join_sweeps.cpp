@@ -20,10 +20,11 @@ bool sweep_the_same(const std::vector<SweepAxis>& a, const std::vector<SweepAxis
   return std::ranges::equal(a, b, {}, pointers_of, pointers_of);
 }
 
-/// What two runs must share: the scene but for its name, its sweep and what the sweep replaces.
+/// What two runs must share: the scene but for its name, its sweep, what the sweep replaces, and
+/// the number of realizations, which merging judges.
 Json shared_part(const Scene& scene) {
   Json shared = resolved(scene);
-  for (const char* own : {"name", "description", "sweep"}) shared.erase(own);
+  for (const char* own : {"name", "description", "realizations", "sweep"}) shared.erase(own);
   for (const SweepAxis& axis : scene.sweep) {
     for (const std::string& pointer : pointers_of(axis)) {
       const Json::json_pointer place(pointer);
@@ -71,11 +72,10 @@ ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) 
   if (!other.scene) return other;
   ParsedScene refused;
   const std::string differ = differences(shared_part(*first.scene), shared_part(*other.scene));
-  if (!differ.empty()) {
-    refused.faults = {{"", "differs in " + differ + ": only the values of a sweep may"}};
-  } else if (first.scene->sweep.empty() ||
-             !sweep_the_same(first.scene->sweep, other.scene->sweep)) {
+  if (first.scene->sweep.empty() || !sweep_the_same(first.scene->sweep, other.scene->sweep)) {
     refused.faults = {{"/sweep", "the same must be swept, in the same order"}};
+  } else if (!differ.empty()) {
+    refused.faults = {{"", "differs in " + differ + ": only the values of a sweep may"}};
   }
   if (!refused.faults.empty()) return refused;
   for (std::size_t i = 0; i < first.scene->sweep.size(); ++i) {

@@ -203,10 +203,10 @@ class Doubtful(Case):
         for text in said:
             self.assertIn(text, checked)
             self.assertIn(text, logged)
-        large = changed(TINY, realizations=1000, spheres=100000,
+        large = changed(TINY, realizations=10000, spheres=100000,
                         container={"sides": "periodic", "width": 60},
                         protocol=[{"tap": {"dilate": 0.05}, "count": 20000}],
-                        snapshots={"taps": {"log": {"from": 1, "to": 20000, "per_decade": 1000}}})
+                        snapshots={"taps": {"log": {"from": 1, "to": 20000, "per_decade": 100}}})
         self.write(large)
         self.assertRegex(self.jostle("check", "scene.json", "--no-pilot").stdout,
                          r"the results may take \d+\.\d TiB of disk")

@@ -30,7 +30,7 @@ TEST_CASE("A value and its error share their decimals or their power of ten") {
   CHECK(value_and_error(-0.0000123, 0.000045) == "-0.000012 +- 0.000045");
   CHECK(value_and_error(2.0487283e-06, 7.4e-07) == "(2.05 +- 0.74)e-06");
   CHECK(value_and_error(0.593890243, 2.8e-7) == "(5.9389024 +- 0.0000028)e-01");
-  CHECK(value_and_error(3.1e-9, 4.2e-7) == "(0.03 +- 4.20)e-07");
+  CHECK(value_and_error(3.1e-9, 4.2e-7) == "(0.0 +- 4.2)e-07");
   CHECK(value_and_error(1.25e9, 3e6) == "(1.2500 +- 0.0030)e+09");
 }
 

@@ -62,22 +62,24 @@ TEST_CASE("Errors of a maximum are the scatter of maxima", "[statistics]") {
   const double spread = 0.002;
   const std::size_t realizations = GENERATE(2, 20);
   Moments at, height;
-  double error_at = 0, error_height = 0;
+  Moments squared_error_at, squared_error_height;
   for (int i = 0; i < ensembles; ++i) {
     const SweepMaximum top = maximum(
         SweepCurve(strengths, noisy_bell(static_cast<std::uint64_t>(100 + i), realizations, spread),
                    Streams::independent));
-    REQUIRE(top.found());
+    if (!top.found()) continue;
     at.add(top.x);
     height.add(top.y);
-    error_at += top.x_error.error * top.x_error.error / ensembles;
-    error_height += top.y_error.error * top.y_error.error / ensembles;
+    squared_error_at.add(top.x_error.error * top.x_error.error);
+    squared_error_height.add(top.y_error.error * top.y_error.error);
     CHECK(top.x_low < top.x);
     CHECK(top.x < top.x_high);
   }
+  // A bell this clear is hardly ever missed, so that those found stand for all.
+  CHECK(at.count() >= 0.98 * ensembles);
   // Scatter is known to 1/sqrt(2 * 300) = 4 %.
-  CHECK(std::sqrt(error_at) == Approx(at.sigma()).epsilon(0.15));
-  CHECK(std::sqrt(error_height) == Approx(height.sigma()).epsilon(0.15));
+  CHECK(std::sqrt(squared_error_at.mean()) == Approx(at.sigma()).epsilon(0.15));
+  CHECK(std::sqrt(squared_error_height.mean()) == Approx(height.sigma()).epsilon(0.15));
   CHECK(std::abs(at.mean() - 0.17) <= 3 * at.standard_error());
 }
 
