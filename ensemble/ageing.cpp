@@ -32,6 +32,20 @@ Pairs pairs(std::span<const double> early, std::span<const double> late) {
   return found;
 }
 
+LogEstimate mean_square(const Pairs& xy) {
+  const std::size_t n = xy.early.size();
+  if (n == 0) return no_estimate();
+  std::vector<double> squares;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    squares.push_back(std::pow(xy.late[i] - xy.early[i], 2));
+    sum += squares.back();
+  }
+  const ErrorOf error = {jackknife_error(ln_means_without_one(squares)),
+                         static_cast<double>(n - 1)};
+  return log_estimate(sum / static_cast<double>(n), error);
+}
+
 struct Correlation {
   double value = not_a_number, error = not_a_number;
 };
@@ -92,20 +106,11 @@ AgeingCurves ageing_curves(const TapRows& rows, const AgeingGrid& grid) {
   for (const std::uint64_t wait : grid.waiting_times) {
     for (const std::uint64_t lag : grid.lags) {
       const Pairs xy = pairs(rows.row(wait), rows.row(wait + lag));
-      Moments squares;
-      for (std::size_t i = 0; i < xy.early.size(); ++i) {
-        const double change = xy.late[i] - xy.early[i];
-        squares.add(change * change);
-      }
-      // The jackknife of a mean is its standard error.
-      const double error = squares.standard_error();
-      curves.a.push_back(squares.mean());
-      curves.a_error.push_back(error);
-      curves.a_half_width.push_back(student_half_width(error, squares.count()));
+      curves.a.push_back(mean_square(xy));
       const Correlation c = correlation(xy);
       curves.c.push_back(c.value);
       curves.c_error.push_back(c.error);
-      curves.count.push_back(squares.count());
+      curves.count.push_back(xy.early.size());
     }
   }
   return curves;

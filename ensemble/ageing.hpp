@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ensemble/log_estimate.hpp"
 #include "ensemble/tap_rows.hpp"
 
 // How an observable forgets: two-time functions of the lag t and the waiting time (age) t_W, both
@@ -27,10 +28,9 @@ struct AgeingCurves {
   AgeingGrid grid;
 
   /// A(t, t_W) = <(X(t_W + t) - X(t_W))^2>. Philippe & Bideau 2001, eq. 5, whose figure and eq. 6
-  /// have t for the lag, as here.
-  std::vector<double> a;
-  std::vector<double> a_error;       // jackknife over realizations
-  std::vector<double> a_half_width;  // of the 68 % interval, Student's t
+  /// have t for the lag, as here. Errors and intervals from the jackknife of ln A over
+  /// realizations: squares are skewed, and A +- t error would hold the truth too seldom.
+  std::vector<LogEstimate> a;
 
   /// C(t, t_W) = <dX(t_W + t) dX(t_W)> / <dX(t_W)^2>, dX = X - <X> over realizations at the same
   /// tap: 1 at t = 0. NaN where the realizations do not differ at t_W (a shared start). After

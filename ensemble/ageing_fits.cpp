@@ -1,27 +1,25 @@
 #include "ensemble/ageing_fits.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <optional>
+#include <fmt/format.h>
 
-#include "ensemble/moments.hpp"
-#include "ensemble/resampled_fit.hpp"
-#include "ensemble/shared_ageing.hpp"
+#include <Eigen/QR>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "ensemble/ageing_law.hpp"
+#include "ensemble/parallel.hpp"
 
 namespace jostle {
 
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr int reweightings = 3;
-// 1 / epsilon: the least squares lie where the law no longer changes with its parameters.
-constexpr double singular_condition = 4.5e15;
-
-const AgeingLaw no_law = {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number,
-                          not_a_number, not_a_number, not_a_number, "not fitted"};
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double wide = 2;  // a factor to either side
+const AgeingLaw no_law = {no_estimate(), no_estimate(), no_estimate(), not_a_number, "not fitted"};
 
 std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
   std::vector<std::uint32_t> complete;
@@ -35,270 +33,150 @@ std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
   return complete;
 }
 
-// Squared changes over lags that the series has and over which anything changes.
-RealizationCurves squared_changes(const TapRows& rows, std::span<const std::uint32_t> realizations,
-                                  std::uint64_t wait, std::span<const std::uint64_t> lags) {
-  RealizationCurves curves;
-  curves.realizations = static_cast<std::uint32_t>(realizations.size());
-  const std::span<const double> early = rows.row(wait);
-  for (const std::uint64_t lag : lags) {
-    const std::span<const double> late = rows.row(wait + lag);
-    if (early.empty() || late.empty()) continue;
-    std::vector<double> squares;
-    for (const std::uint32_t r : realizations) {
-      squares.push_back((late[r] - early[r]) * (late[r] - early[r]));
+// What the data say of one parameter; nothing where they say it well.
+std::string statement(const char* name, const LogEstimate& estimate) {
+  const bool above = estimate.low_95 > 0, below = std::isfinite(estimate.high_95);
+  if (above && below) {
+    if (estimate.high_95 <= wide * estimate.value && wide * estimate.low_95 >= estimate.value) {
+      return "";
     }
-    if (std::ranges::all_of(squares, [](double x) { return x == 0; })) continue;
-    curves.t.push_back(static_cast<double>(lag));
-    curves.values.insert(curves.values.end(), squares.begin(), squares.end());
+    return fmt::format("{} is wide: {:.3g} to {:.3g} (95 %)", name, estimate.low_95,
+                       estimate.high_95);
   }
-  return curves;
+  if (!above && !below) return fmt::format("{} is not identifiable: no limit on either side", name);
+  return fmt::format("{} is not identifiable: the data say only {} {} {:.3g} (95 %)", name, name,
+                     above ? '>' : '<', above ? estimate.low_95 : estimate.high_95);
 }
 
-// Root mean square over lags of the relative error of the mean.
-double relative_error(const RealizationCurves& curves) {
-  double sum = 0;
-  for (std::size_t i = 0; i < curves.t.size(); ++i) {
-    Moments moments;
-    for (std::uint32_t r = 0; r < curves.realizations; ++r) {
-      moments.add(curves.values[i * curves.realizations + r]);
-    }
-    const double relative = moments.standard_error() / moments.mean();
-    sum += relative * relative;
+double misfit(const AgeingLeastSquares& fit, std::size_t curve) {
+  const LogCurves& curves = fit.curves();
+  const auto first = static_cast<Eigen::Index>(curves.first[curve]);
+  const auto n = static_cast<Eigen::Index>(curves.first[curve + 1]) - first;
+  const Eigen::ArrayXd off = fit.residuals(fit.best()).segment(first, n).array().exp() - 1;
+  return std::sqrt(off.square().mean());
+}
+
+AgeingLaw law_of(const AgeingLeastSquares& fit, std::size_t curve, LogEstimate a_inf,
+                 const LogEstimate& b, LogEstimate tau) {
+  if (!fit.b_is_held()) {
+    // B without limit takes tau along, and B = 0 A_inf.
+    if (std::isinf(b.high_68)) tau.high_68 = infinite;
+    if (std::isinf(b.high_95)) tau.high_95 = infinite;
+    if (b.low_68 == 0) a_inf.high_68 = infinite;
+    if (b.low_95 == 0) a_inf.high_95 = infinite;
   }
-  return std::sqrt(sum / static_cast<double>(curves.t.size()));
-}
-
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value *= factor;
-  return values;
-}
-
-struct WeightedFit {
-  Fit fit;
-  RealizationCurves curves;  // with the weights of the fit
-};
-
-// Whether a fit that has run to infinity is profiled: with many curves that takes minutes.
-enum class Runaways { profiled, left };
-
-std::variant<WeightedFit, Refusal> reweighted_fit(const Model& model, RealizationCurves curves,
-                                                  Runaways runaways,
-                                                  const std::map<std::string, double>& fixed = {}) {
-  const double relative = relative_error(curves);
-  curves.sigma = scaled(mean_curve(curves).x, relative);
-  std::optional<Fit> last;
-  for (int i = 0; i <= reweightings; ++i) {
-    const bool limited = !last || last->condition < singular_condition;
-    FitOptions options{.profiles = i == reweightings && (limited || runaways == Runaways::profiled),
-                       .memory = false};
-    options.fixed = fixed;
-    if (last) options.start = last->values();
-    options.multi_start = !last;
-    auto fitted = fit(model, mean_curve(curves), options);
-    if (auto* refusal = std::get_if<Refusal>(&fitted)) {
-      if (!last) return *refusal;
-      break;  // run so far that the law has no slope
-    }
-    last = std::move(std::get<Fit>(fitted));
-    const std::vector<double> sigma = scaled(last->fitted, relative);
-    const bool positive = std::ranges::all_of(sigma, [](double s) { return s > 0; });
-    if (positive && i < reweightings) curves.sigma = sigma;
+  AgeingLaw law{a_inf, b, tau, misfit(fit, curve), "", fit.b_is_held()};
+  for (const std::string& text :
+       {statement("A_inf", law.a_inf), law.b_is_held ? "" : statement("B", law.b),
+        statement("tau", law.tau)}) {
+    if (!text.empty()) law.verdict.append(law.verdict.empty() ? "" : ", ").append(text);
   }
-  return WeightedFit{std::move(*last), std::move(curves)};
-}
-
-double misfit(std::span<const double> x, std::span<const double> fitted) {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double relative = x[i] / fitted[i] - 1;
-    sum += relative * relative;
-  }
-  return std::sqrt(sum / static_cast<double>(x.size()));
-}
-
-// Whether a parameter is limited on both sides, by the data or by being held.
-bool is_limited(const Estimate& estimate) {
-  return estimate.identifiability == Identifiability::identified ||
-         estimate.identifiability == Identifiability::wide ||
-         estimate.identifiability == Identifiability::fixed;
-}
-
-void append(std::string& text, const std::string& sentence) {
-  text += (text.empty() ? "" : ", ") + sentence;
-}
-
-// What a fit says of the parameters in `indices`, [a_inf, b, tau], and of its refits.
-std::string verdict(const Fit& fit, const ResampledErrors& errors,
-                    const std::array<std::size_t, 3>& indices) {
-  std::string text;
-  if (!is_minimum(fit.reason)) text = std::string("did not settle: ") + describe(fit.reason);
-  const bool examined = std::ranges::all_of(indices, [&](std::size_t j) {
-    return fit.estimates[j].identifiability != Identifiability::not_examined;
-  });
-  if (!examined && !(fit.condition < singular_condition)) {
-    append(text,
-           "A_inf, B and tau are not identifiable together: the least squares lie at infinity");
-    return text;
-  }
-  for (const std::size_t j : indices) {
-    const Estimate& estimate = fit.estimates[j];
-    if (estimate.identifiability == Identifiability::identified ||
-        estimate.identifiability == Identifiability::fixed) {
-      continue;
-    }
-    append(text, estimate.statement);
-  }
-  if (errors.failed > 0) {
-    append(text, std::to_string(errors.failed) + " of " + std::to_string(errors.resamples) +
-                     " refits without a realization did not settle: no errors");
-  }
-  return text.empty() ? "identified" : text;
-}
-
-// A refit that fails, or a parameter that runs away with every refit, has no error.
-double error_of(std::size_t j, const Fit& fit, const ResampledErrors& errors) {
-  return errors.failed == 0 && is_limited(fit.estimates[j]) ? errors.errors[j] : not_a_number;
-}
-
-AgeingLaw law_of(const Fit& fit, const ResampledErrors& errors,
-                 const std::array<std::size_t, 3>& indices) {
-  const auto& [a_inf, b, tau] = indices;
-  return {.a_inf = fit.estimates[a_inf].value,
-          .a_inf_error = error_of(a_inf, fit, errors),
-          .b = fit.estimates[b].value,
-          .b_error = error_of(b, fit, errors),
-          .tau = fit.estimates[tau].value,
-          .tau_error = error_of(tau, fit, errors),
-          .reduced_chi2 = fit.reduced_chi2,
-          .misfit = not_a_number,
-          .verdict = verdict(fit, errors, indices)};
-}
-
-AgeingLaw own_law(const RealizationCurves& curves, int threads) {
-  const Ageing model;
-  const auto found = reweighted_fit(model, curves, Runaways::profiled);
-  if (const auto* refusal = std::get_if<Refusal>(&found)) {
-    AgeingLaw law = no_law;
-    law.verdict = refusal->message;
-    return law;
-  }
-  const auto& [fit, weighted] = std::get<WeightedFit>(found);
-  const ResampledErrors errors = resample(model, weighted, fit, {.threads = threads});
-  AgeingLaw law = law_of(fit, errors, {0, 1, 2});
-  law.misfit = misfit(mean_curve(weighted).x, fit.fitted);
+  if (law.verdict.empty()) law.verdict = "identified";
   return law;
 }
 
-// All curves with at least as many points as a law has parameters, one after another.
-struct JoinedCurves {
-  std::vector<std::size_t> waiting_times;  // [n_curves], indices
-  std::vector<SharedAgeing::Point> points;
-  RealizationCurves curves;
-};
+// f(0) to f(n - 1), each by any thread.
+void for_each(int threads, std::size_t n, const std::function<void(std::size_t)>& f) {
+  std::atomic<std::size_t> next{0};
+  on_threads(threads, [&] {
+    for (std::size_t i = next++; i < n; i = next++) f(i);
+  });
+}
 
-JoinedCurves join(const std::vector<RealizationCurves>& all) {
-  JoinedCurves joined;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].t.size() < Ageing().parameters().size()) continue;
-    for (const double lag : all[k].t) {
-      joined.curves.t.push_back(static_cast<double>(joined.points.size()));
-      joined.points.push_back({joined.waiting_times.size(), lag});
+// Relative errors of A / A_inf at equal t / tau, of all points.
+std::vector<double> scaled_errors(const AgeingLeastSquares& fit) {
+  const LogCurves& curves = fit.curves();
+  const Eigen::MatrixXd slopes = fit.slopes(fit.best());
+  const Eigen::MatrixXd parameters = slopes.colPivHouseholderQr().solve(curves.influences);
+  const auto m = static_cast<double>(curves.influences.cols());
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const auto a_inf = static_cast<Eigen::Index>(AgeingLeastSquares::a_inf(k));
+    const auto tau = static_cast<Eigen::Index>(AgeingLeastSquares::tau(k));
+    for (std::size_t i = curves.first[k]; i < curves.first[k + 1]; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      // A larger tau moves the point along the law: d ln A / d ln t = -d ln A / d ln tau.
+      const Eigen::RowVectorXd influences = curves.influences.row(row) - parameters.row(a_inf) -
+                                            slopes(row, tau) * parameters.row(tau);
+      errors.push_back(std::sqrt(influences.squaredNorm() / (m * (m - 1))));
     }
-    joined.curves.values.insert(joined.curves.values.end(), all[k].values.begin(),
-                                all[k].values.end());
-    joined.curves.realizations = all[k].realizations;
-    joined.waiting_times.push_back(k);
   }
-  return joined;
+  return errors;
 }
 
-// A statement in which parameters have the number of their curve, without it.
-std::string without_number(std::string text, const std::string& name, std::size_t number) {
-  const std::string numbered = name + "_" + std::to_string(number);
-  for (std::size_t at = text.find(numbered); at != std::string::npos; at = text.find(numbered)) {
-    text.replace(at, numbered.size(), name);
+void fit_shared(const LogCurves& curves, std::size_t n_lags, int threads, AgeingFits& fits) {
+  AgeingLeastSquares fit(curves);
+  fits.collapse = trend_of_b(fit);
+  const LogEstimate b = fit.estimate(fit.b());
+  std::string held;
+  if (!is_limited(b)) {
+    held = statement("B", b) +
+           fmt::format(
+               ": it is held at {:.3g}, and of A_inf and tau only ratios between waiting "
+               "times mean something; ",
+               b.value);
+    fit = AgeingLeastSquares(curves, std::log(b.value));
   }
-  return text;
-}
-
-// Where B has no limit from below, eq. 6 is as good as the logarithm that it becomes at B = 0,
-// A_inf B ln(1 + t/tau): with B held there the curves have scales, and only ratios of A_inf between
-// waiting times mean something.
-constexpr double logarithmic_b = 1e-3;  // 0.1 % off for every e-fold of 1 + t/tau
-constexpr const char* is_logarithmic =
-    "B may be 0, and is held at 0.001: a logarithm, of which A_inf B and tau mean something; ";
-
-bool may_be_logarithmic(const Fit& fit) {
-  const Estimate& b = fit.estimates[0];
-  return b.identifiability == Identifiability::bounded_above || b.value < logarithmic_b;
-}
-
-void fit_shared(const std::vector<RealizationCurves>& all, int threads,
-                std::vector<AgeingLaw>& laws) {
-  const JoinedCurves joined = join(all);
-  if (joined.waiting_times.empty()) return;
-  const SharedAgeing model(joined.points);
-  auto found = reweighted_fit(model, joined.curves, Runaways::left);
-  std::string limit;
-  if (const auto* free = std::get_if<WeightedFit>(&found);
-      free != nullptr && may_be_logarithmic(free->fit)) {
-    limit = is_logarithmic;
-    found = reweighted_fit(model, joined.curves, Runaways::left, {{"B", logarithmic_b}});
-  }
-  if (const auto* refusal = std::get_if<Refusal>(&found)) {
-    for (AgeingLaw& law : laws) law.verdict = refusal->message;
-    return;
-  }
-  const auto& [fit, weighted] = std::get<WeightedFit>(found);
-  const ResampledErrors errors = resample(model, weighted, fit, {.threads = threads});
-  const std::vector<double> x = mean_curve(weighted).x;
-  std::size_t first = 0;
-  for (std::size_t curve = 0; curve < joined.waiting_times.size(); ++curve) {
-    const std::size_t k = joined.waiting_times[curve], n = all[k].t.size();
-    const std::array<std::size_t, 3> indices = {SharedAgeing::a_inf_index(curve), 0,
-                                                SharedAgeing::tau_index(curve)};
-    AgeingLaw law = law_of(fit, errors, indices);
-    law.verdict = limit + without_number(without_number(law.verdict, "A_inf", curve), "tau", curve);
-    law.misfit = misfit(std::span(x).subspan(first, n), std::span(fit.fitted).subspan(first, n));
-    first += n;
-    const bool determined =
-        std::ranges::all_of(indices, [&](std::size_t j) { return is_limited(fit.estimates[j]); });
-    laws[k] = determined ? law : no_law;
-    laws[k].verdict = law.verdict;
-    if (!determined) laws[k].verdict += ": no shared law, nothing to scale by";
+  std::vector<LogEstimate> estimates(2 * curves.size());
+  for_each(threads, estimates.size(), [&](std::size_t i) { estimates[i] = fit.estimate(i); });
+  const std::vector<double> errors = scaled_errors(fit);
+  for (std::size_t curve = 0; curve < curves.size(); ++curve) {
+    const std::size_t k = curves.waiting_times[curve];
+    AgeingLaw& law = fits.shared[k] =
+        law_of(fit, curve, estimates[AgeingLeastSquares::a_inf(curve)], b,
+               estimates[AgeingLeastSquares::tau(curve)]);
+    law.verdict = held + law.verdict;
+    if (!law.is_determined()) {
+      law.verdict += ": no shared law, nothing to scale by";
+      continue;
+    }
+    for (std::size_t i = curves.first[curve]; i < curves.first[curve + 1]; ++i) {
+      fits.scaled_error[k * n_lags + curves.lag_indices[i]] = errors[i];
+    }
   }
 }
 
 }  // namespace
+
+bool AgeingLaw::is_determined() const {
+  return is_limited(a_inf) && (b_is_held || is_limited(b)) && is_limited(tau);
+}
+
+AgeingLaw own_law(const LogCurves& curve) {
+  const AgeingLeastSquares fit(curve);
+  return law_of(fit, 0, fit.estimate(AgeingLeastSquares::a_inf(0)), fit.estimate(fit.b()),
+                fit.estimate(AgeingLeastSquares::tau(0)));
+}
 
 AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) {
   AgeingFits fits;
   const std::size_t n = grid.waiting_times.size();
   fits.own.assign(n, no_law);
   fits.shared.assign(n, no_law);
+  fits.scaled_error.assign(n * grid.lags.size(), not_a_number);
   const std::vector<std::uint32_t> complete = complete_realizations(rows);
   fits.realizations = complete.size();
-  if (complete.size() < 3) {
+  const auto say = [&](const std::string& why) {
+    fits.ageing = fits.collapse = cannot_decide(why);
     for (std::vector<AgeingLaw>* laws : {&fits.own, &fits.shared}) {
-      for (AgeingLaw& law : *laws) {
-        law.verdict = std::to_string(complete.size()) +
-                      " realizations reached every tap asked for: fits need 3, so run more of "
-                      "them, or ask for earlier taps";
-      }
+      for (AgeingLaw& law : *laws) law.verdict = why;
     }
+  };
+  if (complete.size() < 3) {
+    say(
+        fmt::format("{} realizations reached every tap asked for: fits need 3, so run more of "
+                    "them, or ask for earlier taps",
+                    complete.size()));
     return fits;
   }
-  std::vector<RealizationCurves> curves;
-  for (std::size_t k = 0; k < n; ++k) {
-    curves.push_back(squared_changes(rows, complete, grid.waiting_times[k], grid.lags));
-    if (!curves[k].t.empty()) {
-      fits.own[k] = own_law(curves[k], threads);
-    } else {
-      fits.own[k].verdict = "nothing changes after this waiting time, or the series ends before";
-    }
-  }
-  fit_shared(curves, threads, fits.shared);
+  say("nothing changes after this waiting time, or the series ends before");
+  const LogCurves curves = log_curves(rows, grid, complete);
+  if (curves.size() == 0) return fits;
+  for_each(threads, curves.size(), [&](std::size_t curve) {
+    fits.own[curves.waiting_times[curve]] = own_law(curves.one(curve));
+  });
+  fits.ageing = trend_of_a(curves);
+  fit_shared(curves, grid.lags.size(), threads, fits);
   return fits;
 }
 

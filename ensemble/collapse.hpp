@@ -6,19 +6,14 @@
 
 namespace jostle {
 
-/// A curve y(x) with errors, x > 0 ascending.
+/// A curve y(x), x > 0 ascending.
 struct ScaledCurve {
-  std::vector<double> x, y, error;  // [n] each
+  std::vector<double> x, y;  // [n] each
 };
 
 /// How well curves lie on one another. Every point of every curve is compared with every other
 /// curve that spans its x (linear between points, in ln x).
 struct Collapse {
-  /// Root mean square of the differences over their errors, sqrt(error_1^2 + error_2^2). About 1
-  /// where curves agree within errors; below it, errors are too coarse to tell them apart. Points
-  /// of a curve, and curves of the same realizations, are not independent: it scatters more than
-  /// so many comparisons suggest.
-  double over_error;
   /// Root mean square of the differences over that of the compared y.
   double relative;
   std::size_t comparisons;

@@ -7,6 +7,7 @@ import re
 import unittest
 
 import h5py
+import numpy as np
 
 from support import BAD_INPUT, OK, TINY, Case, changed
 
@@ -173,7 +174,12 @@ class Analysed(Case):
                 squares = (z[waiting_time + lag] - z[waiting_time]) ** 2
                 self.assertAlmostEqual(found / squares.mean(), 1, places=12)
                 error = table["quantities"]["a_error"]["values"][i][j]
-                self.assertAlmostEqual(error / (squares.std(ddof=1) / 3 ** 0.5), 1, places=9)
+                # The jackknife of ln A.
+                left_out = np.log([np.delete(squares, r).mean() for r in range(3)])
+                relative = left_out.std() * 2 ** 0.5
+                self.assertAlmostEqual(error / (squares.mean() * relative), 1, places=9)
+                high = table["quantities"]["a_high_68"]["values"][i][j]
+                self.assertAlmostEqual(np.log(high / found), 1.3213 * relative, delta=1e-4 * relative)
         again = self.analyse(*asked, "--threads", "2")["tables"][1]
         self.assertEqual(again, table)
 

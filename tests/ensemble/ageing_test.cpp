@@ -1,5 +1,7 @@
 #include "ensemble/ageing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -106,11 +108,11 @@ TEST_CASE("Two-time functions agree with sums written out") {
       CAPTURE(wait, all.lags[j]);
       CHECK(static_cast<double>(curves.count[i]) == n);
       if (n == 0) {
-        CHECK(std::isnan(curves.a[i]));
+        CHECK(std::isnan(curves.a[i].value));
         CHECK(std::isnan(curves.c[i]));
         continue;
       }
-      CHECK(curves.a[i] == Approx(a / n).epsilon(1e-13));
+      CHECK(curves.a[i].value == Approx(a / n).epsilon(1e-13));
       CHECK(curves.c[i] == Approx((xy - x * y / n) / (xx - x * x / n)).epsilon(1e-11));
     }
   }
@@ -125,7 +127,7 @@ TEST_CASE("Errors of two-time functions are those of leaving realizations out on
     Ensemble rest = ensemble;
     for (std::uint64_t t = 0; t < 30; ++t) rest.series[t * 9 + left_out] = std::nan("");
     const AgeingCurves others = curves_of(rest, one);
-    a.push_back(others.a[0]);
+    a.push_back(others.a[0].value);
     c.push_back(others.c[0]);
   }
   const auto error = [](const std::vector<double>& values) {
@@ -134,9 +136,14 @@ TEST_CASE("Errors of two-time functions are those of leaving realizations out on
     for (const double value : values) sum += (value - mean) * (value - mean);
     return std::sqrt(8.0 / 9 * sum);
   };
-  CHECK(curves.a_error[0] == Approx(error(a)).epsilon(1e-12));
+  for (double& value : a) value = std::log(value);
+  const LogEstimate& found = curves.a[0];
+  CHECK(found.error == Approx(found.value * error(a)).epsilon(1e-12));
   CHECK(curves.c_error[0] == Approx(error(c)).epsilon(1e-12));
-  CHECK(curves.a_half_width[0] == Approx(1.0665 * error(a)).epsilon(1e-4));  // 8 degrees of freedom
+  // Student's t of 8 degrees of freedom.
+  CHECK(std::log(found.high_68 / found.value) == Approx(1.0665 * error(a)).epsilon(1e-4));
+  CHECK(std::log(found.value / found.low_68) == Approx(1.0665 * error(a)).epsilon(1e-4));
+  CHECK(std::log(found.high_95 / found.value) == Approx(2.3060 * error(a)).epsilon(1e-4));
 }
 
 TEST_CASE("A random walk spreads alike at every age", "[statistics]") {
@@ -144,7 +151,7 @@ TEST_CASE("A random walk spreads alike at every age", "[statistics]") {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
       const std::size_t i = curves.at(k, j);
-      check(curves.a[i], curves.a_error[i], static_cast<double>(grid.lags[j]));
+      check(curves.a[i].value, curves.a[i].error, static_cast<double>(grid.lags[j]));
       if (k == 0) {
         CHECK(std::isnan(curves.c[i]));  // all start at 0
       } else {
@@ -160,7 +167,7 @@ TEST_CASE("A stationary autoregression does not age", "[statistics]") {
     for (std::size_t j = 0; j < 3; ++j) {
       const std::size_t i = curves.at(k, j);
       const double c = std::pow(memory, static_cast<double>(grid.lags[j]));
-      check(curves.a[i], curves.a_error[i], 2 * (1 - c));
+      check(curves.a[i].value, curves.a[i].error, 2 * (1 - c));
       check(curves.c[i], curves.c_error[i], c);
     }
   }
@@ -173,35 +180,57 @@ TEST_CASE("A logarithmic drift ages", "[statistics]") {
       const std::size_t i = curves.at(k, j);
       const std::uint64_t wait = grid.waiting_times[k];
       const double drift = drift_at(wait + grid.lags[j]) - drift_at(wait);
-      check(curves.a[i], curves.a_error[i], drift * drift + 2 * fluctuation * fluctuation);
+      check(curves.a[i].value, curves.a[i].error, drift * drift + 2 * fluctuation * fluctuation);
       check(curves.c[i], curves.c_error[i], 0);
       if (k > 0 && j > 0) {
         const std::size_t younger = curves.at(k - 1, j);
-        CHECK(curves.a[younger] - curves.a[i] >
-              3 * std::hypot(curves.a_error[younger], curves.a_error[i]));
+        CHECK(curves.a[younger].value - curves.a[i].value >
+              3 * std::hypot(curves.a[younger].error, curves.a[i].error));
       }
     }
   }
 }
 
-TEST_CASE("Student's 68 % intervals of A hold the truth as often as they say", "[statistics]") {
-  // A is a mean of squares, which are skewed: intervals of few realizations fall short.
-  constexpr int ensembles = 500;
+TEST_CASE("Intervals of A hold the truth as often as they say", "[statistics]") {
+  // A is a mean of squares, which are skewed: A +- t error, beside it, does not.
+  constexpr int ensembles = 1000;
   const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
-  const auto coverage = [&](std::uint32_t realizations, std::uint64_t first_seed) {
-    int held = 0;
-    for (int e = 0; e < ensembles; ++e) {
-      const auto seed = first_seed + static_cast<std::uint64_t>(e);
-      const AgeingCurves curves = curves_of(random_walk(seed, 16, realizations), one);
-      held += std::abs(curves.a[0] - 10) <= curves.a_half_width[0];
+  std::string table =
+      "\nprocess          M   68 %   95 %   of A +- t error: 68 %   95 %   (share that holds the "
+      "truth)\n";
+  for (const std::uint32_t m : {2u, 3u, 4u, 10u, 20u}) {
+    for (const bool steady : {false, true}) {
+      const double exact = steady ? 2 * (1 - std::pow(memory, 10)) : 10;
+      int held[2] = {}, plain[2] = {};
+      for (int e = 0; e < ensembles; ++e) {
+        const std::uint64_t seed = 100'000 * m + static_cast<std::uint64_t>(e);
+        const Ensemble ensemble = steady ? autoregression(seed, 16, m) : random_walk(seed, 16, m);
+        const LogEstimate a = curves_of(ensemble, one).a[0];
+        held[0] += a.low_68 <= exact && exact <= a.high_68;
+        held[1] += a.low_95 <= exact && exact <= a.high_95;
+        double squares = 0;
+        for (std::uint32_t r = 0; r < m; ++r) {
+          const double change = ensemble.at(15, r) - ensemble.at(5, r);
+          squares += std::pow(change * change - a.value, 2);
+        }
+        const double error = std::sqrt(squares / (m * (m - 1)));
+        for (int level = 0; level < 2; ++level) {
+          plain[level] +=
+              std::abs(a.value - exact) <= student_half_width(error, m, interval_levels[level]);
+        }
+      }
+      const auto percent = [](int count) { return 100.0 * count / ensembles; };
+      table += fmt::format("{:14} {:4} {:6.1f} {:6.1f} {:23.1f} {:6.1f}\n",
+                           steady ? "autoregression" : "random walk", m, percent(held[0]),
+                           percent(held[1]), percent(plain[0]), percent(plain[1]));
+      CAPTURE(m, steady);
+      CHECK(percent(held[0]) >= 60);
+      CHECK(percent(held[0]) <= 80);
+      CHECK(percent(held[1]) >= 90);
+      CHECK(percent(held[1]) <= 100);
     }
-    return static_cast<double>(held) / ensembles;
-  };
-  const double level = interval_levels[0];
-  const double binomial = std::sqrt(level * (1 - level) / ensembles);
-  CHECK(std::abs(coverage(100, 1000) - level) <= 3 * binomial);
-  WARN("of 10 realizations 68 % intervals held the truth in " << coverage(10, 5000)
-                                                              << " of 500 ensembles");
+  }
+  fmt::print("{}", table);
 }
 
 TEST_CASE("The default grid fits into its series and needs each tap once") {

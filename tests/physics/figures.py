@@ -126,6 +126,12 @@ def hysteresis(run):
             "\n\nAreas between branches, 10^-3: " + "; ".join(areas) + ".")
 
 
+def interval(found, name, i, unit):
+    """A value with its 95 % interval, where there is one."""
+    value, low, high = (unit * found[name + end][i] for end in ("", "_low_95", "_high_95"))
+    return f"{value:.3g}" + (f" ({low:.2g} to {high:.2g})" if np.isfinite(low) else "")
+
+
 def ageing(run):
     found = run.table("point_0000/ageing/mean_height")
     ages, lags = found["waiting_time"][:], found["lag"][:]
@@ -135,20 +141,17 @@ def ageing(run):
         row = [str(age)]
         for lag in shown:
             j = int(np.argmin(np.abs(lags - lag)))
-            row.append(f"{1e4 * found['a'][i, j]:.2f} ± {1e4 * found['a_error'][i, j]:.2f}")
-        shared = [f"{1e4 * found['shared_a_inf'][i]:.3g} ± "
-                  f"{1e4 * found['shared_a_inf_error'][i]:.2g}",
-                  f"{found['shared_tau'][i]:.3g} ± {found['shared_tau_error'][i]:.2g}"]
+            row.append(interval(found, "a", (i, j), 1e4))
+        shared = [interval(found, "shared_a_inf", i, 1e4), interval(found, "shared_tau", i, 1)]
         known = np.isfinite(found["shared_tau"][i])
         rows.append(row + (shared if known else ["-", "-"]) + [f"{found['misfit'][i]:.2f}"])
     header = ["t_W"] + [f"10^4 A, lag {lags[int(np.argmin(np.abs(lags - lag)))]}" for lag in shown]
-    text = (table(header + ["10^4 A_inf, common B", "tau", "misfit of its own fit"], rows) +
-            f"\n\nDifference between ages over its error: {found['unscaled_collapse'][()]:.1f} as "
-            f"measured (relative {found['unscaled_collapse_relative'][()]:.2f})")
-    if np.isfinite(found["collapse"][()]):
-        return (text + f", {found['collapse'][()]:.1f} for A/A_inf against t/tau (relative "
-                f"{found['collapse_relative'][()]:.2f}).")
-    return text + f". Of the fit with a common B: {found['shared_verdict'][0].decode()}."
+    notes = {name: found.attrs[f"note_{name}_verdict"] for name in ("ageing", "collapse")}
+    return (table(header + ["10^4 A_inf, common B", "tau", "misfit of its own fit"], rows) +
+            f"\n\nAgeing: {notes['ageing']}. Collapse: {notes['collapse']}. Relative difference "
+            f"between ages: {found['unscaled_collapse_relative'][()]:.2f} as measured, "
+            f"{found['collapse_relative'][()]:.2f} for A/A_inf against t/tau. Of the fit with a "
+            f"common B: {found['shared_verdict'][0].decode()}.")
 
 
 def against_taps(taps, law=None):
