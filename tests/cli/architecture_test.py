@@ -26,7 +26,7 @@ RESERVED = {
     r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/version.cpp"},
     r"nlohmann/": {"config", "results", "cli"},
     r"CLI/": {"cli"},
-    r"Eigen/": {"fitting"},
+    r"Eigen/": {"fitting", "ensemble"},
     r"spdlog/": {"cli"},
     r"Random123/": {"engine"},
     r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "cli"},

@@ -75,8 +75,8 @@ TEST_CASE("Errors of a maximum are the scatter of maxima", "[statistics]") {
     CHECK(top.x_low < top.x);
     CHECK(top.x < top.x_high);
   }
-  // A bell this clear is hardly ever missed, so that those found stand for all.
-  CHECK(at.count() >= 0.98 * ensembles);
+  // A bell this clear is seldom missed, even by two realizations: those found stand for all.
+  CHECK(at.count() >= 0.9 * ensembles);
   // Scatter is known to 1/sqrt(2 * 300) = 4 %.
   CHECK(std::sqrt(squared_error_at.mean()) == Approx(at.sigma()).epsilon(0.15));
   CHECK(std::sqrt(squared_error_height.mean()) == Approx(height.sigma()).epsilon(0.15));

@@ -115,8 +115,9 @@ def check_sweep_values_are_coordinates(path):
     assert {"epsilon", "label"} <= set(sweep.coords), sweep.coords
     assert sweep["epsilon"].dims == ("point",) and sweep["epsilon"].dtype == np.float64
     points = [open_group(path, f"/ensemble/point_{p:04}") for p in sweep["point"].values]
-    joined = xr.concat(points, dim=sweep["epsilon"])
-    second = joined["mean_height_mean"].set_index(point="epsilon").sel(point=1.0)
+    joined = xr.concat(points, dim="point").assign_coords(
+        epsilon=("point", sweep["epsilon"].values))
+    second = joined["mean_height_mean"].swap_dims(point="epsilon").sel(epsilon=1.0)
     assert (second == points[1]["mean_height_mean"]).all()
 
 
