@@ -1,142 +1,261 @@
-"""Tables of the figures that look inside packings."""
+"""Figures 6 to 10 of Philippe & Bideau: what packings look like inside."""
 import numpy as np
 
-from page_text import at, quoted, table
-
-
-def structure(run, part, point=0):
-    return run.file[f"structure/point_{point:04}/{part}"]
-
-
-def entry(table_of_part, name, *place, digits=4):
-    """A number of a part of the structure with its error, at a tap and maybe elsewhere."""
-    return quoted(table_of_part[name][place], table_of_part[name + "_error"][place], digits)
+from page_text import at, table, window
+from verdicts import Estimate, is_positive, is_within, is_zero, of_program, undecided
 
 
 def nearest(places, wanted):
-    return int(np.argmin(np.abs(places[:] - wanted)))
+    return int(np.argmin(np.abs(np.asarray(places) - wanted)))
 
 
-def profiles(run):
-    """Of the last point: figs. 6 and 7; of all: fig. 8."""
-    last_point = len(run.labels) - 1
-    profile, sides = (structure(run, part, last_point) for part in ("profile", "sides"))
-    last = profile["tap"].size - 1
-    taps = profile["tap"][:]
-    text = []
-    heights = (0.25, 0.75, 1.25, 1.75, 2.25, 3.25, 5.25, 7.25, 9.25, 11.25)
+def kept_taps(run):
+    """The kept taps of a run, ascending."""
+    return [int(tap) for tap in run.ensemble_structure("profile")["tap"]]
+
+
+class Profiles:
+    """Parts profile and sides of one sweep point, realization by realization."""
+
+    def __init__(self, run, point):
+        self.packings = run.structure(["profile", "sides"], point)
+
+    def of(self, part, name, frame):
+        """[realization] or [realization, place], up to where all beds reach."""
+        values = [packings[part][name][frame] for packings in self.packings]
+        return np.array([value[:min(map(len, values))] if np.ndim(value) else value
+                         for value in values])
+
+    def near(self, part, name, axis, frame, place):
+        found = self.packings[0][part]
+        return self.of(part, name, frame)[:, nearest(found[axis], place)]
+
+
+def contrast(near, peaks, trough):
+    """How far a profile is higher at its peaks than between them, [realization]."""
+    return np.mean([near(place) for place in peaks], axis=0) - near(trough)
+
+
+HEIGHTS = (0.25, 0.75, 1.25, 1.75, 2.25, 3.25, 5.25, 7.25, 9.25, 11.25)
+DISTANCES = (0.05, 0.25, 0.45, 0.55, 0.95, 1.35, 1.45, 1.85, 2.25, 2.35, 3.05, 5.05, 7.05)
+
+
+def profile_tables(run, points, taps):
+    """Figs. 6 and 7 of the last point; fig. 8 of all."""
+    last, frames = points[-1], (0, len(taps) - 1)
+    between_walls = "phi_wall" in last.packings[0]["sides"]
     rows = [[f"Phi, tap {taps[k]}"] +
-            [entry(profile, "phi", k, nearest(profile["height"], z)) for z in heights]
-            for k in (0, last)]
-    if run.labels[last_point]:
-        text.append(f"Figs. 6 and 7 at {run.labels[last_point]}:")
-    text.append(table(["fig. 6: height"] + [f"{z:.2f}" for z in heights], rows))
-    if "phi_wall" in sides:
-        places = (0.05, 0.25, 0.45, 0.55, 0.95, 1.35, 1.45, 1.85, 2.25, 2.35, 3.05, 5.05, 7.05)
+            [Estimate.of(last.near("profile", "phi", "height", k, z)).text() for z in HEIGHTS]
+            for k in frames]
+    text = [f"Figs. 6 and 7 at {run.labels[-1]}:"] if run.labels[-1] else []
+    text.append(table(["fig. 6: height"] + [f"{z:.2f}" for z in HEIGHTS], rows))
+    if between_walls:
         rows = [[f"Phi, tap {taps[k]}"] +
-                [entry(sides, "phi_wall", k, nearest(sides["wall_distance"], x), digits=3)
-                 for x in places] for k in (0, last)]
-        text.append(table(["fig. 7: distance to a wall"] + [f"{x:.2f}" for x in places], rows))
+                [Estimate.of(last.near("sides", "phi_wall", "wall_distance", k, x)).text(3)
+                 for x in DISTANCES] for k in frames]
+        text.append(table(["fig. 7: distance to a wall"] + [f"{x:.2f}" for x in DISTANCES], rows))
     rows = []
-    for point, label in enumerate(run.labels):
-        profile, sides = (structure(run, part, point) for part in ("profile", "sides"))
-        for k in (0, nearest(profile["tap"], 1), nearest(profile["tap"], 10),
-                  nearest(profile["tap"], 100), last):
-            row = [label or "periodic", str(taps[k])]
-            row += [quoted(1e3 * profile["alpha"][k], 1e3 * profile["alpha_error"][k], 2),
-                    entry(profile, "eq7_phi_0", k),
-                    quoted(1e3 * profile["eq7_alpha"][k], 1e3 * profile["eq7_alpha_error"][k], 2),
-                    entry(profile, "eq7_beta", k, digits=2),
-                    entry(profile, "eq7_z_star", k, digits=2)]
-            if "lateral_change" in sides:
-                row += [entry(sides, "lateral_change", k), entry(sides, "central_change", k)]
+    for number, (label, profiles) in enumerate(zip(run.labels, points)):
+        eq7 = run.ensemble_structure("profile", number)
+        for k in [0] + [nearest(taps, tap) for tap in (1, 10, 100)] + [len(taps) - 1]:
+            row = [label or "periodic", str(taps[k]),
+                   Estimate.of(profiles.of("profile", "alpha", k)).text(2, 1e3),
+                   f"{eq7['eq7_phi_0'][k]:.4f}", f"{1e3 * eq7['eq7_alpha'][k]:.2f}",
+                   f"{eq7['eq7_beta'][k]:.2f}", f"{eq7['eq7_z_star'][k]:.2f}"]
+            if between_walls:
+                row += [Estimate.of(profiles.of("sides", name, k) -
+                                    profiles.of("sides", name, 0)).text()
+                        for name in ("lateral", "central")]
             rows.append(row)
     header = ["fig. 8", "tap", "10^3 alpha R", "eq. 7: Phi_0", "10^3 alpha R", "beta R", "z*/R"]
-    if "lateral_change" in sides:
-        header += ["d Phi lateral", "central"]
-    text.append(table(header, rows))
+    text.append(table(header + (["d Phi lateral", "central"] if between_walls else []), rows))
     return "\n\n".join(text)
 
 
+def wall_profiles(run):
+    taps = kept_taps(run)
+    points = [Profiles(run, point) for point in range(len(run.labels))]
+    first, last = nearest(taps, 1), len(taps) - 1
+    alpha = [profiles.of("profile", "alpha", last) for profiles in points]
+
+    def over_strengths(values):
+        """The mean over strengths: with matched streams a realization is one bed."""
+        return Estimate.of(np.mean([values(profiles) for profiles in points], axis=0))
+
+    def changed(name, frame, since=0):
+        return lambda profiles: (profiles.of("sides", name, frame) -
+                                 profiles.of("sides", name, since))
+
+    def jump(profiles):
+        return changed("lateral", first)(profiles) - changed("central", first)(profiles)
+
+    def at_end(profiles):
+        return changed("lateral", last)(profiles) - changed("central", last)(profiles)
+
+    def by_floor(profiles):
+        return contrast(lambda z: profiles.near("profile", "phi", "height", last, z),
+                        (1.25, 2.25), 1.75)
+
+    def by_wall(peaks, trough):
+        return lambda profiles: contrast(lambda x: profiles.near(
+            "sides", "phi_wall", "wall_distance", last, x), peaks, trough)
+    tap = taps[last]
+    statements = [
+        is_positive("peaks at the floor", over_strengths(by_floor),
+                    f"Phi at heights 1.25 and 2.25 less 1.75, tap {tap}: "),
+        is_positive("density falls upward (alpha > 0)", over_strengths(
+            lambda profiles: profiles.of("profile", "alpha", last)),
+            f"10^3 alpha R at tap {tap}: ", digits=2, scale=1e3),
+        is_positive("alpha is bell-shaped: it rises at first", Estimate.of(
+            np.mean(alpha[1:-1], axis=0) - alpha[0]),
+            "10^3 alpha R, the inner strengths less the weakest: ", digits=2, scale=1e3,
+            name="paired t-test"),
+        is_positive("alpha is bell-shaped: it falls at last", Estimate.of(
+            np.mean(alpha[1:-1], axis=0) - alpha[-1]),
+            "10^3 alpha R, the inner strengths less the strongest: ", digits=2, scale=1e3,
+            name="paired t-test")]
+    for name, peaks, trough in (("first", (0.55, 1.45), 0.95), ("second", (1.45, 2.35), 1.85),
+                                ("third", (2.35, 3.25), 2.75)):
+        statements.append(is_positive(
+            f"wall layers: peaks about the {name} gap", over_strengths(by_wall(peaks, trough)),
+            f"Phi at {peaks[0]} and {peaks[1]} from a wall less {trough}: "))
+    statements += [
+        is_positive("the first tap fills the walls: lateral above central", over_strengths(jump),
+                    "d Phi lateral less central, tap 1: "),
+        is_positive(f"Phi grows less in the centre, by tap {tap}", over_strengths(at_end),
+                    f"d Phi lateral less central, tap {tap}: "),
+        is_positive(f"Phi grows less in the centre, from tap 1 to {tap}", over_strengths(
+            lambda profiles: changed("lateral", last, first)(profiles) -
+            changed("central", last, first)(profiles)), "d Phi lateral less central: ")]
+    return profile_tables(run, points, taps), statements
+
+
+def periodic_profiles(run, walls):
+    """`walls`: the finished run between walls, or None."""
+    taps = kept_taps(run)
+    profiles = Profiles(run, 0)
+    last = len(taps) - 1
+    here = run.curves("corrected_fraction")[0]
+    end = taps[last] - 49, taps[last]
+    sides = contrast(lambda x: profiles.near("sides", "phi_xy", "x", last, x), (0.55, 1.45), 0.95)
+    statements = [is_within("no peaks at the sides (0.02)", Estimate.of(sides), 0.02,
+                            f"Phi at 0.55 and 1.45 from a side less 0.95, tap {taps[last]}: ")]
+    names = ("Phi_c is larger than between walls", "Phi_c grows less than between walls")
+    if walls is None:
+        statements += [undecided(name, "the run between walls is not there", "none")
+                       for name in names]
+    else:
+        there = walls.curves("corrected_fraction")[-1]
+        statements += [
+            is_positive(names[0], Estimate.difference(window(here, *end), window(there, *end)),
+                        f"periodic less walls, taps {end[0]} to {end[1]}: ", name="Welch's t-test"),
+            is_positive(names[1] + ", from tap 1", Estimate.difference(
+                window(there, *end) - there[1], window(here, *end) - here[1]),
+                "growth between walls less periodic: ", name="Welch's t-test")]
+    return profile_tables(run, [profiles], taps), statements
+
+
 def void_probability(run):
-    voids = structure(run, "void_probability")
-    taps = voids["tap"][:]
-    rows = []
-    for sigma in (0.5, 1, 1.2, 1.4, 1.6, 1.8, 2):
-        k = nearest(voids["sigma"], sigma)
-        row = [f"{sigma:g}"]
-        for t in range(taps.size):
-            row += [entry(voids, "p0", t, k, digits=5), entry(voids, "p0_gotoh", t, k, digits=5)]
-        rows.append(row)
+    kept = [packings["void_probability"] for packings in run.structure(["void_probability"])]
+    taps, sigmas = run.scene["snapshots"]["taps"], kept[0]["sigma"]
+    fraction = run.curves("corrected_fraction")[0]
+
+    def of(name, t, sigma):
+        return np.array([table_of[name][t, nearest(sigmas, sigma)] for table_of in kept])
+    rows = [[f"{sigma:g}"] + [Estimate.of(of(name, t, sigma)).text(5) for t in range(len(taps))
+                              for name in ("p0", "p0_gotoh")]
+            for sigma in (0.5, 1, 1.2, 1.4, 1.6, 1.8, 2)]
     header = ["sigma"]
     for tap in taps:
         header += [f"P0, tap {tap}", "Gotoh"]
-    phi = ", ".join(f"{entry(voids, 'phi', t)} at tap {taps[t]}" for t in range(taps.size))
-    return table(header, rows) + f"\n\nPhi of the region: {phi}."
+    statements = [is_within("Phi = 58.4 % at the start (0.2 %)", Estimate.of(fraction[0] - 0.584),
+                            0.002, f"Phi_c {at(fraction, 0)}; from it "),
+                  undecided("Phi = 60.6 % after 4000 taps",
+                            f"{at(fraction, taps[-1])} after {taps[-1]}", "too few taps")]
+    for t, tap in enumerate(taps):
+        for sigma in (1.2, 1.4):
+            difference = of("p0", t, sigma) - of("p0_gotoh", t, sigma)
+            statements.append(is_zero(
+                f"P0({sigma}) is Gotoh's at the packing's own Phi, tap {tap}",
+                Estimate.of(difference), "difference, 10^-3: ", 2, 1e3))
+    for sigma in (1.2, 1.4):
+        statements.append(is_zero(f"P0({sigma}) does not change", Estimate.of(
+            of("p0", -1, sigma) - of("p0", 0, sigma)), f"tap {taps[-1]} less tap 0, 10^-3: ", 2,
+            1e3))
+    phi = np.array([table_of["phi"] for table_of in kept])
+    return table(header, rows) + "\n\nPhi of the region: " + ", ".join(
+        f"{Estimate.of(phi[:, t]).text()} at tap {tap}" for t, tap in enumerate(taps)) + \
+        ".", statements
+
+
+OCTAHEDRAL = (np.sqrt(2) - 1)**3
 
 
 def pore_sizes(run):
-    pores, holes = structure(run, "pores"), structure(run, "holes")
-    fraction = run.curves("corrected_fraction")[0]
-    rows, taps = [], pores["tap"][:]
-    for k, tap in enumerate(taps):
-        rows.append([str(tap), at(fraction, tap), entry(pores, "n_pores", k, digits=0),
-                     entry(pores, "nu", k), entry(pores, "tail_v0", k),
-                     entry(pores, "tetrahedral", k), entry(pores, "octahedral", k)])
+    kept = [packings["pores"] for packings in run.structure(["pores"])]
+    pores, holes = (run.ensemble_structure(part) for part in ("pores", "holes"))
+    fraction, taps = run.curves("corrected_fraction")[0], [int(tap) for tap in pores["tap"]]
+
+    def of(name):
+        return np.array([table_of[name] for table_of in kept])  # [realization, tap]
+    n_pores, nu, v0 = of("n_pores"), of("nu"), of("tail_v0")
+    rows = [[str(tap), at(fraction, tap), Estimate.of(n_pores[:, k]).text(0)] +
+            [Estimate.of(values[:, k]).text()
+             for values in (nu, v0, of("tetrahedral"), of("octahedral"))]
+            for k, tap in enumerate(taps)]
     text = [table(["tap", "Phi_c", "pores", "nu", "v0", "tetrahedral", "octahedral"], rows)]
     volumes = (0.011, 0.03, 0.071, 0.12, 0.2, 0.3, 0.4, 0.5)
     xi = [nearest(pores["xi"], v ** (1 / 3)) for v in volumes]
-    rows = [[str(tap)] + [entry(pores, "rho_v", k, i, digits=0) for i in xi]
-            for k, tap in enumerate(taps)]
-    text.append(table(["rho_v at v ="] + [f"{pores['xi'][i] ** 3:.3f}" for i in xi], rows))
+    text.append(table(["rho_v at v ="] + [f"{pores['xi'][i] ** 3:.3f}" for i in xi],
+                      [[str(tap)] + [Estimate.of(of("rho_v")[:, k, i]).text(0) for i in xi]
+                       for k, tap in enumerate(taps)]))
+    text += hole_tables(holes, taps)
+    sizes = of("xi")[0]
+    small, large = sizes**3 <= OCTAHEDRAL, sizes**3 > 0.15
+    counts = of("rho_xi")
+    shrunk = [np.log(counts[:, -1, part].sum(axis=1) / counts[:, 0, part].sum(axis=1))
+              for part in (small, large)]
+    return "\n\n".join(text), pore_statements(pores, taps, fraction, nu, v0, n_pores, shrunk)
+
+
+def pore_statements(pores, taps, fraction, nu, v0, n_pores, shrunk):
+    def slopes(x, y):
+        return Estimate.of([np.polyfit(x[r], y[r], 1)[0] for r in range(len(y))])
+    phi = fraction[taps].T  # [realization, tap]
+    statements = [
+        is_positive("the tail shrinks (v0 falls)", Estimate.of(v0[:, 0] - v0[:, -1]),
+                    f"v0 at tap {taps[0]} less tap {taps[-1]}: ", name="paired t-test"),
+        is_positive("nu falls as the bed densifies", Estimate.of(nu[:, 0] - nu[:, -1]),
+                    f"nu at tap {taps[0]} less tap {taps[-1]}: ", name="paired t-test"),
+        is_positive("nu moves as Phi_c does", slopes(-phi, nu),
+                    f"slope of nu against -Phi_c, taps {taps}: ", digits=2),
+        is_positive("v0 follows nu", slopes(nu, v0), f"slope of v0 against nu, taps {taps}: ",
+                    digits=2),
+        is_positive("small pores change less than large ones",
+                    Estimate.of(np.abs(shrunk[1]) - np.abs(shrunk[0])),
+                    f"ln N changes by {Estimate.of(shrunk[1]).text(2)} above v = 0.15, by "
+                    f"{Estimate.of(shrunk[0]).text(2)} up to the octahedral; sizes' difference: ",
+                    digits=2, name="paired t-test")]
+    for k in (0, -1):
+        statements += [
+            of_program(f"the tail is exponential, tap {taps[k]}", pores["tail_status"][k].decode(),
+                       "F-test of the law", pores["tail_p"][k], False,
+                       "a Weibull tail of shape 0.7 would have been refuted"),
+            is_within(f"9550 to 10 250 pores, tap {taps[k]}", Estimate.of(n_pores[:, k] - 9900),
+                      350, f"{Estimate.of(n_pores[:, k]).text(0)}; from 9900: ", 0)]
+    return statements
+
+
+def hole_tables(holes, taps):
     rows = []
-    for i, name in enumerate(holes["hole"][:]):
+    for i, name in enumerate(holes["hole"]):
         row = [name.decode()]
         for kind in ("number", "volume"):
-            row += [entry(holes, f"{kind}_fraction", k, i, digits=3) for k in (0, taps.size - 1)]
+            row += [f"{holes[f'{kind}_fraction'][k, i]:.3f}" for k in (0, -1)]
             row.append(f"{holes[f'{kind}_fraction_published'][0, i]:.3f}")
         rows.append(row)
     header = ["table I"]
     for kind in ("number", "volume"):
         header += [f"{kind}, tap 0", f"tap {taps[-1]}", "Bernal"]
-    text.append(table(header, rows))
-    text.append("Unclassified part of the volume: " + ", ".join(
-        f"{entry(holes, 'unclassified', k, digits=3)} at tap {tap}"
-        for k, tap in enumerate(taps)) + ".")
-    return "\n\n".join(text)
-
-
-def contacts(run):
-    coordination, profile = structure(run, "coordination"), structure(run, "profile")
-    bulk = run.curves("bulk_fraction")[0]
-    rows = [[str(tap), at(bulk, tap), entry(profile, "phi_region", k),
-             entry(coordination, "n_c", k, digits=3), entry(coordination, "n_c_all", k, digits=3)]
-            for k, tap in enumerate(coordination["tap"][:])]
-    return table(["tap", "bulk Phi", "Phi of the region", "N_c of the region", "N_c of all"], rows)
-
-
-def layers(run):
-    grown, order = structure(run, "layers"), structure(run, "order")
-    bulk = run.curves("bulk_fraction")[0]
-    rows = []
-    for k, tap in enumerate(grown["tap"][:]):
-        rows.append([str(tap), at(bulk, tap), entry(grown, "grown_layers", k, digits=2)] +
-                    [entry(grown, "share", k, layer, digits=2) for layer in range(8)])
-    text = [table(["tap", "Phi", "grown layers"] +
-                  [f"share, layer {layer + 1}" for layer in range(8)], rows)]
-    found = grown["found_height"][-1, :6]
-    text.append(f"Layers of tap {grown['tap'][-1]} lie at " +
-                ", ".join(f"{height:.2f}" for height in found) + " (hcp: " +
-                ", ".join(f"{height:.2f}" for height in grown["layer_height"][:6]) + "). fcc and "
-                f"hcp make {entry(order, 'fcc', -1, digits=3)} and "
-                f"{entry(order, 'hcp', -1, digits=3)} of the spheres of the region.")
-    rows = []
-    heights = order["height"][:]
-    for k, tap in enumerate(order["tap"][:]):
-        rows.append([str(tap)] + [
-            quoted(1 - order["disordered_at_height"][k, i],
-                   order["disordered_at_height_error"][k, i], 3)
-            for i in range(1, 13, 2)])
-    text.append(table(["fcc and hcp at height"] + [f"{heights[i]:g}" for i in range(1, 13, 2)],
-                      rows))
-    return "\n\n".join(text)
+    return [table(header, rows), "Unclassified part of the volume: " + ", ".join(
+        f"{holes['unclassified'][k]:.3f} at tap {tap}" for k, tap in enumerate(taps)) + "."]

@@ -1,0 +1,164 @@
+"""Figures 2 to 6 of Rosato et al.: the bulk fraction against taps, order and contacts."""
+import numpy as np
+
+from compaction_figures import maximum_of
+from page_text import at, interval, parameters, steadiness, table, window
+from verdicts import Estimate, is_positive, is_within, is_zero, of_interval, undecided
+
+# A mean of the paper is known to half a unit of its last digit, and its own error is at most 0.001
+# ("realizations were added until sigma <= 0.001").
+PRINTED = 0.001
+
+
+def against_taps(run, taps):
+    rows = [[label.replace("|", "")] + [at(curve, tap) for tap in taps]
+            for label, curve in zip(run.labels, run.curves("bulk_fraction"))]
+    return ["point", f"Phi, tap {taps[0]}"] + [str(tap) for tap in taps[1:]], rows
+
+
+def lift_or_dilation(run, wide):
+    """`wide`: a finished run of the lift at the paper's width, or None."""
+    lift, held = run.curves("bulk_fraction")
+    width = run.scene["container"]["width"]
+    spans = {"10": (6, 15), "100": (81, 120), "200": (181, 220), "350": (331, 350)}
+    statements = [
+        is_positive(f"the lift densifies faster: about tap {name}, {width} d wide",
+                    Estimate.of(window(lift, *taps) - window(held, *taps)),
+                    f"lift less held dilation, taps {taps[0]} to {taps[1]}: ", name="paired t-test")
+        for name, taps in spans.items()]
+    gain = Estimate.of(window(held, *spans["350"]) - held[0])
+    statements.append(is_within("the held dilation gives little or nothing (0.005)", gain, 0.005,
+                                "gain by taps 331 to 350: "))
+    if wide is None:
+        statements.append(undecided("the same at the paper's width, 12 d", "not run", "none"))
+    else:
+        ahead = Estimate.difference(window(wide.curves("bulk_fraction")[0], *spans["350"]),
+                                    window(held, *spans["350"]))
+        statements.append(is_positive(
+            f"the lift at the paper's width, 12 d, is ahead of the dilation at {width} d", ahead,
+            "taps 331 to 350, the lift of dr6 less this dilation: ", name="Welch's t-test"))
+    header, rows = against_taps(run, (0, 1, 10, 30, 100, 200, 350))
+    return table(header, rows), statements
+
+
+PUBLISHED_BETA = {0.1: 0.2000, 0.2: 0.2588, 0.25: 0.2715}
+
+
+def best_lift(run):
+    header, rows = against_taps(run, (0, 1, 10, 50, 100, 250, 400))
+    fits = run.fits("bulk_fraction", "kww", "--range", "0:")
+    names = ("rho_inf", "tau", "beta")
+    for row, fit in zip(rows, fits):
+        row += parameters(fit, names)
+    sweep = next(iter(run.analyse("sweep", "--observable", "bulk_fraction", "--last", 50).values()))
+    steady = run.analyse("steady", "--observable", "bulk_fraction", "--last", 200)
+    lifts, curves = run.values(), run.curves("bulk_fraction")
+    end = {lift: window(curve, 351, 400) for lift, curve in zip(lifts, curves)}
+    statements = [
+        maximum_of(sweep, "Phi is largest at an intermediate lift (here: after 400 taps)", "lift"),
+        of_interval("that lift is near 0.25 to 0.3", sweep["maximum_at_low"],
+                    sweep["maximum_at_high"], between=(0.2, 0.35), found="maximum at"),
+        is_positive("0.25 is ahead of 0.1", Estimate.of(end[0.25] - end[0.1]),
+                    "taps 351 to 400: ", name="paired t-test"),
+        is_positive("0.25 is ahead of 0.5", Estimate.of(end[0.25] - end[0.5]),
+                    "taps 351 to 400: ", name="paired t-test"),
+        undecided("the maximum is one of equilibrium values", "steady over taps 201 to 400? " +
+                  steadiness(steady, "bulk_fraction", [f"{lift:g}" for lift in lifts]),
+                  "400 taps show how soon beds order, not where they end")]
+    for lift, fit in zip(lifts, fits):
+        if lift in PUBLISHED_BETA:
+            beta = PUBLISHED_BETA[lift]
+            statements.append(of_interval(f"KWW with beta = {beta} at {lift:g}",
+                                          *interval(fit, "beta"), found="beta",
+                                          between=(0.9 * beta, 1.1 * beta)))
+    return table(header + [f"kww: {name}" for name in names], rows), statements
+
+
+def from_crystal(run):
+    header, rows = against_taps(run, (0, 10, 60, 200, 500))
+    sweep = next(iter(run.analyse("sweep", "--observable", "bulk_fraction", "--last", 50).values()))
+    steady = run.analyse("steady", "--observable", "bulk_fraction", "--last", 250)
+    statements = []
+    for lift, curve in zip(run.values(), run.curves("bulk_fraction")):
+        statements.append(is_positive(f"Phi falls within 60 taps at {lift:g}",
+                                      Estimate.of(curve[0] - curve[60]), "fall: "))
+    statements += [
+        maximum_of(sweep, "the final Phi is largest at an intermediate lift (here: after 500 taps)",
+                   "lift"),
+        of_interval("at about the lift of fig. 4", sweep["maximum_at_low"],
+                    sweep["maximum_at_high"], between=(0.2, 0.35), found="maximum at"),
+        undecided("Phi flattens after many thousand taps", "steady over taps 251 to 500? " +
+                  steadiness(steady, "bulk_fraction", [f"{lift:g}" for lift in run.values()]),
+                  "500 taps are not thousands")]
+    return table(header, rows), statements
+
+
+def contacts(run):
+    bulk, kept = run.curves("bulk_fraction")[0], run.structure(["coordination", "profile"])
+    taps = run.scene["snapshots"]["taps"]
+    phi, n_c, n_all = (np.array([packings[part][name] for packings in kept])  # [realization, tap]
+                       for part, name in (("profile", "phi_region"), ("coordination", "n_c"),
+                                          ("coordination", "n_c_all")))
+    rows = [[str(tap), at(bulk, tap), Estimate.of(phi[:, k]).text(), Estimate.of(n_c[:, k]).text(3),
+             Estimate.of(n_all[:, k]).text(3)] for k, tap in enumerate(taps)]
+
+    def slope(y, chosen, x=phi):
+        return np.array([np.polyfit(x[r, chosen], y[r, chosen], 1)[0] for r in range(len(y))])
+    every = np.ones(len(taps), bool)
+    early, late = np.array(taps) <= 100, np.array(taps) >= 100
+    statements = [
+        is_positive("N_c rises with Phi", Estimate.of(slope(n_c, every)),
+                    "slope of N_c against Phi of the same region: ", digits=1),
+        is_zero("on one straight line", Estimate.of(slope(n_c, late) - slope(n_c, early)),
+                f"slope after tap 100, {Estimate.of(slope(n_c, late)).text(1)}, less that before, "
+                f"{Estimate.of(slope(n_c, early)).text(1)}: ", digits=1)]
+    return table(["tap", "bulk Phi", "Phi of the region", "N_c of the region", "N_c of all"],
+                 rows), statements
+
+
+def densities(curve, printed):
+    return [is_within(f"rho = {value} after {tap} taps", Estimate.of(curve[tap] - value), PRINTED,
+                      f"{at(curve, tap)}; from it ") for tap, value in printed.items()]
+
+
+def published_rules(run):
+    curve, shown = run.curves("bulk_fraction")[0], (0, 1, 2, 5, 10, 20, 30, 40, 50)
+    statements = densities(curve, {0: 0.567, 50: 0.578})
+    return table(["tap"] + [str(tap) for tap in shown],
+                 [["Phi"] + [at(curve, tap) for tap in shown]]), statements
+
+
+def layers(run):
+    grown, order = (run.ensemble_structure(part) for part in ("layers", "order"))
+    kept = run.structure(["layers", "order"])
+    bulk, taps = run.curves("bulk_fraction")[0], [int(tap) for tap in grown["tap"]]
+    each = np.array([packings["layers"]["grown_layers"] for packings in kept])
+
+    def ordered(k, height):
+        places = kept[0]["order"]["height"]
+        place = int(np.argmin(np.abs(places - height)))
+        return np.array([1 - packings["order"]["disordered_at_height"][k, place]
+                         for packings in kept])
+    rows = [[str(tap), at(bulk, tap), Estimate.of(each[:, k]).text(2)] +
+            [f"{grown['share'][k, layer]:.2f}" for layer in range(8)]
+            for k, tap in enumerate(taps)]
+    heights = (1.5, 3.5, 5.5, 7.5, 9.5, 11.5)
+    order_rows = [[str(tap)] + [Estimate.of(ordered(k, height)).text(3) for height in heights]
+                  for k, tap in enumerate(taps)]
+    text = [table(["tap", "Phi", "grown layers"] +
+                  [f"share, layer {layer + 1}" for layer in range(8)], rows),
+            f"Layers of tap {taps[-1]} lie at " +
+            ", ".join(f"{height:.2f}" for height in grown["found_height"][-1, :6]) + " (hcp: " +
+            ", ".join(f"{height:.2f}" for height in grown["layer_height"][:6]) + "). fcc and hcp "
+            f"make {order['fcc'][-1]:.3f} and {order['hcp'][-1]:.3f} of the spheres of the region.",
+            table(["fcc and hcp at height"] + [f"{height:g}" for height in heights], order_rows)]
+    statements = densities(bulk, {0: 0.567, 50: 0.578, 250: 0.597}) + [
+        is_within("from tap 50 to 250 it gains 0.019", Estimate.of(bulk[250] - bulk[50] - 0.019),
+                  2 * PRINTED, f"{Estimate.of(bulk[250] - bulk[50]).text()}; from it "),
+        is_positive("layers grow with taps", Estimate.of(each[:, -1] - each[:, 0]),
+                    f"grown layers, tap {taps[-1]} less tap 0: ", digits=2, name="paired t-test"),
+        is_positive("they grow upwards from the floor", Estimate.of(
+            ordered(-1, 1.5) - ordered(-1, 5.5)),
+            f"share of fcc and hcp at tap {taps[-1]}, height 1.5 less 5.5: ", digits=2,
+            name="paired t-test")]
+    return "\n\n".join(text), statements

@@ -1,0 +1,116 @@
+"""Results files, their curves, and what `jostle analyse`, `fit` and `structure` say of them."""
+import json
+import pathlib
+import re
+import subprocess
+
+import h5py
+import numpy as np
+
+from verdicts import Estimate
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class Table:
+    """A table of the program's JSON. What does not exist is nan."""
+
+    def __init__(self, table):
+        self.notes = table["notes"]
+        self.quantities = table["axes"] | table["quantities"]
+
+    def __contains__(self, name):
+        return name in self.quantities
+
+    def __getitem__(self, name):
+        values = self.quantities[name]["values"]
+        if not self.quantities[name]["axes"]:
+            return np.nan if values is None else values
+        return np.array(values) if isinstance(values[0], str) else np.array(values, float)
+
+    def estimate(self, name, place=()):
+        """A value with its standard error and degrees of freedom."""
+        def number(ending):
+            value = np.asarray(self[name + ending], float)[place]
+            return float(value)
+        dof = number("_dof")  # null: known
+        return Estimate(number(""), number("_error"), np.inf if np.isnan(dof) else dof)
+
+
+class Run:
+    """A finished run of a reduced scene, its file in `folder`."""
+
+    def __init__(self, jostle, scene, folder):
+        self.jostle, self.name = str(jostle), scene
+        self.path = pathlib.Path(folder) / (scene.replace("/", "-") + ".h5")
+        paper, figure = scene.split("/")
+        self.scene_path = ROOT / "config" / "scenes" / paper / "reduced" / (figure + ".json")
+        self.scene = json.loads(self.scene_path.read_text())
+
+    def make(self):
+        """Runs what is not there yet, and reads the rest."""
+        subprocess.run([self.jostle, "run", self.scene_path, "-o", self.path, "--resume",
+                        "--no-progress"], check=True, stdout=subprocess.DEVNULL)
+        with h5py.File(self.path) as file:
+            self.labels = [label.decode() for label in file["sweep/label"][:]]
+            self.observables = {point: {name: data[:] for name, data in group.items()}
+                                for point, group in sorted(file["observables"].items())}
+            self.seconds = sum(float(point["seconds"][:].sum())
+                               for point in file["timing"].values())
+        return self
+
+    @property
+    def is_complete(self):
+        """Whether the file is there and holds all that the scene asks for."""
+        if not self.path.exists():
+            return False
+        with h5py.File(self.path) as file:
+            return file["provenance"].attrs["state"] in ("complete", b"complete")
+
+    @property
+    def realizations(self):
+        return self.scene["realizations"]
+
+    def curves(self, observable):
+        """[tap, realization] of each sweep point."""
+        return [columns[observable] for columns in self.observables.values()]
+
+    def values(self):
+        """The swept number of each point."""
+        return [float(re.search(r"([0-9.e-]+)}?$", label).group(1)) for label in self.labels]
+
+    def asked(self, *arguments):
+        answer = subprocess.run([self.jostle, *map(str, arguments), "--json"], check=True,
+                                stdout=subprocess.PIPE)
+        return json.loads(answer.stdout)
+
+    def analyse(self, kind, *options):
+        """The tables of an analysis, by name; the file keeps them too."""
+        answer = self.asked("analyse", self.path, kind, *options)
+        return {table["name"]: Table(table) for table in answer["tables"]}
+
+    def fits(self, observable, law, *options):
+        """What a law says of each sweep point."""
+        answer = self.asked("fit", self.path, "--observable", observable, "--model", law, *options)
+        return [curve["fits"][0] for curve in answer["curves"]]
+
+    def structure(self, parts, point=0):
+        """[realization]{part: Table} of the kept packings; frame k is the k-th kept tap."""
+        found = []
+        for realization in range(self.realizations):
+            frames = self.path.with_suffix(f".p{point}r{realization}.xyz")
+            subprocess.run([self.jostle, "export", self.path, "--format", "extxyz", "-o", frames,
+                            "--sweep-point", str(point), "--realization", str(realization),
+                            "--tap", "all", "--force"], check=True, stdout=subprocess.DEVNULL)
+            settings = {part: self.scene["structure"].get(part, {}) for part in parts}
+            tables = self.asked("structure", frames, "--settings", json.dumps(settings),
+                                "--no-store")["tables"]
+            frames.unlink()
+            found.append({table["name"]: Table(table) for table in tables})
+        return found
+
+    def ensemble_structure(self, part, point=0):
+        """The means over realizations that the run ended with."""
+        with h5py.File(self.path) as file:
+            group = file[f"structure/point_{point:04}/{part}"]
+            return {name: data[()] for name, data in group.items()}

@@ -1,0 +1,95 @@
+"""Verdicts of docs/physics-results.md are right as often as they say, at the smallest ensembles."""
+import numpy as np
+
+from compaction_figures import falls_with_age
+from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, detectable, holm,
+                      is_positive, is_within, judge, of_interval)
+
+ENSEMBLES = 600
+
+
+def check(holds, *said):
+    if not holds:
+        raise AssertionError(" ".join(map(str, said)))
+
+
+def at_most(rate, bound, what):
+    """A rate over ENSEMBLES, within three binomial errors."""
+    check(rate <= bound + 3 * np.sqrt(bound * (1 - bound) / ENSEMBLES), what, rate, "above", bound)
+
+
+def words(random, realizations, shift, make):
+    """How often ensembles of normal values about `shift` give each word."""
+    values = random.normal(shift, 1, (ENSEMBLES, realizations))
+    found = [judge([make(Estimate.of(row))])[0][2] for row in values]
+    return {word: found.count(word) / ENSEMBLES for word in (AGREES, DISAGREES, UNDECIDED)}
+
+
+def signs(random):
+    print("statement of a sign: share of each word\nM  truth  agrees  disagrees  cannot decide")
+    for realizations in (2, 3, 4, 16):
+        error = 1 / np.sqrt(realizations)
+        found_at = detectable(Estimate(0, error, realizations - 1))
+        for truth in (0, found_at, -found_at):
+            rate = words(random, realizations, truth, lambda e: is_positive("", e, ""))
+            print(f"{realizations:<2} {truth:6.2f} " +
+                  "  ".join(f"{rate[word]:.3f}" for word in rate))
+            if truth == 0:
+                at_most(rate[AGREES] + rate[DISAGREES], LEVEL, "a word where there is nothing")
+            else:
+                right, wrong = (AGREES, DISAGREES) if truth > 0 else (DISAGREES, AGREES)
+                at_most(rate[wrong], LEVEL / 2, "the wrong sign")
+                # detectable() from the true error: the t-test finds it with the promised power.
+                check(abs(rate[right] - POWER) <= 3 * np.sqrt(POWER * (1 - POWER) / ENSEMBLES),
+                      "power", rate[right])
+
+
+def margins(random):
+    for realizations in (2, 3, 6):
+        for truth, wrong in ((0.999, DISAGREES), (1.001, AGREES)):
+            rate = words(random, realizations, truth, lambda e: is_within("", e, 1, ""))
+            at_most(rate[wrong], LEVEL, f"M = {realizations}: {wrong} at the margin")
+
+
+def families(random):
+    check(np.allclose(holm([0.01, 0.04, np.nan, 0.03])[[0, 1, 3]], [0.03, 0.06, 0.06]), "Holm")
+    any_word = 0
+    for _ in range(ENSEMBLES // 4):
+        rows = random.normal(0, 1, (8, 3))
+        any_word += any(word != UNDECIDED for _, _, word, _ in
+                        judge([is_positive("", Estimate.of(row), "") for row in rows]))
+    at_most(any_word / (ENSEMBLES // 4), LEVEL * 1.3, "any word among eight statements")
+
+
+def ages(random):
+    """Means of squares of normal changes, as the ages of fig. 5 are compared."""
+    squares = random.normal(0, 1, (2, ENSEMBLES, 10))**2
+    for factor, least, most in ((1, 0, LEVEL), (20, 0.8, 1)):
+        found = [judge([falls_with_age("", factor * a, b)])[0][2] for a, b in zip(*squares)]
+        rate = found.count(AGREES) / ENSEMBLES
+        print(f"A of one age {factor} times that of another, 10 realizations: {rate:.3f} agree")
+        at_most(rate if factor > 1 else 1 - found.count(UNDECIDED) / ENSEMBLES, most, "ages")
+        check(rate >= least, "power", rate)
+
+
+def intervals():
+    def word(low, high, **limits):
+        return judge([of_interval("", low, high, "", **limits)])[0][2]
+    check(word(0.65, np.nan, above=0.64) == AGREES, "above")
+    check(word(0.57, 0.61, above=0.64) == DISAGREES, "below")
+    check(word(0.57, np.nan, above=0.64) == UNDECIDED, "open")
+    check(word(0.12, 0.18, between=(0.1, 0.2)) == AGREES, "inside")
+    check(word(0.05, 0.09, between=(0.1, 0.2)) == DISAGREES, "outside")
+    check(word(np.nan, np.nan, between=(0.1, 0.2)) == UNDECIDED, "no limits")
+    one = is_positive("", Estimate.of([1.0]), "")
+    check(judge([one])[0][2] == UNDECIDED, "one realization says nothing")
+
+
+if __name__ == "__main__":
+    generator = np.random.default_rng(20010222)
+    signs(generator)
+    margins(generator)
+    families(generator)
+    ages(generator)
+    intervals()
+    print("verdicts: as often right as they say")
