@@ -54,6 +54,20 @@ class ByteReader {
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
   }
+  bool get_flag() {
+    const auto value = get<std::uint8_t>();
+    if (value > 1) throw std::out_of_range("no flag");
+    return value != 0;
+  }
+  /// An enumerator from 0 up to `last`.
+  template <class Enum>
+  Enum get_enum(Enum last) {
+    using Number = std::underlying_type_t<Enum>;
+    static_assert(std::is_unsigned_v<Number>);
+    const auto value = get<Number>();
+    if (value > static_cast<Number>(last)) throw std::out_of_range("no such name");
+    return static_cast<Enum>(value);
+  }
   template <class T>
   std::vector<T> get_vector() {
     const auto n = get<std::uint64_t>();

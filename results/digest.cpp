@@ -1,11 +1,13 @@
 #include <fmt/format.h>
-#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "results/checksum.hpp"
+#include "results/hdf5_axes.hpp"
+#include "results/hdf5_policy.hpp"
 #include "results/hdf5_read.hpp"
 #include "results/results_file.hpp"
 #include "results/seal.hpp"
@@ -27,11 +29,13 @@ class Digest {
 
  private:
   void add_members(hid_t group, const std::string& path);
-  void add_object(hid_t parent, const std::string& name, const std::string& path);
+  using Paths = std::unordered_map<haddr_t, std::string>;  // of a group's members, by address
+
+  void add_object(hid_t parent, const Member& member, const std::string& path, const Paths& paths);
   void add_dataset(hid_t dataset, const std::string& path);
   void add_attributes(hid_t object, const std::string& path);
   void add_attribute(hid_t object, const std::string& name, const std::string& path);
-  void add_axes(hid_t dataset, const std::string& path);
+  void add_axes(hid_t dataset, const std::string& path, const Paths& paths);
   template <class Read>
   void add_values(const std::string& what, hid_t type, hid_t space, Read&& read);
   template <class Number, class Read>
@@ -40,23 +44,14 @@ class Digest {
   void add_texts(hid_t space, std::size_t n, Read&& read);
 
   Sha256 sum_;
+  Walk walk_;
 };
 
 using Names = std::vector<std::string>;
 
-Names member_names(hid_t group) {
-  Names names;
-  const auto keep = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
-    static_cast<Names*>(all)->push_back(name);
-    return 0;
-  };
-  checked(H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names));
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 Names attribute_names(hid_t object) {
   Names names;
+  require_few_attributes(object);
   const auto keep = [](hid_t, const char* name, const H5A_info_t*, void* all) -> herr_t {
     static_cast<Names*>(all)->push_back(name);
     return 0;
@@ -68,9 +63,7 @@ Names attribute_names(hid_t object) {
 
 std::string shape_text(hid_t space) {
   std::string text;
-  Shape shape(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space))));
-  if (!shape.empty()) checked(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
-  for (const hsize_t extent : shape) text += fmt::format(" {}", extent);
+  for (const hsize_t extent : shape_of_space(space)) text += fmt::format(" {}", extent);
   return text;
 }
 
@@ -80,23 +73,33 @@ bool is_derived(const std::string& path) {
 }
 
 void Digest::add_members(hid_t group, const std::string& path) {
-  for (const std::string& name : member_names(group)) {
-    const std::string member = path + "/" + name;
-    if (member == "/provenance" || member == "/timing" || is_derived(member)) continue;
-    add_object(group, name, member);
+  const std::vector<Member> members = members_of(group);
+  Paths paths;
+  for (const Member& member : members) paths[member.address] = path + "/" + member.name;
+  for (const Member& member : members) {
+    const std::string& member_path = path + "/" + member.name;
+    if (member_path == "/provenance" || member_path == "/timing" || is_derived(member_path))
+      continue;
+    add_object(group, member, member_path, paths);
   }
 }
 
-void Digest::add_object(hid_t parent, const std::string& name, const std::string& path) {
-  const Hdf5Handle object(H5Oopen(parent, name.c_str(), H5P_DEFAULT), H5Oclose);
-  if (H5Iget_type(object) == H5I_GROUP) {
-    sum_.add(path + " group\n");
-    add_attributes(object, path);
-    add_members(object, path);
-  } else {
-    add_dataset(object, path);
-    add_attributes(object, path);
-    add_axes(object, path);
+void Digest::add_object(hid_t parent, const Member& member, const std::string& path,
+                        const Paths& paths) {
+  const Hdf5Handle object(H5Oopen(parent, member.name.c_str(), H5P_DEFAULT), H5Oclose);
+  switch (H5Iget_type(object)) {
+    case H5I_GROUP:
+      walk_.enter(member, path);
+      sum_.add(path + " group\n");
+      add_attributes(object, path);
+      return add_members(object, path);
+    case H5I_DATASET:
+      require_plain_dataset(object, path);
+      add_dataset(object, path);
+      add_attributes(object, path);
+      return add_axes(object, path, paths);
+    default:
+      throw Hdf5Error(path + " is neither a group nor a dataset: not written by jostle");
   }
 }
 
@@ -125,26 +128,23 @@ void Digest::add_attribute(hid_t object, const std::string& name, const std::str
   });
 }
 
-void Digest::add_axes(hid_t dataset, const std::string& path) {
-  if (checked(H5DSis_scale(dataset)) > 0) return;
-  const auto keep = [](hid_t, unsigned, hid_t scale, void* names) -> herr_t {
-    char name[1024];
-    const ssize_t n = H5Iget_name(scale, name, sizeof name);
-    if (n <= 0) return -1;
-    static_cast<Names*>(names)->push_back(name);
-    return 0;
-  };
-  for (unsigned dimension = 0; dimension < shape_of(dataset).size(); ++dimension) {
-    Names names;
-    checked(H5DSiterate_scales(dataset, dimension, nullptr, keep, &names));
-    for (const std::string& name : names)
-      sum_.add(path + " axis " + std::to_string(dimension) + " " + name + "\n");
+/// Axes lie in the group of what stands along them, and a reference to one is its address there:
+/// to ask HDF5 for its name would search the whole file.
+void Digest::add_axes(hid_t dataset, const std::string& path, const Paths& paths) {
+  const auto axes = axes_of(dataset);
+  for (std::size_t dimension = 0; dimension < axes.size(); ++dimension) {
+    for (const haddr_t address : axes[dimension]) {
+      const auto axis = paths.find(address);
+      if (axis == paths.end())
+        throw Hdf5Error(path + " has an axis in another group: not written by jostle");
+      sum_.add(path + " axis " + std::to_string(dimension) + " " + axis->second + "\n");
+    }
   }
 }
 
 template <class Read>
 void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read) {
-  const auto n = static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space)));
+  const std::size_t n = n_elements(shape_of_space(space));
   const std::size_t size = H5Tget_size(type);
   const bool is_signed = H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
   switch (H5Tget_class(type)) {

@@ -5,16 +5,22 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
 
 #include "results/container_text.hpp"
 #include "results/error.hpp"
+#include "results/input_file.hpp"
+#include "results/printable.hpp"
 
 namespace jostle {
 namespace {
+
+// As in scenes; a column of all spheres is as high as they are many.
+constexpr double widest = 10'000;
+constexpr std::size_t most_spheres = 10'000'000;
+constexpr std::size_t most_columns = 1000;
 
 using Keys = std::map<std::string, std::string>;
 
@@ -43,11 +49,14 @@ Keys parse_comment(const std::string& line) {
   return keys;
 }
 
+/// Where the positions stand in the lines of the spheres.
+struct Columns {
+  std::size_t positions = 1, least = 4, most = std::string::npos;
+};
+
 class FrameReader {
  public:
-  explicit FrameReader(const std::string& path) : path_(path), file_(path) {
-    if (!file_) throw ResultsError(path, "cannot open");
-  }
+  explicit FrameReader(const std::string& path) : path_(path), file_(path) {}
 
   /// Reads the next frame; false at the end of the file.
   bool next(Packing& packing);
@@ -55,21 +64,22 @@ class FrameReader {
  private:
   bool next_line(std::string& line);
   [[noreturn]] void fail(const std::string& what) const {
-    throw ResultsError(path_, fmt::format("line {}: {}", line_number_, what));
+    throw ResultsError(path_, printable(fmt::format("line {}: {}", line_number_, what)));
   }
   double number(const std::string& word) const;
+  double coordinate(const std::string& word) const;
   std::size_t count(const std::string& word) const;
   Container container(const Keys& keys) const;
-  std::size_t position_column(const std::string& properties) const;
+  Columns columns(const Keys& keys) const;
 
   std::string path_;
-  std::ifstream file_;
+  InputFile file_;
   std::size_t line_number_ = 0;
 };
 
 bool FrameReader::next_line(std::string& line) {
   ++line_number_;
-  return static_cast<bool>(std::getline(file_, line));
+  return file_.next_line(line);
 }
 
 double FrameReader::number(const std::string& word) const {
@@ -77,6 +87,13 @@ double FrameReader::number(const std::string& word) const {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
     fail("\"" + word + "\" is not a finite number");
+  return value;
+}
+
+double FrameReader::coordinate(const std::string& word) const {
+  const double value = number(word);
+  if (std::abs(value) > double{most_spheres})
+    fail(fmt::format("{} diameters are farther than {}", word, most_spheres));
   return value;
 }
 
@@ -106,6 +123,10 @@ Container FrameReader::container(const Keys& keys) const {
     if (pbc->second == "F F F") kind = "walls";
   }
   const auto made = container_from(kind, widths);
+  for (std::size_t k = 0; k < (kind == "fully_periodic" ? 3U : 2U); ++k)
+    if (!(widths[k] > 0) || widths[k] > widest)
+      fail(fmt::format("the sides of Lattice must be above 0 and at most {} diameters, not {}",
+                       widest, widths[k]));
   if (!made)
     fail(
         "neither container=periodic|walls|cylinder|fully_periodic nor pbc=\"T T F\", \"T T T\" "
@@ -113,17 +134,24 @@ Container FrameReader::container(const Keys& keys) const {
   return *made;
 }
 
-/// The first of the three columns of `pos` in Properties=name:type:columns:...
-std::size_t FrameReader::position_column(const std::string& properties) const {
-  std::istringstream stream(properties);
+/// By Properties=name:type:columns:..., where a line must hold all of them: one that lacks a number
+/// would pass for another. Without it, a name and the positions come first.
+Columns FrameReader::columns(const Keys& keys) const {
+  const auto properties = keys.find("Properties");
+  if (properties == keys.end()) return {};
+  std::istringstream stream(properties->second);
   std::size_t column = 0;
+  std::optional<std::size_t> positions;
   for (std::string name, type, columns; std::getline(stream, name, ':') &&
                                         std::getline(stream, type, ':') &&
                                         std::getline(stream, columns, ':');) {
-    if (name == "pos" && type == "R" && columns == "3") return column;
-    column += count(columns);
+    if (name == "pos" && type == "R" && columns == "3" && !positions) positions = column;
+    const std::size_t n = count(columns);
+    if (n > most_columns || (column += n) > most_columns)
+      fail(fmt::format("Properties names more than {} columns", most_columns));
   }
-  fail("Properties has no pos:R:3");
+  if (!positions) fail("Properties has no pos:R:3");
+  return {*positions, column, column};
 }
 
 bool FrameReader::next(Packing& packing) {
@@ -134,15 +162,19 @@ bool FrameReader::next(Packing& packing) {
   const std::size_t n_spheres = count(words_of(line).front());
   if (!next_line(line)) fail("the file ends before the comment line");
   const Keys keys = parse_comment(line);
+  if (n_spheres > most_spheres)
+    fail(fmt::format("{} spheres are more than {}", n_spheres, most_spheres));
   packing = {container(keys), {}};
-  const auto properties = keys.find("Properties");
-  const std::size_t column = properties == keys.end() ? 1 : position_column(properties->second);
+  const auto [column, least, most] = columns(keys);
   for (std::size_t i = 0; i < n_spheres; ++i) {
     if (!next_line(line)) fail(fmt::format("the file ends after {} of {} spheres", i, n_spheres));
     const auto words = words_of(line);
-    if (words.size() < column + 3) fail("too few columns");
-    packing.centres.push_back(
-        {number(words[column]), number(words[column + 1]), number(words[column + 2])});
+    if (words.size() < least || words.size() > most)
+      fail(fmt::format("too {} columns: {} and not {}", words.size() < least ? "few" : "many",
+                       words.size(), least));
+    const Vec3 centre{coordinate(words[column]), coordinate(words[column + 1]),
+                      coordinate(words[column + 2])};
+    packing.centres.push_back(centre);
   }
   return true;
 }

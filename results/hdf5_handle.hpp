@@ -58,13 +58,16 @@ Result checked(Result result) {
   return result;
 }
 
-/// Runs `work` and turns an Hdf5Error into a ResultsError with the path.
+/// Runs `work` and turns an Hdf5Error into a ResultsError with the path; a list that is shorter
+/// than another that it belongs to likewise.
 template <class Work>
 auto naming_file(const std::string& path, Work&& work) {
   try {
     return work();
   } catch (const Hdf5Error& error) {
     throw ResultsError(path, error.what());
+  } catch (const std::out_of_range&) {
+    throw ResultsError(path, "its lists are of different lengths: not written by jostle");
   }
 }
 

@@ -6,7 +6,8 @@
 #include "results/hdf5_handle.hpp"
 #include "results/hdf5_write.hpp"
 
-// Reading back what hdf5_write.hpp writes. All throw Hdf5Error, also where a thing is not there.
+// Reading back what hdf5_write.hpp writes. All throw Hdf5Error, also where a thing is not there,
+// and for what hdf5_write.hpp never writes (hdf5_policy.hpp).
 namespace jostle {
 
 Hdf5Handle open_group(hid_t parent, const std::string& name);
@@ -15,9 +16,16 @@ Hdf5Handle open_dataset(hid_t parent, const std::string& name);
 bool exists(hid_t parent, const std::string& path);
 
 Shape shape_of(hid_t dataset);
+Shape shape_of_space(hid_t space);
 
+/// Throws unless the dataset `name` of a group has that shape.
+void require_shape(hid_t parent, const std::string& name, const Shape& shape);
+
+/// Of any shape, or of the given one.
 template <class Number>
-std::vector<Number> read_numbers(hid_t parent, const std::string& name) {
+std::vector<Number> read_numbers(hid_t parent, const std::string& name,
+                                 const Shape* expected = nullptr) {
+  if (expected != nullptr) require_shape(parent, name, *expected);
   const Hdf5Handle dataset = open_dataset(parent, name);
   std::vector<Number> values(n_elements(shape_of(dataset)));
   checked(
@@ -34,12 +42,13 @@ std::string read_text(hid_t parent, const std::string& name);
 
 std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name);
 std::string read_text_attribute(hid_t object, const std::string& name);
+/// Of a length that its type fixes, as HDF5's own attributes have.
+std::string read_fixed_text_attribute(hid_t object, const std::string& name);
 template <class Number>
 std::vector<Number> read_numbers_attribute(hid_t object, const std::string& name) {
   const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  std::vector<Number> numbers(
-      static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space))));
+  std::vector<Number> numbers(n_elements(shape_of_space(space)));
   checked(H5Aread(attribute, Hdf5Number<Number>::memory(), numbers.data()));
   return numbers;
 }

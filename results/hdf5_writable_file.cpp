@@ -60,7 +60,7 @@ void write_waiting(DriverFile& file) {
 H5FD_t* open_file(const char* name, unsigned, hid_t properties, haddr_t) {
   const auto* settings = static_cast<const DriverSettings*>(H5Pget_driver_info(properties));
   const int begin = settings->keep ? 0 : O_CREAT | O_TRUNC;
-  const int descriptor = ::open(name, O_RDWR | begin | O_CLOEXEC, 0666);
+  const int descriptor = ::open(name, O_RDWR | begin | O_NOFOLLOW | O_CLOEXEC, 0666);
   struct stat status;
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
     *settings->error = errno;

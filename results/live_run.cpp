@@ -93,7 +93,8 @@ ResultsFile joined_once(const std::string& results_path, Content content) {
 
 }  // namespace
 
-ResultsFile live_results(const std::string& results_path, Content content) {
+ResultsFile live_results(const std::string& named, Content content) {
+  const std::string results_path = end_of_links(named);
   constexpr int most_tries = 20;
   for (int tries = 1;; ++tries) {
     const auto before = version_of(results_path);
@@ -109,7 +110,8 @@ ResultsFile live_results(const std::string& results_path, Content content) {
   }
 }
 
-RunStatus run_status(const std::string& results_path) {
+RunStatus run_status(const std::string& named) {
+  const std::string results_path = end_of_links(named);
   for (;;) {
     const auto before = version_of(results_path);
     const RunStatus status = look_once(results_path);

@@ -13,6 +13,7 @@
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
 #include "results/run_parts.hpp"
+#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {
@@ -97,9 +98,12 @@ std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
 
 }  // namespace
 
-void merge_files(std::span<const std::string> inputs, const std::string& output,
+void merge_files(std::span<const std::string> inputs, const std::string& named,
                  const Provenance& provenance, bool force, const std::optional<Study>& whole) {
+  const std::string output = end_of_links(named);
   const RunLock lock(output, force);
+  require_replaceable_file(output);
+  remove_stale_temporaries(output);
   struct stat status;
   if (!force && ::stat(output.c_str(), &status) == 0)
     throw ResultsError(output, "exists already; overwrite it by --force, or choose another name");

@@ -7,9 +7,9 @@
 
 #include "results/checksum.hpp"
 #include "results/error.hpp"
+#include "results/input_file.hpp"
 #include "results/part_content.hpp"
 #include "results/publish.hpp"
-#include "results/read_bytes.hpp"
 
 namespace jostle {
 namespace {

@@ -58,11 +58,11 @@ RealizationState get_realization_state(ByteReader& reader) {
     throw std::out_of_range("a state of another version of the program");
   RealizationState state;
   state.rows = reader.get<std::uint64_t>();
-  state.relaxing = reader.get<bool>();
-  state.relaxation.status = reader.get<RelaxationStatus>();
+  state.relaxing = reader.get_flag();
+  state.relaxation.status = reader.get_enum(RelaxationStatus::capped);
   state.relaxation.trials = reader.get<std::uint64_t>();
   state.relaxation.accepted = reader.get<std::uint64_t>();
-  state.relaxation.measured = reader.get<bool>();
+  state.relaxation.measured = reader.get_flag();
   state.relaxation.last_value = reader.get<double>();
   state.relaxation.passes = reader.get<std::uint32_t>();
   state.move.next_trial = reader.get<std::uint64_t>();
@@ -70,7 +70,7 @@ RealizationState get_realization_state(ByteReader& reader) {
   state.move.window_trials = reader.get<std::uint64_t>();
   state.move.window_base = reader.get<std::uint64_t>();
   state.move.window_accepted = reader.get<std::uint64_t>();
-  state.sampler.skipping = reader.get<bool>();
+  state.sampler.skipping = reader.get_flag();
   state.sampler.window_trials = reader.get<std::uint64_t>();
   state.sampler.window_accepted = reader.get<std::uint64_t>();
   state.sampler.candidate = reader.get<std::uint64_t>();
@@ -81,7 +81,7 @@ RealizationState get_realization_state(ByteReader& reader) {
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
   state.observable_windows = reader.get_vector<HeightWindow>();
-  if (reader.get<bool>()) {
+  if (reader.get_flag()) {
     state.fitting.emplace();
     for (const FittingColumn& column : fitting_columns)
       (*state.fitting).*column.field = reader.get<double>();
@@ -112,7 +112,7 @@ SeriesPiece get_piece(ByteReader& reader) {
     SnapshotRecord record;
     record.tap = reader.get<std::uint64_t>();
     record.centres = reader.get_vector<Vec3>();
-    const bool has_coordination = reader.get<bool>();
+    const bool has_coordination = reader.get_flag();
     const double coordination = reader.get<double>();
     if (has_coordination) record.coordination = coordination;
     record.height_histogram = reader.get_vector<double>();
@@ -140,13 +140,13 @@ PartState get_part_state(ByteReader& reader) {
   part.base_rows = reader.get<std::uint64_t>();
   part.n_segments = reader.get<std::uint32_t>();
   part.tail = get_piece(reader);
-  part.status = reader.get<RealizationStatus>();
+  part.status = reader.get_enum(RealizationStatus::failed);
   part.reason = reader.get_string();
   part.work.seconds = reader.get<double>();
   part.work.start_seconds = reader.get<double>();
   part.work.trials = reader.get<std::uint64_t>();
   part.work.distance_tests = reader.get<std::uint64_t>();
-  if (reader.get<bool>()) part.state = get_realization_state(reader);
+  if (reader.get_flag()) part.state = get_realization_state(reader);
   return part;
 }
 

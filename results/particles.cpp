@@ -67,12 +67,13 @@ void write_particles(hid_t file, const std::string& name, const Container& conta
   attach_axes(value, axes);
 }
 
-std::vector<SnapshotRecord> read_particles(hid_t file, const std::string& name) {
+std::vector<SnapshotRecord> read_particles(hid_t file, const std::string& name,
+                                           std::uint32_t n_spheres) {
   if (!exists(file, "particles/" + name)) return {};
   const Hdf5Handle position = open_group(file, "particles/" + name + "/position");
   const auto taps = read_numbers<std::uint64_t>(position, "step");
-  const auto values = read_numbers<double>(position, "value");
-  const std::size_t n_spheres = taps.empty() ? 0 : values.size() / (3 * taps.size());
+  const Shape shape{taps.size(), n_spheres, 3};
+  const auto values = read_numbers<double>(position, "value", &shape);
   std::vector<SnapshotRecord> frames(taps.size());
   for (std::size_t f = 0; f < taps.size(); ++f) {
     frames[f].tap = taps[f];

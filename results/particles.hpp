@@ -14,7 +14,9 @@ namespace jostle {
 void write_particles(hid_t file, const std::string& name, const Container& container,
                      std::span<const SnapshotRecord* const> frames);
 
-/// The taps and centres of such a group; nothing if it is not there. Throws Hdf5Error.
-std::vector<SnapshotRecord> read_particles(hid_t file, const std::string& name);
+/// The taps and centres of such a group; nothing if it is not there. Throws Hdf5Error, also where
+/// it holds another number of spheres.
+std::vector<SnapshotRecord> read_particles(hid_t file, const std::string& name,
+                                           std::uint32_t n_spheres);
 
 }  // namespace jostle

@@ -53,9 +53,8 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       point_(study.points[point]),
       number_(point),
       n_realizations_(study.realizations),
-      n_rows_(point_.taps + 1),
       labels_(column_labels(point_)),
-      columns_(labels_.size(), std::vector<double>(n_rows_ * n_realizations_, nan)),
+      columns_(labels_.size()),
       statuses_(n_realizations_, 0),
       rows_(n_realizations_, 0),
       reasons_(n_realizations_),
@@ -75,7 +74,7 @@ Hdf5Handle PointWriter::group_under(const char* folder) const {
 RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationRecord& record) {
   RealizationStatus status = record.status;
   take_series(realization, record);
-  if (status == RealizationStatus::done && rows_[realization] < n_rows_)
+  if (status == RealizationStatus::done && rows_[realization] <= point_.taps)
     status = RealizationStatus::running;
   statuses_[realization] = static_cast<std::uint8_t>(status);
   reasons_[realization] = record.reason;
@@ -88,9 +87,16 @@ RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationR
   return status;
 }
 
+/// A tap's numbers lie together: more taps follow on those that are there.
+void PointWriter::make_room(std::uint64_t n_rows) {
+  n_rows_ = n_rows;
+  for (std::vector<double>& column : columns_) column.resize(n_rows_ * n_realizations_, nan);
+}
+
 void PointWriter::take_series(std::uint32_t realization, const RealizationRecord& record) {
-  const std::uint64_t n_rows = std::min(record.rows.size() / columns_.size(), n_rows_);
+  const std::uint64_t n_rows = std::min(record.rows.size() / columns_.size(), point_.taps + 1);
   rows_[realization] = n_rows;
+  if (n_rows > n_rows_) make_room(n_rows);
   for (std::uint64_t tap = 0; tap < n_rows; ++tap)
     for (std::size_t c = 0; c < columns_.size(); ++c)
       columns_[c][tap * n_realizations_ + realization] =
@@ -124,6 +130,7 @@ void PointWriter::write_restart(std::uint32_t realization, const RealizationReco
 }
 
 void PointWriter::finish() {
+  if (n_rows_ == 0) make_room(1);
   write_observables();
   write_ensemble();
   write_snapshots();

@@ -28,6 +28,7 @@ class PointWriter {
   void finish();
 
  private:
+  void make_room(std::uint64_t n_rows);
   void take_series(std::uint32_t realization, const RealizationRecord& record);
   void take_snapshots(std::uint32_t realization, const RealizationRecord& record);
   void write_restart(std::uint32_t realization, const RealizationRecord& record);
@@ -42,7 +43,7 @@ class PointWriter {
   const StudyPoint& point_;
   std::uint32_t number_;
   std::uint32_t n_realizations_;
-  std::uint64_t n_rows_;
+  std::uint64_t n_rows_ = 0;  // the most that any realization has, whatever is planned
   std::vector<ObservableLabel> labels_;
   std::vector<std::vector<double>> columns_;  // [n_columns] of [n_rows, n_realizations]
   std::vector<std::uint8_t> statuses_;

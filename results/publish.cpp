@@ -10,42 +10,28 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "results/descriptor.hpp"
 #include "results/error.hpp"
-#include "results/read_bytes.hpp"
+#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {
-
-void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes) {
-  constexpr std::size_t piece = 4u << 20;
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), piece));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_on_disk(path, "write", errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
-
-std::string folder_of(const std::string& path) {
-  const auto slash = path.find_last_of('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
 
 const char* way_out(std::string_view what, int error) {
   if (what == "open" || what == "read") return "";
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "; free some space, then resume: nothing up to the last checkpoint is lost";
+      return "; free some space, or write elsewhere";
     case EFBIG:
-      return "; raise the limit on file sizes (ulimit -f), then resume: nothing up to the last "
-             "checkpoint is lost";
+      return "; raise the limit on file sizes (ulimit -f)";
     case ENOMEM:
-      return "; raise the limit on memory, then resume: nothing up to the last checkpoint is lost";
+      return "; raise the limit on memory";
+    case ELOOP:
+      return "; it is a symbolic link, or one of a ring: remove it";
     case EROFS:
     case EACCES:
     case EPERM:
@@ -57,11 +43,12 @@ const char* way_out(std::string_view what, int error) {
   }
 }
 
-void write_temporary(const std::string& path, std::span<const std::byte> bytes) {
-  const std::string temporary = temporary_name(path);
-  const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (!file) fail_on_disk(temporary, "create", errno);
-  write_all(temporary, file.get(), bytes);
+/// The system's rule of sticky folders (fs.protected_symlinks), for links that we follow ourselves.
+bool is_planted(const struct stat& link, const std::string& folder) {
+  struct stat status;
+  if (link.st_uid == ::geteuid() || ::stat(folder.c_str(), &status) != 0) return false;
+  const bool for_everybody = (status.st_mode & S_ISVTX) != 0 && (status.st_mode & S_IWOTH) != 0;
+  return for_everybody && link.st_uid != status.st_uid;
 }
 
 }  // namespace
@@ -71,51 +58,56 @@ void fail_on_disk(const std::string& path, const char* what, int error) {
       path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(what, error)));
 }
 
-std::string temporary_name(const std::string& path) {
-  return path + ".tmp";
+void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes) {
+  constexpr std::size_t piece = 4u << 20;
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), piece));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail_on_disk(path, "write", written < 0 ? errno : ENOSPC);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
 }
 
 void publish(const std::string& path, std::span<const std::byte> bytes) {
-  try {
-    write_temporary(path, bytes);
-  } catch (...) {
-    ::unlink(temporary_name(path).c_str());
-    throw;
-  }
-  publish_temporary(path);
+  TemporaryFile file(path);
+  file.write(bytes);
+  file.publish();
 }
 
-void publish_temporary(const std::string& path) {
-  const std::string temporary = temporary_name(path);
-  const auto give_up = [&](const char* what, int error) {
-    ::unlink(temporary.c_str());
-    fail_on_disk(temporary, what, error);
-  };
-  {
-    const Descriptor file(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file) give_up("open", errno);
-    if (::fsync(file.get()) != 0) give_up("fsync", errno);
+std::string end_of_links(const std::string& path) {
+  constexpr int most_links = 40;  // as Linux follows
+  std::filesystem::path end(path);
+  for (int links = 0; links < most_links; ++links) {
+    struct stat status;
+    if (::lstat(end.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return end;
+    if (is_planted(status, folder_of(end)))
+      throw ResultsError(end,
+                         "is a link that another user put into a folder where everybody may "
+                         "write, and is not followed; name what it leads to");
+    std::error_code error;
+    end = end.parent_path() / std::filesystem::read_symlink(end, error);
+    if (error) fail_on_disk(path, "follow", error.value());
   }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) give_up("rename", errno);
-  sync_folder_of(path);
+  fail_on_disk(path, "follow", ELOOP);
 }
 
-std::vector<std::byte> read_bytes(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file) fail_on_disk(path, "open", errno);
+void require_replaceable_file(const std::string& path) {
   struct stat status;
-  if (::fstat(file.get(), &status) != 0) fail_on_disk(path, "read", errno);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
-  std::size_t n = 0;
-  while (n < bytes.size()) {
-    const ssize_t got = ::read(file.get(), bytes.data() + n, bytes.size() - n);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_on_disk(path, "read", errno);
-    if (got == 0) break;
-    n += static_cast<std::size_t>(got);
-  }
-  bytes.resize(n);
-  return bytes;
+  if (::stat(path.c_str(), &status) != 0) return;
+  if (!S_ISREG(status.st_mode))
+    throw ResultsError(path, "is a folder, a pipe or a device, and not replaced by a file");
+  constexpr mode_t anybody = S_IWUSR | S_IWGRP | S_IWOTH;  // root may write to all: ask the mode
+  if ((status.st_mode & anybody) != 0 && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0)
+    return;
+  throw ResultsError(path, fmt::format("is write-protected (mode {:03o}), and kept; write "
+                                       "elsewhere, or allow it with chmod u+w",
+                                       status.st_mode & 0777u));
+}
+
+std::string folder_of(const std::string& path) {
+  const auto slash = path.find_last_of('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
 }
 
 void remove_file(const std::string& path) {

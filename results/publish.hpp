@@ -9,14 +9,24 @@
 // and the folder fsynced. All throw ResultsError.
 namespace jostle {
 
-/// The temporary name of a file; a stale one is overwritten by the next attempt.
-std::string temporary_name(const std::string& path);
-
-/// Publishes the bytes under `path`, replacing what was there. On failure what was there stays.
+/// Publishes the bytes under `path`, replacing what was there, but for a link, which is refused
+/// (end_of_links). On failure what was there stays.
 void publish(const std::string& path, std::span<const std::byte> bytes);
 
-/// The last steps for a file already written under temporary_name(path).
-void publish_temporary(const std::string& path);
+/// All bytes to a descriptor that is open on `path`, whatever interrupts or shortens a write.
+void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes);
+
+/// Where symbolic links at `path` end: the path itself if it is none. As the system itself does, it
+/// refuses links that others put into a folder where everybody may write, as /tmp: who plants one
+/// chooses what is written over.
+std::string end_of_links(const std::string& path);
+
+/// Refuses to replace what is no file, and a file that is write-protected; what is not there may
+/// come to be.
+void require_replaceable_file(const std::string& path);
+
+/// The folder that a path names a file in.
+std::string folder_of(const std::string& path);
 
 /// Removes a file if it is there.
 void remove_file(const std::string& path);

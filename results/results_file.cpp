@@ -1,5 +1,6 @@
 #include "results/results_file.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -11,6 +12,7 @@
 #include "results/point_writer.hpp"
 #include "results/seal.hpp"
 #include "results/study_writer.hpp"
+#include "results/validate.hpp"
 
 namespace jostle {
 namespace {
@@ -34,13 +36,13 @@ struct PointTables {
   std::vector<double> height_histogram;  // [n_snapshot_taps, n_realizations, n_bins], or empty
 };
 
-std::vector<Work> read_work(const Hdf5Handle& timing) {
-  const auto seconds = read_numbers<double>(timing, "seconds");
+std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& each) {
+  const auto seconds = read_numbers<double>(timing, "seconds", &each);
   const auto start_seconds = exists(timing, "start_seconds")
-                                 ? read_numbers<double>(timing, "start_seconds")
+                                 ? read_numbers<double>(timing, "start_seconds", &each)
                                  : std::vector<double>(seconds.size(), 0);  // older files
-  const auto trials = read_numbers<std::uint64_t>(timing, "trials");
-  const auto distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests");
+  const auto trials = read_numbers<std::uint64_t>(timing, "trials", &each);
+  const auto distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests", &each);
   std::vector<Work> work(seconds.size());
   for (std::size_t r = 0; r < work.size(); ++r) {
     work[r] = {.seconds = seconds[r],
@@ -49,6 +51,14 @@ std::vector<Work> read_work(const Hdf5Handle& timing) {
                .distance_tests = distance_tests.at(r)};
   }
   return work;
+}
+
+void require_rows(const PointTables& tables, const StudyPoint& point) {
+  for (const std::uint8_t status : tables.statuses)
+    if (status > static_cast<std::uint8_t>(RealizationStatus::failed))
+      throw Hdf5Error("status holds a number that means nothing");
+  for (const std::uint64_t rows : tables.rows)
+    if (rows > point.taps + 1) throw Hdf5Error("rows holds more taps than the study has");
 }
 
 }  // namespace
@@ -60,8 +70,20 @@ class ResultsFile::Impl {
     naming_file(path, [&] {
       study = read_study(file);
       provenance = read_provenance(file);
+      validate(study, provenance);
       has_points = exists(file, "observables");
     });
+  }
+
+  /// Taps that the columns of a point hold: those beyond which no realization has come are left
+  /// out.
+  std::uint64_t stored_rows(const Hdf5Handle& observables, std::uint32_t point) {
+    const Shape shape = shape_of(open_dataset(observables, "tap"));
+    const auto most = std::ranges::max(tables(point).rows);
+    if (shape.size() != 1 || shape[0] < most || shape[0] < 1 ||
+        shape[0] > study.points.at(point).taps + 1)
+      throw Hdf5Error("tap is not as long as the columns that stand along it must be");
+    return shape[0];
   }
 
   const PointTables& tables(std::uint32_t point) {
@@ -74,8 +96,9 @@ class ResultsFile::Impl {
     if (cached_columns_point_ != point) {
       cached_columns_.clear();
       const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+      const Shape shape{stored_rows(observables, point), study.realizations};
       for (const ObservableLabel& label : column_labels(study.points.at(point)))
-        cached_columns_.push_back(read_numbers<double>(observables, label.name));
+        cached_columns_.push_back(read_numbers<double>(observables, label.name, &shape));
       cached_columns_point_ = point;
     }
     return cached_columns_;
@@ -99,16 +122,24 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   PointTables tables;
   tables.point = point;
   const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
-  tables.statuses = read_numbers<std::uint8_t>(observables, "status");
-  tables.rows = read_numbers<std::uint64_t>(observables, "rows");
+  const Shape each{study.realizations};
+  tables.statuses = read_numbers<std::uint8_t>(observables, "status", &each);
+  tables.rows = read_numbers<std::uint64_t>(observables, "rows", &each);
+  require_shape(observables, "reason", each);
   tables.reasons = read_texts(observables, "reason");
+  require_rows(tables, study.points.at(point));
   const Hdf5Handle timing = open_group(file, "timing/" + point_name(point));
-  tables.work = read_work(timing);
+  tables.work = read_work(timing, each);
+  const Shape taken{study.points.at(point).snapshots.taps.size(), study.realizations};
   const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
-    tables.coordination = read_numbers<double>(snapshots, "coordination");
-  if (exists(snapshots, "height_histogram"))
+    tables.coordination = read_numbers<double>(snapshots, "coordination", &taken);
+  if (exists(snapshots, "height_histogram")) {
     tables.height_histogram = read_numbers<double>(snapshots, "height_histogram");
+    const std::size_t n_cells = n_elements(taken);
+    if (n_cells == 0 || tables.height_histogram.size() % n_cells != 0)
+      throw Hdf5Error("height_histogram does not stand along taps and realizations");
+  }
   return tables;
 }
 
@@ -158,15 +189,12 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
 }
 
 std::vector<Series> ResultsFile::series(std::uint32_t point) const {
-  const StudyPoint& description = study().points.at(point);
-  const std::uint64_t n_taps = description.taps + 1;
   return naming_file(impl_->path, [&] {
     std::vector<Series> all;
-    for (const ObservableLabel& label : column_labels(description)) {
-      Series series{label, n_taps, study().realizations, {}};
-      series.values = impl_->has_points
-                          ? impl_->columns(point).at(all.size())
-                          : std::vector<double>(n_taps * study().realizations, std::nan(""));
+    for (const ObservableLabel& label : columns(point)) {
+      Series series{label, 0, study().realizations, {}};
+      if (impl_->has_points) series.values = impl_->columns(point).at(all.size());
+      series.n_taps = series.values.size() / study().realizations;
       all.push_back(std::move(series));
     }
     return all;
@@ -185,7 +213,12 @@ std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& c
   if (!impl_->has_points) return std::vector<double>(n_taps * n_realizations, std::nan(""));
   return naming_file(impl_->path, [&] {
     const Hdf5Handle group = open_group(impl_->file, "observables/" + point_name(point));
-    return read_block(group, column, {taps.first, chosen.first}, {n_taps, n_realizations});
+    const std::uint64_t rows = impl_->stored_rows(group, point);
+    require_shape(group, column, {rows, study().realizations});
+    const std::uint64_t stored = std::min(taps.end, rows) - std::min(taps.first, rows);
+    auto values = read_block(group, column, {taps.first, chosen.first}, {stored, n_realizations});
+    values.resize(n_taps * n_realizations, std::nan(""));
+    return values;
   });
 }
 
@@ -194,11 +227,13 @@ std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
   return naming_file(impl_->path, [&] {
     const Hdf5Handle group = open_group(impl_->file, "ensemble/" + point_name(point));
     std::vector<EnsembleSeries> all;
+    const Shape taps{
+        impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point)};
     for (const ObservableLabel& label : column_labels(study().points.at(point)))
-      all.push_back({label, read_numbers<double>(group, label.name + "_mean"),
-                     read_numbers<double>(group, label.name + "_sigma"),
-                     read_numbers<double>(group, label.name + "_error"),
-                     read_numbers<std::uint32_t>(group, label.name + "_count")});
+      all.push_back({label, read_numbers<double>(group, label.name + "_mean", &taps),
+                     read_numbers<double>(group, label.name + "_sigma", &taps),
+                     read_numbers<double>(group, label.name + "_error", &taps),
+                     read_numbers<std::uint32_t>(group, label.name + "_count", &taps)});
     return all;
   });
 }
@@ -209,9 +244,10 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
     const std::string folder = std::string(fitting_folder) + "/" + point_name(point);
     if (!exists(impl_->file, folder)) return all;
     const Hdf5Handle group = open_group(impl_->file, folder);
+    const Shape each{study().realizations};
     for (const FittingColumn& column : fitting_columns)
       all.push_back({{column.name, column.units, column.long_name, "jostle"},
-                     read_numbers<double>(group, column.name)});
+                     read_numbers<double>(group, column.name, &each)});
     return all;
   });
 }
@@ -220,7 +256,8 @@ std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
   if (!impl_->has_points) return {};
   return naming_file(impl_->path, [&] {
     std::map<std::uint64_t, SnapshotRecord> by_tap;
-    for (SnapshotRecord& frame : read_particles(impl_->file, particles_name(id)))
+    const std::uint32_t n_spheres = study().points.at(id.point).n_spheres;
+    for (SnapshotRecord& frame : read_particles(impl_->file, particles_name(id), n_spheres))
       by_tap[frame.tap] = std::move(frame);
     const PointTables& tables = impl_->tables(id.point);
     const auto& taps = study().points.at(id.point).snapshots.taps;
@@ -271,7 +308,9 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
     const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
     ByteReader reader(std::as_bytes(std::span(bytes)));
     try {
-      return get_realization_state(reader);
+      RealizationState state = get_realization_state(reader);
+      validate(state, study().points.at(id.point));
+      return state;
     } catch (const std::out_of_range&) {
       throw Hdf5Error("/" + name +
                       " was written by another version of jostle: resume with that one");

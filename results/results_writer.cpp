@@ -1,13 +1,11 @@
 #include "results/results_writer.hpp"
 
-#include <unistd.h>
-
 #include "results/hdf5_writable_file.hpp"
 #include "results/layout.hpp"
 #include "results/point_writer.hpp"
-#include "results/publish.hpp"
 #include "results/seal.hpp"
 #include "results/study_writer.hpp"
+#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {
@@ -44,15 +42,10 @@ void write_hdf5(const std::string& path, const FileContent& content) {
 }  // namespace
 
 void write_results(const std::string& path, const FileContent& content) {
-  const std::string temporary = temporary_name(path);
-  try {
-    naming_file(temporary, [&] { write_hdf5(temporary, content); });
-    seal(temporary);
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
-  publish_temporary(path);
+  TemporaryFile temporary(path);
+  naming_file(temporary.name(), [&] { write_hdf5(temporary.name(), content); });
+  seal(temporary.name());
+  temporary.publish();
 }
 
 }  // namespace jostle

@@ -40,9 +40,23 @@ std::optional<PartName> parse_name(const std::string& name) {
   return part;
 }
 
+/// What a folder's owner, and nobody else, chose: a link here could make us remove files anywhere.
+void require_own_folder(const std::string& folder) {
+  struct stat status;
+  if (::lstat(folder.c_str(), &status) != 0) {
+    if (errno == ENOENT) return;
+    fail_on_disk(folder, "open", errno);
+  }
+  if (!S_ISDIR(status.st_mode))
+    throw ResultsError(folder,
+                       "is no folder that jostle made, which needs this name: move it away, or "
+                       "name the results file otherwise");
+}
+
 /// The files of the folder that are parts, by name; none where there is no folder.
 std::map<std::string, PartName> list_parts(const std::string& results_path) {
   std::map<std::string, PartName> parts;
+  require_own_folder(parts_folder(results_path));
   std::error_code error;
   for (std::filesystem::directory_iterator entry(parts_folder(results_path), error), end;
        !error && entry != end; entry.increment(error)) {
@@ -81,8 +95,12 @@ bool parts_exist(const std::string& results_path) {
 
 void make_parts_folder(const std::string& results_path) {
   const std::string folder = parts_folder(results_path);
-  if (::mkdir(folder.c_str(), 0777) == 0) return sync_folder_of(folder);
+  struct stat status;
+  const bool is_private =
+      ::stat(results_path.c_str(), &status) == 0 && (status.st_mode & (S_IRGRP | S_IROTH)) == 0;
+  if (::mkdir(folder.c_str(), is_private ? 0700 : 0777) == 0) return sync_folder_of(folder);
   if (errno != EEXIST) fail_on_disk(folder, "create", errno);
+  require_own_folder(folder);
 }
 
 void remove_parts(const std::string& results_path) {

@@ -17,6 +17,7 @@
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
 #include "results/run_parts.hpp"
+#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {
@@ -50,7 +51,10 @@ bool same_points(const Study& stored, const Study& study) {
 class RunStore::Impl {
  public:
   Impl(const std::string& results_path, const Study& a_study, const Shard& a_shard, bool force)
-      : path(results_path), study(a_study), shard(a_shard), lock(results_path, force) {}
+      : path(end_of_links(results_path)), study(a_study), shard(a_shard), lock(path, force) {
+    require_replaceable_file(path);
+    remove_stale_temporaries(path);
+  }
 
   void start(const Provenance& provenance);
   void go_on(const Provenance& provenance);
@@ -95,7 +99,6 @@ void RunStore::Impl::go_on(const Provenance& provenance) {
   processes = file->provenance();
   processes.push_back(provenance);
   in_parts = verify_parts(path, run_id, file->study());
-  remove_file(temporary_name(path));
   // What lies there already is a part of the estimate: a chain of runs that fits at first fits to
   // its end.
   const std::uint64_t needed = disk_estimate(study, shard),

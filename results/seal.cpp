@@ -58,16 +58,17 @@ std::string line_for(const std::string& path, const Descriptor& file, std::uint6
 }  // namespace
 
 void seal(const std::string& path) {
-  const Descriptor file = open_or_fail(path, O_RDWR | O_APPEND);
+  const Descriptor file = open_or_fail(path, O_RDWR | O_APPEND | O_NOFOLLOW);
   const std::string line = line_for(path, file, size_of(path, file));
-  const ssize_t n = ::write(file.get(), line.data(), line.size());
-  if (n != static_cast<ssize_t>(line.size())) fail_on_disk(path, "write", n < 0 ? errno : ENOSPC);
+  write_all(path, file.get(), std::as_bytes(std::span(line)));
 }
 
 void verify_seal(const std::string& path) {
-  if (struct stat status; ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+  const Descriptor file = open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+  struct stat status;
+  if (::fstat(file.get(), &status) != 0) fail_on_disk(path, "read", errno);
+  if (!S_ISREG(status.st_mode))
     throw ResultsError(path, "not a file: results cannot be read from a folder, pipe or device");
-  const Descriptor file = open_or_fail(path, O_RDONLY);
   if (read_at(path, file, 0, hdf5_signature.size()) != hdf5_signature)
     throw ResultsError(path, "not an HDF5 file");
   const std::uint64_t size = size_of(path, file);

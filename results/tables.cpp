@@ -1,21 +1,22 @@
 #include "results/tables.hpp"
 
 #include <fmt/format.h>
-#include <hdf5_hl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <stdexcept>
 
 #include "results/axes.hpp"
+#include "results/hdf5_axes.hpp"
+#include "results/hdf5_policy.hpp"
 #include "results/hdf5_read.hpp"
 #include "results/hdf5_writable_file.hpp"
 #include "results/hdf5_write.hpp"
+#include "results/input_file.hpp"
 #include "results/lock.hpp"
 #include "results/publish.hpp"
 #include "results/seal.hpp"
+#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {
@@ -102,18 +103,20 @@ void write_table(hid_t parent, const Table& table, const Provenance& provenance)
   }
 }
 
-void copy_to_temporary(const std::string& path) {
-  std::error_code error;
-  std::filesystem::copy_file(path, temporary_name(path),
-                             std::filesystem::copy_options::overwrite_existing, error);
-  if (error) fail_on_disk(temporary_name(path), "write", error.value());
+void copy(const std::string& path, TemporaryFile& to) {
+  InputFile file(path);
+  std::vector<std::byte> piece(1u << 20);
+  for (std::size_t n = piece.size(); n == piece.size();) {
+    n = file.read(piece);
+    to.write(std::span(piece).first(n));
+  }
 }
 
 std::string text_attribute_or_empty(hid_t object, const char* name) {
   return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
 }
 
-Quantity read_quantity(hid_t group, const std::string& name) {
+Quantity read_quantity(hid_t group, const std::string& name, const std::vector<Member>& members) {
   const Hdf5Handle dataset = open_dataset(group, name);
   const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
   Quantity quantity{.name = name,
@@ -130,28 +133,40 @@ Quantity read_quantity(hid_t group, const std::string& name) {
     default:
       quantity.values = read_numbers<double>(group, name);
   }
-  if (checked(H5DSis_scale(dataset)) > 0) {
+  if (is_axis(dataset)) {
     quantity.axes = {name};
     return quantity;
   }
-  const auto keep = [](hid_t, unsigned, hid_t scale, void* names) -> herr_t {
-    char scale_name[1024];
-    if (H5DSget_scale_name(scale, scale_name, sizeof scale_name) <= 0) return -1;
-    static_cast<std::vector<std::string>*>(names)->push_back(scale_name);
-    return 0;
-  };
-  for (unsigned dimension = 0; dimension < shape_of(dataset).size(); ++dimension)
-    checked(H5DSiterate_scales(dataset, dimension, nullptr, keep, &quantity.axes));
+  for (const auto& along : axes_of(dataset)) {
+    for (const haddr_t address : along) {
+      const auto axis = std::ranges::find(members, address, &Member::address);
+      if (axis == members.end()) throw Hdf5Error(name + " has an axis outside its table");
+      quantity.axes.push_back(axis->name);
+    }
+  }
   return quantity;
+}
+
+/// Whoever takes a table relies on as many values as its axes give.
+void require_consistent(const Table& table) {
+  try {
+    for (const Quantity& axis : table.axes) shape_in(table, axis);
+    for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
+  } catch (const std::invalid_argument& error) {
+    throw Hdf5Error(error.what());
+  }
 }
 
 Table read_table(hid_t group, const std::string& name) {
   Table table{.name = name, .axes = {}, .quantities = {}, .notes = {}};
+  const std::vector<Member> members = members_of(group);
   for (const std::string& axis : read_texts_attribute(group, axes_attribute))
-    table.axes.push_back(read_quantity(group, axis));
+    table.axes.push_back(read_quantity(group, axis, members));
   for (const std::string& quantity : read_texts_attribute(group, quantities_attribute))
-    table.quantities.push_back(read_quantity(group, quantity));
+    table.quantities.push_back(read_quantity(group, quantity, members));
+  require_consistent(table);
   std::vector<std::string> notes;
+  require_few_attributes(group);
   const auto keep = [](hid_t, const char* attribute, const H5A_info_t*, void* all) -> herr_t {
     if (std::string_view(attribute).starts_with("note_"))
       static_cast<std::vector<std::string>*>(all)->push_back(attribute);
@@ -165,16 +180,13 @@ Table read_table(hid_t group, const std::string& name) {
 
 /// Calls visit(group, path) for every table below a group, in the order of their names.
 template <class Visit>
-void for_each_table(hid_t group, const std::string& path, const Visit& visit) {
+void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visit& visit) {
   if (checked(H5Aexists(group, quantities_attribute)) > 0) return visit(group, path);
-  std::vector<std::string> members;
-  const auto keep = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
-    static_cast<std::vector<std::string>*>(all)->push_back(name);
-    return 0;
-  };
-  checked(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &members));
-  for (const std::string& member : members)
-    for_each_table(open_group(group, member), path.empty() ? member : path + "/" + member, visit);
+  for (const Member& member : members_of(group)) {
+    const std::string below = path.empty() ? member.name : path + "/" + member.name;
+    walk.enter(member, below);
+    for_each_table(open_group(group, member.name), below, walk, visit);
+  }
 }
 
 Hdf5Handle open_verified(const std::string& path) {
@@ -185,31 +197,28 @@ Hdf5Handle open_verified(const std::string& path) {
 
 }  // namespace
 
-void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+void store_tables(const std::string& named, const std::string& group, std::span<const Table> tables,
                   const Provenance& provenance) {
   for (const Table& table : tables) {
     for (const Quantity& quantity : table.axes) shape_in(table, quantity);
     for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
   }
+  const std::string path = end_of_links(named);
   const RunLock lock(path, false);
+  remove_stale_temporaries(path);
   verify_seal(path);
-  copy_to_temporary(path);
-  const std::string temporary = temporary_name(path);
-  try {
-    naming_file(temporary, [&] {
-      WritableHdf5File file(temporary, WritableHdf5File::Begin::as_it_is);
-      {
-        const Hdf5Handle parent = group_at(file, group);
-        for (const Table& table : tables) write_table(parent, table, provenance);
-      }
-      file.close();
-    });
-    seal(temporary);
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
-  publish_temporary(path);
+  TemporaryFile temporary(path);
+  copy(path, temporary);
+  naming_file(temporary.name(), [&] {
+    WritableHdf5File file(temporary.name(), WritableHdf5File::Begin::as_it_is);
+    {
+      const Hdf5Handle parent = group_at(file, group);
+      for (const Table& table : tables) write_table(parent, table, provenance);
+    }
+    file.close();
+  });
+  seal(temporary.name());
+  temporary.publish();
 }
 
 std::vector<Table> read_tables(const std::string& path, const std::string& group) {
@@ -219,7 +228,10 @@ std::vector<Table> read_tables(const std::string& path, const std::string& group
     const auto read = [&](hid_t table, const std::string& name) {
       tables.push_back(read_table(table, name));
     };
-    if (exists(file, group)) for_each_table(open_group(file, group), "", read);
+    if (exists(file, group)) {
+      Walk walk;
+      for_each_table(open_group(file, group), "", walk, read);
+    }
     return tables;
   });
 }
@@ -229,8 +241,9 @@ std::vector<std::string> table_names(const std::string& path) {
     const Hdf5Handle file = open_verified(path);
     std::vector<std::string> names;
     const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
+    Walk walk;
     for (const std::string group : derived_groups)
-      if (exists(file, group)) for_each_table(open_group(file, group), group, name);
+      if (exists(file, group)) for_each_table(open_group(file, group), group, walk, name);
     std::ranges::sort(names);
     return names;
   });

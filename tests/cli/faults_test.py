@@ -164,7 +164,7 @@ class Folders(Faults):
             "$JOSTLE" info disk/tiny.h5 --digest
             ls disk""", *OPTIONS)
         self.assertEqual(ended.returncode, OK, ended.stderr)
-        self.assertIn("No space left on device; free some space, then resume", ended.stderr)
+        self.assertIn("No space left on device; free some space, or write elsewhere", ended.stderr)
         self.assertEqual(ended.stdout.split(), [straight, "tiny.h5"])
 
 

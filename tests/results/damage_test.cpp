@@ -81,12 +81,12 @@ TEST_CASE("a truncated, empty, foreign or missing file is refused") {
 
 TEST_CASE("a killed run goes on if nothing was damaged, with leavings of the kill beside it") {
   const KilledRun run;
-  std::ofstream(run.state + ".tmp") << "half a state";
-  std::ofstream(run.path + ".tmp") << "half a file";
+  std::ofstream(run.state + ".0a1b2c3d.tmp") << "half a state";
+  std::ofstream(run.path + ".0a1b2c3d.tmp") << "half a file";
   std::filesystem::copy(run.segment, segment_path(run.path, {0, 0}, 9));  // no state counts it
   CHECK_NOTHROW(run.resume());
-  CHECK_FALSE(std::filesystem::exists(run.state + ".tmp"));
-  CHECK_FALSE(std::filesystem::exists(run.path + ".tmp"));
+  CHECK_FALSE(std::filesystem::exists(run.state + ".0a1b2c3d.tmp"));
+  CHECK_FALSE(std::filesystem::exists(run.path + ".0a1b2c3d.tmp"));
   CHECK_FALSE(std::filesystem::exists(segment_path(run.path, {0, 0}, 9)));
 }
 

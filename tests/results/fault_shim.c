@@ -1,9 +1,13 @@
-/* A disk that fails on demand. Preloaded (LD_PRELOAD), it counts the calls of write, pwrite,
- * pwrite64, fsync, fdatasync, ftruncate, ftruncate64, rename, renameat, unlink and rmdir that touch
- * a path beginning with JOSTLE_FAULT_PATH (or a descriptor open on one), 1, 2, 3, ... in the order
- * in which they come, and acts on one of them:
+/* A disk that fails on demand. Preloaded (LD_PRELOAD), it counts one kind of calls, 1, 2, 3, ... in
+ * the order in which they come, and acts on one of them. Kinds, by JOSTLE_FAULT_OF:
  *
- *   JOSTLE_FAULT_PATH    prefix of the absolute paths that count; unset: nothing is done at all
+ *   changes  (default) write, writev, pwrite, pwrite64, fsync, fdatasync, ftruncate, ftruncate64,
+ *            rename, renameat, unlink and rmdir that touch a path beginning with JOSTLE_FAULT_PATH,
+ *            or a descriptor open on one
+ *   reads    read, readv, pread and pread64 of such a descriptor
+ *   output   write and writev to descriptor 1, whatever it is open on
+ *
+ *   JOSTLE_FAULT_PATH    prefix of the absolute paths that count; unset: none does
  *   JOSTLE_FAULT_COUNT   a file outside that prefix; at exit the number of calls so far is written
  *                        to it as text
  *   JOSTLE_FAULT_LOG     a file outside that prefix; a line "name path" is added to it for each call
@@ -14,6 +18,9 @@
  *                        pause        SIGSTOP before the call; SIGCONT goes on with it
  *                        no_space     the call and every later write or ftruncate fail with ENOSPC
  *                        fsync_fails  the call and every later fsync fail with EIO
+ *                        broken       the call alone fails with EIO
+ *                        interrupted  the call alone fails with EINTR, if it reads or writes
+ *                        shortened    half the bytes of a read or a write, one at least
  *
  * No action or no number: calls are only counted. */
 #define _GNU_SOURCE
@@ -26,13 +33,19 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 static atomic_long calls;
 
 static const char* prefix(void) { return getenv("JOSTLE_FAULT_PATH"); }
 
-static int counts_path(const char* path) {
+static int counts_kind(const char* kind) {
+  const char* chosen = getenv("JOSTLE_FAULT_OF");
+  return !strcmp(chosen ? chosen : "changes", kind);
+}
+
+static int is_below(const char* path) {
   const char* start = prefix();
   if (!start || !path) return 0;
   char absolute[8192];
@@ -54,9 +67,20 @@ static const char* path_of(int descriptor, char* path) {
   return path;
 }
 
-static int counts_descriptor(int descriptor) {
+static int counts_path(const char* path) { return counts_kind("changes") && is_below(path); }
+
+static int is_open_below(int descriptor) {
   char path[4096];
-  return prefix() && counts_path(path_of(descriptor, path));
+  return prefix() && is_below(path_of(descriptor, path));
+}
+static int counts_descriptor(int descriptor) {
+  return counts_kind("changes") && is_open_below(descriptor);
+}
+static int counts_write(int descriptor) {
+  return counts_descriptor(descriptor) || (descriptor == 1 && counts_kind("output"));
+}
+static int counts_read(int descriptor) {
+  return counts_kind("reads") && is_open_below(descriptor);
 }
 
 static void note(const char* name, const char* path) {
@@ -77,15 +101,16 @@ static void die(void) {
   for (;;) pause();
 }
 
-enum kind { writes, syncs, others };
+enum kind { writes, reads, syncs, others };
 struct verdict {
   int error;      /* errno to fail with, 0: go on */
   int kill_after; /* die once the call is done */
   int halve;      /* write half, then die */
+  int shorten;    /* read or write half */
 };
 
 static struct verdict judge(enum kind kind) {
-  struct verdict verdict = {0, 0, 0};
+  struct verdict verdict = {0, 0, 0, 0};
   const long number = atomic_fetch_add(&calls, 1) + 1;
   const char* at_text = getenv("JOSTLE_FAULT_AT");
   const char* action = getenv("JOSTLE_FAULT_ACTION");
@@ -94,6 +119,10 @@ static struct verdict judge(enum kind kind) {
   if (number >= at && kind == writes && !strcmp(action, "no_space")) verdict.error = ENOSPC;
   if (number >= at && kind == syncs && !strcmp(action, "fsync_fails")) verdict.error = EIO;
   if (number != at) return verdict;
+  const int moves_bytes = kind == writes || kind == reads;
+  if (!strcmp(action, "broken")) verdict.error = EIO;
+  if (!strcmp(action, "interrupted") && moves_bytes) verdict.error = EINTR;
+  if (!strcmp(action, "shortened") && moves_bytes) verdict.shorten = 1;
   if (!strcmp(action, "kill_before")) die();
   if (!strcmp(action, "pause")) syscall(SYS_kill, getpid(), SIGSTOP);
   if (!strcmp(action, "kill_after")) verdict.kill_after = 1;
@@ -102,6 +131,11 @@ static struct verdict judge(enum kind kind) {
     verdict.halve = 1;
   }
   return verdict;
+}
+
+static size_t shortened(struct verdict verdict, size_t n) {
+  if (verdict.halve) return n / 2;
+  return verdict.shorten && n > 1 ? n / 2 : n;
 }
 
 #define NEXT(name) (__extension__(__typeof__(&name))dlsym(RTLD_NEXT, #name))
@@ -117,21 +151,52 @@ static struct verdict judge(enum kind kind) {
   return result
 
 ssize_t write(int descriptor, const void* bytes, size_t n) {
-  if (!counts_descriptor(descriptor)) return NEXT(write)(descriptor, bytes, n);
+  if (!counts_write(descriptor)) return NEXT(write)(descriptor, bytes, n);
   note_descriptor("write", descriptor);
-  ACT(writes, NEXT(write)(descriptor, bytes, v.halve ? n / 2 : n));
+  ACT(writes, NEXT(write)(descriptor, bytes, shortened(v, n)));
+}
+
+/* A shorter one is the first of its pieces alone. */
+ssize_t writev(int descriptor, const struct iovec* pieces, int n) {
+  if (!counts_write(descriptor)) return NEXT(writev)(descriptor, pieces, n);
+  note_descriptor("writev", descriptor);
+  ACT(writes, NEXT(writev)(descriptor, pieces, v.shorten || v.halve ? 1 : n));
+}
+
+ssize_t read(int descriptor, void* bytes, size_t n) {
+  if (!counts_read(descriptor)) return NEXT(read)(descriptor, bytes, n);
+  note_descriptor("read", descriptor);
+  ACT(reads, NEXT(read)(descriptor, bytes, shortened(v, n)));
+}
+
+ssize_t readv(int descriptor, const struct iovec* pieces, int n) {
+  if (!counts_read(descriptor)) return NEXT(readv)(descriptor, pieces, n);
+  note_descriptor("readv", descriptor);
+  ACT(reads, NEXT(readv)(descriptor, pieces, v.shorten ? 1 : n));
+}
+
+ssize_t pread(int descriptor, void* bytes, size_t n, off_t offset) {
+  if (!counts_read(descriptor)) return NEXT(pread)(descriptor, bytes, n, offset);
+  note_descriptor("pread", descriptor);
+  ACT(reads, NEXT(pread)(descriptor, bytes, shortened(v, n), offset));
+}
+
+ssize_t pread64(int descriptor, void* bytes, size_t n, off64_t offset) {
+  if (!counts_read(descriptor)) return NEXT(pread64)(descriptor, bytes, n, offset);
+  note_descriptor("pread64", descriptor);
+  ACT(reads, NEXT(pread64)(descriptor, bytes, shortened(v, n), offset));
 }
 
 ssize_t pwrite(int descriptor, const void* bytes, size_t n, off_t offset) {
   if (!counts_descriptor(descriptor)) return NEXT(pwrite)(descriptor, bytes, n, offset);
   note_descriptor("pwrite", descriptor);
-  ACT(writes, NEXT(pwrite)(descriptor, bytes, v.halve ? n / 2 : n, offset));
+  ACT(writes, NEXT(pwrite)(descriptor, bytes, shortened(v, n), offset));
 }
 
 ssize_t pwrite64(int descriptor, const void* bytes, size_t n, off64_t offset) {
   if (!counts_descriptor(descriptor)) return NEXT(pwrite64)(descriptor, bytes, n, offset);
   note_descriptor("pwrite64", descriptor);
-  ACT(writes, NEXT(pwrite64)(descriptor, bytes, v.halve ? n / 2 : n, offset));
+  ACT(writes, NEXT(pwrite64)(descriptor, bytes, shortened(v, n), offset));
 }
 
 int ftruncate(int descriptor, off_t size) {

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
+#include "results/results_writer.hpp"
+#include "runs.hpp"
+#include "temporary_folder.hpp"
+
+// What files of many points and realizations cost, and files of long plans of which little is done:
+// in proportion to what is in them. Ratios of processor time, the least of three, with room for a
+// machine that does other work: in proportion is 4, its square 16.
+using namespace jostle;
+
+namespace {
+
+double processor_seconds(const std::function<void()>& work) {
+  const auto now = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const double began = now();
+    work();
+    least = std::min(least, now() - began);
+  }
+  return least;
+}
+
+constexpr std::uint32_t times = 4;
+constexpr double most_growth = 2.5 * 2.5;  // of two doublings
+
+/// How much longer each step takes with `large` than with `small`.
+void check_growth(const char* what, const synthetic::Sizes& small, const synthetic::Sizes& large) {
+  const TemporaryFolder folder;
+  const auto path = [&](const synthetic::Sizes& sizes) {
+    return folder / fmt::format("{}_{}_{}.h5", sizes.points, sizes.realizations, sizes.taps);
+  };
+  const auto written = [&](const synthetic::Sizes& sizes) {
+    const Study study = synthetic::study(sizes);
+    std::filesystem::remove(path(sizes));
+    const auto store = RunStore::create(path(sizes), study, {}, synthetic::provenance());
+    synthetic::run_pending(*store, study);
+    store->finish();
+  };
+  const auto opened = [&](const synthetic::Sizes& sizes) {
+    const ResultsFile file(path(sizes));
+    REQUIRE(file.realizations().size() == std::size_t{sizes.points} * sizes.realizations);
+  };
+  const auto digested = [&](const synthetic::Sizes& sizes) { digest_of(path(sizes)); };
+  const std::pair<const char*, std::function<void(const synthetic::Sizes&)>> steps[] = {
+      {"run and fold", written}, {"open", opened}, {"digest", digested}};
+  for (const auto& [step, work] : steps) {
+    const double one = processor_seconds([&, &run = work] { run(small); });
+    const double more = processor_seconds([&, &run = work] { run(large); });
+    fmt::print("{} times the {}: {:12} {:7.1f} ms, {:7.1f} ms, {:.2f} times\n", times, what, step,
+               1e3 * one, 1e3 * more, more / one);
+    CAPTURE(what, step, one, more);
+    CHECK(more < most_growth * one);
+  }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "writing, opening and digesting take time in proportion to points, realizations and taps") {
+  SECTION("points") {
+    check_growth("points", {.points = 40, .realizations = 1},
+                 {.points = times * 40, .realizations = 1});
+  }
+  SECTION("realizations") {
+    check_growth("realizations", {.points = 1, .realizations = 60},
+                 {.points = 1, .realizations = times * 60});
+  }
+  SECTION("taps") {
+    check_growth("taps", {.points = 1, .realizations = 1, .taps = 5000},
+                 {.points = 1, .realizations = 1, .taps = times * 5000});
+  }
+}
+
+TEST_CASE("a run that is stopped early stores what is there, however much was planned") {
+  std::uintmax_t bytes = 0;
+  for (const std::uint64_t taps : {1'000ULL, 1'000'000ULL, 100'000'000'000ULL}) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.h5";
+    const Study study = synthetic::study({.points = 2, .realizations = 2, .taps = taps});
+    const std::size_t n_columns = study.points[0].observables.size() + n_relaxation_columns;
+    const auto record = [&](RealizationId id) {
+      RealizationRecord one;
+      one.status = RealizationStatus::running;
+      one.rows.assign((id.realization == 0 ? 7 : 3) * n_columns, 0.5);
+      return one;
+    };
+    write_results(path, {study, {}, {synthetic::provenance()}, "run", record});
+    const ResultsFile file(path);
+    CHECK(file.state() == RunState::interrupted);
+    CHECK(file.series(0).at(0).n_taps == 7);
+    CHECK(file.ensemble(0).at(0).mean.size() == 7);
+    const auto values = file.block(0, file.columns(0).at(0).name, {2, 9}, {0, 2});
+    REQUIRE(values.size() == 14);
+    CHECK(values[0] == 0.5);
+    CHECK(values[1] == 0.5);
+    CHECK(std::isnan(values[3]));   // the second realization has come to tap 2
+    CHECK(values[8] == 0.5);        // the first to tap 6
+    CHECK(std::isnan(values[10]));  // no column has a tap 7
+    CHECK(file.record({0, 0}).rows.size() == 7 * n_columns);
+    CHECK(digest_of(path).size() == 64);
+    if (bytes == 0) bytes = std::filesystem::file_size(path);
+    CHECK(std::filesystem::file_size(path) == bytes);
+  }
+}
