@@ -16,6 +16,7 @@
 #include "cli/provenance.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
 #include "config/json_text.hpp"
@@ -78,14 +79,14 @@ class Output {
   explicit Output(const AnalyseArguments& arguments) : arguments_(arguments) {}
 
   void show(const std::vector<Table>& tables, const std::string& input) {
-    if (arguments_.inputs.size() > 1 && !arguments_.json) fmt::print("{}\n\n", input);
+    if (arguments_.inputs.size() > 1 && !arguments_.json) print(fmt::format("{}\n\n", input));
     for (const Table& table : tables) {
       any_ = any_ || is_made(table);
       if (arguments_.json) {
         listed_.push_back(table_json(table));
         listed_.back()["file"] = input;
       } else {
-        fmt::print("{}\n", table_text(table, Detail::full));
+        print(fmt::format("{}\n", table_text(table, Detail::full)));
       }
       if (!arguments_.csv.empty()) csv_ += fmt::format("# {}\n{}", input, table_csv(table));
     }
@@ -95,7 +96,7 @@ class Output {
   int end(const Provenance& by) const {
     if (arguments_.json) {
       const nlohmann::json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
-      std::fputs((object.dump(2) + "\n").c_str(), stdout);
+      print_json(object);
     }
     if (!arguments_.csv.empty()) write_text(arguments_.csv, csv_);
     return any_ ? exit_ok : exit_bad_input;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "cli/point_scenes.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
 #include "config/grids.hpp"
@@ -162,7 +162,7 @@ void make_scene_analyses(const std::string& results, int threads, bool quiet) {
     }
   }
   for (const Table& table : tables) {
-    if (!quiet) std::fputs(table_text(table, Detail::brief).insert(0, 1, '\n').c_str(), stdout);
+    if (!quiet) print(table_text(table, Detail::brief).insert(0, 1, '\n'));
   }
   store_tables(results, "analysis", tables, provenance_of_this_run(fmt::to_string(threads)));
 }

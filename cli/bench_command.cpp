@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include "bench/rates.hpp"
 #include "bench/standard_states.hpp"
 #include "cli/commands.hpp"
+#include "cli/standard_streams.hpp"
 
 namespace jostle {
 namespace {
@@ -48,12 +48,11 @@ bench::Rate rate_of(const bench::Case& made) {
 }
 
 void print_line(std::string_view state, std::size_t n_spheres, const bench::Rate& rate) {
-  fmt::print(
+  print(fmt::format(
       "{:<11} {} spheres {:7.1f} million trials/s, acceptance {:.4f}, {:.2f} distance tests a "
       "trial, {:.1f} list renewals a sweep, {:.0f} bytes a sphere\n",
       state, n_spheres, rate.trials_per_second() / 1e6, rate.acceptance,
-      rate.distance_tests_per_trial, rate.list_renewals_per_sweep, rate.bytes_per_sphere);
-  std::fflush(stdout);
+      rate.distance_tests_per_trial, rate.list_renewals_per_sweep, rate.bytes_per_sphere));
 }
 
 Json as_json(std::string_view state, std::size_t n_spheres, const bench::Rate& rate) {
@@ -68,7 +67,7 @@ Json as_json(std::string_view state, std::size_t n_spheres, const bench::Rate& r
 
 void run_bench(const BenchArguments& arguments) {
   const std::string set(name(best_instruction_set()));
-  if (!arguments.json) fmt::print("instruction set {}, one core, processor time\n", set);
+  if (!arguments.json) print(fmt::format("instruction set {}, one core, processor time\n", set));
   Json cases = Json::array();
   for (const bench::StandardState state : bench::all_standard_states) {
     if (!wanted(arguments, bench::name(state))) continue;
@@ -82,7 +81,7 @@ void run_bench(const BenchArguments& arguments) {
     }
   }
   if (arguments.json) {
-    fmt::print("{}\n", Json{{"instruction_set", set}, {"cases", cases}}.dump(2));
+    print_json(Json{{"instruction_set", set}, {"cases", cases}});
   }
 }
 

@@ -13,6 +13,7 @@
 #include "cli/pilot.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/scene_warnings.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
 #include "config/json_text.hpp"
 #include "ensemble/counted.hpp"
@@ -39,18 +40,19 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
 void print_size(const LoadedScene& loaded, const Study& study) {
   std::uint64_t taps = 0;
   for (const auto& point : study.points) taps += point.taps * study.realizations;
-  fmt::print("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
-             counted(study.realizations, "realization"), counted(loaded.scene.n_spheres, "sphere"),
-             counted(taps, "tap"));
+  print(fmt::format("size\n  {} x {}, {}, {} in all\n",
+                    counted(study.points.size(), "sweep point"),
+                    counted(study.realizations, "realization"),
+                    counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
   for (const auto& point : study.points) {
-    if (!point.label.empty()) fmt::print("  {}\n", point.label);
+    if (!point.label.empty()) print(fmt::format("  {}\n", point.label));
   }
   if (!loaded.scene.until.targets.empty()) {
-    fmt::print("  at first: realizations are added until they are enough, at most {}\n",
-               loaded.scene.until.at_most);
+    print(fmt::format("  at first: realizations are added until they are enough, at most {}\n",
+                      loaded.scene.until.at_most));
   }
-  fmt::print("  disk: at most {}, parts and results together\n",
-             format_bytes(static_cast<double>(disk_estimate(study, Shard{}))));
+  print(fmt::format("  disk: at most {}, parts and results together\n",
+                    format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
 }
 
 void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
@@ -61,16 +63,16 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   if (estimate.n_strengths > 1) {
     pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
   }
-  fmt::print("  {}{}{}, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a realization\n",
-             plan.label, plan.label.empty() ? "" : ": ", pilot,
-             format_count(static_cast<double>(estimate.trials)),
-             format_count(estimate.trials_per_second), estimate.settled ? "about" : "at least",
-             estimate.sweeps_per_tap, estimate.settled ? "about" : "at least",
-             format_duration(estimate.realization));
+  print(fmt::format(
+      "  {}{}{}, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a realization\n",
+      plan.label, plan.label.empty() ? "" : ": ", pilot,
+      format_count(static_cast<double>(estimate.trials)), format_count(estimate.trials_per_second),
+      estimate.settled ? "about" : "at least", estimate.sweeps_per_tap,
+      estimate.settled ? "about" : "at least", format_duration(estimate.realization)));
 }
 
 void print_pilot(const LoadedScene& loaded, int cpus) {
-  fmt::print("cost, extrapolated from the first taps of a pilot\n");
+  print("cost, extrapolated from the first taps of a pilot\n");
   const auto points = pilot_points(loaded.plans.size());
   Seconds mean{0};
   std::size_t bytes = 0;
@@ -86,21 +88,21 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t rounds = (realizations + threads - 1) / threads;
   const char* const about = settled ? "about" : "at least";
-  fmt::print("  time: {} {} on {}, {:.3g} core-hours\n", about,
-             format_duration(mean * static_cast<double>(rounds)), counted(threads, "thread"),
-             mean.count() * static_cast<double>(realizations) / 3600);
-  fmt::print("  memory: about {}\n",
-             format_bytes(process_bytes + static_cast<double>(threads * bytes)));
+  print(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
+                    format_duration(mean * static_cast<double>(rounds)),
+                    counted(threads, "thread"),
+                    mean.count() * static_cast<double>(realizations) / 3600));
+  print(fmt::format("  memory: about {}\n",
+                    format_bytes(process_bytes + static_cast<double>(threads * bytes))));
 }
 
 void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
-  fmt::print("{}\n\n", loaded.resolved);
-  fmt::print("{}", effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
+  print(fmt::format("{}\n\n", loaded.resolved));
+  print(effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
   print_size(loaded, study_of(loaded));
   const std::vector<std::string> warnings = scene_warnings(loaded);
-  if (!warnings.empty()) fmt::print("warnings\n  {}\n", joined(warnings, "\n  "));
-  std::fflush(stdout);
+  if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));
   if (arguments.no_pilot) return;
   try {
     print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());

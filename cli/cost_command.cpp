@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -19,7 +18,6 @@
 #include "cli/provenance.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/table_output.hpp"
@@ -189,7 +187,7 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
   });
   const std::optional<double> target =
       arguments.target > 0 ? std::optional(arguments.target) : std::nullopt;
-  std::fputs(cost_text(study, *cost, scene.realizations, target).c_str(), stdout);
+  print(cost_text(study, *cost, scene.realizations, target));
   const std::vector<Table> tables = study.tables(scene.realizations);
   if (!arguments.csv.empty()) {
     std::string csv;
@@ -200,7 +198,7 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
     const std::string image =
         std::filesystem::path(arguments.figure).replace_extension(".svg").string();
     write_text(arguments.figure, cost_figure(study, *cost, scene.realizations, image));
-    std::fputs(fmt::format("gnuplot {} draws {}\n", arguments.figure, image).c_str(), stdout);
+    print(fmt::format("gnuplot {} draws {}\n", arguments.figure, image));
   }
   keep_tables(output, "analysis", tables, by);
 }

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "cli/scene_file.hpp"
+#include "results/input_file.hpp"
+#include "results/printable.hpp"
 
 namespace jostle {
 
@@ -83,12 +84,11 @@ std::string wanted(std::size_t columns, CurveColumns kind) {
 }  // namespace
 
 Curve read_curve(const std::string& path, CurveColumns kind) {
-  std::ifstream file(path);
-  if (!file) throw BadInput(fmt::format("{}: cannot be read", path));
+  InputFile file(path, Pipes::allowed);
   Curve curve;
   std::size_t columns = 0, line_number = 0;
   bool named = false;
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; file.next_line(line);) {
     ++line_number;
     const std::vector<std::string> words = cells(line);
     if (words.empty() || words.front().starts_with('#')) continue;
@@ -100,7 +100,7 @@ Curve read_curve(const std::string& path, CurveColumns kind) {
     if (!values || !fits(values->size(), columns, kind)) {
       throw BadInput(
           fmt::format("{}: line {} is not {}, with decimal points and one kind of divider (\"{}\")",
-                      path, line_number, wanted(columns, kind), line));
+                      path, line_number, wanted(columns, kind), printable(line)));
     }
     columns = values->size();
     curve.t.push_back((*values)[0]);

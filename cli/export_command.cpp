@@ -7,13 +7,14 @@
 
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
+#include "cli/keep_tables.hpp"
 #include "cli/output_file.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
 #include "ensemble/counted.hpp"
 #include "results/export.hpp"
-#include "results/publish.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {
@@ -96,9 +97,9 @@ int export_packings(const ExportArguments& arguments) {
   }
   std::vector<std::uint64_t> taps;
   for (const ExportedFrame& frame : found.frames) taps.push_back(frame.tap);
-  for (const ExportedFile& file : files) publish(file.path, std::as_bytes(std::span(file.text)));
-  fmt::print("{}: {} {}, {}\n", files.back().path, found.source, list_of(taps),
-             counted(found.frames.front().packing.centres.size(), "sphere"));
+  for (const ExportedFile& file : files) write_text(file.path, file.text);
+  print(fmt::format("{}: {} {}, {}\n", files.back().path, found.source, list_of(taps),
+                    counted(found.frames.front().packing.centres.size(), "sphere")));
   return exit_ok;
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "cli/provenance.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "config/json_text.hpp"
 #include "config/suggestion.hpp"
 #include "fitting/models.hpp"
@@ -145,7 +145,7 @@ int run_fits(const FitArguments& arguments) {
     if (arguments.json) {
       curves.push_back(source_json(source, outcomes));
     } else {
-      std::fputs(fits_text(source, outcomes, detail).c_str(), stdout);
+      print(fits_text(source, outcomes, detail));
     }
     if (source.point) {
       const auto made = fit_tables(source, outcomes, manner);
@@ -156,7 +156,7 @@ int run_fits(const FitArguments& arguments) {
   if (arguments.json) {
     const nlohmann::json object = {
         {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
-    std::fputs((object.dump(2) + "\n").c_str(), stdout);
+    print_json(object);
   }
   if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
     keep_tables(arguments.input, "fits", tables, by);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cli/provenance.hpp"
+#include "cli/standard_streams.hpp"
 #include "config/scene.hpp"
 #include "fitting/report.hpp"
 #include "results/layout.hpp"
@@ -226,7 +227,7 @@ void make_scene_fits(const std::string& results, int threads, bool quiet) {
                                       : std::numeric_limits<double>::infinity()};
     for (const FitSource& source : results_curves(results, request.observable, "", range)) {
       const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
-      if (!quiet) std::fputs(fits_text(source, outcomes).insert(0, 1, '\n').c_str(), stdout);
+      if (!quiet) print(fits_text(source, outcomes).insert(0, 1, '\n'));
       const auto made = fit_tables(source, outcomes, manner);
       tables.insert(tables.end(), made.begin(), made.end());
     }

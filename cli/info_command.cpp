@@ -9,6 +9,7 @@
 #include "cli/effects.hpp"
 #include "cli/report.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
 #include "results/error.hpp"
 #include "results/live_run.hpp"
@@ -62,12 +63,18 @@ Json realization_json(const RealizationSummary& one) {
   return json;
 }
 
+/// A value of the sweep as the scene has it.
+Json json_or_text(const std::string& value) {
+  Json json = Json::parse(value, nullptr, false);
+  return json.is_discarded() ? Json(value) : json;
+}
+
 Json info_json(const ResultsFile& file, const RunStatus& status) {
   const Study& study = file.study();
   Json points = Json::array(), realizations = Json::array();
   for (const auto& point : study.points) {
     Json values = Json::object();
-    for (const auto& [pointer, value] : point.sweep_values) values[pointer] = Json::parse(value);
+    for (const auto& [pointer, value] : point.sweep_values) values[pointer] = json_or_text(value);
     points.push_back({{"label", point.label},
                       {"values", values},
                       {"spheres", point.n_spheres},
@@ -148,15 +155,21 @@ struct InfoArguments {
 
 void info(const InfoArguments& arguments) {
   if (arguments.digest) {
-    fmt::print("{}\n", digest_of(arguments.file));
+    print(fmt::format("{}\n", digest_of(arguments.file)));
     return;
   }
   const ResultsFile file(arguments.file);
   const RunStatus status = run_status(arguments.file);
-  if (arguments.json) {
-    fmt::print("{}\n", info_json(file, status).dump(2));
-  } else {
-    fmt::print("{}", info_text(file, status));
+  try {
+    if (arguments.json) {
+      print_json(info_json(file, status));
+    } else {
+      print(info_text(file, status));
+    }
+  } catch (const Json::exception&) {
+    throw ResultsError(arguments.file,
+                       "its scene (/scene/resolved) is not as jostle writes it; restore the file "
+                       "from a copy");
   }
 }
 

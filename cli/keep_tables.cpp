@@ -1,11 +1,15 @@
 #include "cli/keep_tables.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
-#include <fstream>
+#include <cerrno>
 
-#include "cli/standard_error.hpp"
+#include "cli/output_file.hpp"
+#include "cli/standard_streams.hpp"
+#include "results/descriptor.hpp"
 #include "results/error.hpp"
+#include "results/publish.hpp"
 #include "results/tables.hpp"
 
 namespace jostle {
@@ -21,10 +25,11 @@ void keep_tables(const std::string& path, const std::string& group, std::span<co
 }
 
 void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw ResultsError(path, "cannot be written");
+  const auto bytes = std::as_bytes(std::span(text));
+  if (!is_stream(path)) return publish(end_of_links(path), bytes);
+  const Descriptor stream(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY));
+  if (!stream) fail_on_disk(path, "open", errno);
+  write_all(path, stream.get(), bytes);
 }
 
 nlohmann::json provenance_json(const Provenance& by) {

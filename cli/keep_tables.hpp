@@ -14,7 +14,7 @@ namespace jostle {
 void keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                  const Provenance& by);
 
-/// Throws ResultsError.
+/// Puts the text into a file, whole or not at all, or into a pipe or a device. Throws ResultsError.
 void write_text(const std::string& path, const std::string& text);
 
 /// Who made what is printed.

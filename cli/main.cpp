@@ -2,17 +2,18 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "cli/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/version.hpp"
+#include "results/printable.hpp"
 
 namespace jostle {
 namespace {
@@ -57,9 +58,25 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(app);
     if (!unknown.empty()) throw BadInput(unknown);
-    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+    std::ostringstream asked_for, fault;  // a help or the version; what is wrong
+    const int refused = app.exit(error, asked_for, fault);
+    print(asked_for.str());
+    print_to_standard_error(fault.str());
+    return refused == 0 ? exit_ok : exit_bad_input;
   }
   return code;
+}
+
+void say(const std::string& what) {
+  constexpr std::size_t longest_line = 2000;
+  print_to_standard_error(fmt::format("jostle: {}\n", printable(what, longest_line)));
+}
+
+/// Without the library's number: "[json.exception.type_error.302] type must be string, ...".
+std::string json_reason(const nlohmann::json::exception& error) {
+  const std::string what = error.what();
+  const auto bracket = what.find("] ");
+  return bracket == std::string::npos ? what : what.substr(bracket + 2);
 }
 
 /// Every error ends here, and says on stderr what is wrong.
@@ -69,17 +86,18 @@ int run_program(int argc, char** argv) {
     log->set_pattern("%T jostle: %v");
     spdlog::set_default_logger(log);
     const int code = parse_and_run(argc, argv);
-    if (std::fflush(stdout) == 0 || code != exit_ok) return code;
-    print_to_standard_error("jostle: cannot write to standard output\n");
-    return exit_broken_surroundings;
+    return code == exit_ok && output_is_lost() ? exit_broken_surroundings : code;
   } catch (const BadInput& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", printable(error.what())));
+    say(error.what());
     return exit_bad_input;
   } catch (const std::invalid_argument& error) {  // an environment variable, for one
-    print_to_standard_error(fmt::format("jostle: {}\n", printable(error.what())));
+    say(error.what());
     return exit_bad_input;
+  } catch (const nlohmann::json::exception& error) {
+    say(fmt::format("a stored scene is not as jostle writes it: {}", json_reason(error)));
+    return exit_broken_surroundings;
   } catch (const std::exception& error) {
-    print_to_standard_error(fmt::format("jostle: {}\n", printable(failure_text(error))));
+    say(failure_text(error));
     return exit_broken_surroundings;
   }
 }

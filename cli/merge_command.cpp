@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -110,10 +109,8 @@ void add_merge(CLI::App& app, int& code) {
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"), arguments->force,
                 joined_study(arguments->inputs));
     outlive_readers();
-    std::fputs(
-        fmt::format("{}: {} merged\n", arguments->output, counted(arguments->inputs.size(), "file"))
-            .c_str(),
-        stdout);
+    print(fmt::format("{}: {} merged\n", arguments->output,
+                      counted(arguments->inputs.size(), "file")));
     make_scene_tables(arguments->output, available_cpus(), false);
     code = exit_ok;
   });

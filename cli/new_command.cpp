@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <regex>
 #include <string>
@@ -13,10 +10,11 @@
 #include "cli/commands.hpp"
 #include "cli/keep_tables.hpp"
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "config/json_text.hpp"
 #include "config/shipped_scenes.hpp"
 #include "config/suggestion.hpp"
+#include "results/input_file.hpp"
 
 namespace jostle {
 namespace {
@@ -50,15 +48,10 @@ std::string with_string(const std::string& text, const char* key, const std::str
                             std::regex_constants::format_first_only);
 }
 
-std::string read_if_there(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// The schema beside the scene, which editors complete its keys by.
 void write_schema(const fs::path& path, bool force) {
   if (fs::exists(path) && !force) {
-    if (read_if_there(path) == scene_schema()) return;
+    if (read_text_file(path.string()) == scene_schema()) return;
     print_to_standard_error(fmt::format(
         "jostle: {} is not the schema of this version, and is kept; --force replaces it\n",
         path.string()));
@@ -85,9 +78,9 @@ int write_new_scene(const NewArguments& arguments) {
   }
   write_text(path.string(), text);
   write_schema(path.parent_path() / schema_name, arguments.force);
-  fmt::print(
+  print(fmt::format(
       "{0}: a copy of {1}; jostle check {0} says what it costs, jostle run {0} writes {2}.h5\n",
-      path.string(), arguments.from, parsed.scene->name);
+      path.string(), arguments.from, parsed.scene->name));
   return exit_ok;
 }
 

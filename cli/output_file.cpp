@@ -7,6 +7,7 @@
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "results/error.hpp"
+#include "results/publish.hpp"
 
 namespace jostle {
 namespace {
@@ -29,6 +30,13 @@ void require_folder(const std::string& output) {
 
 }  // namespace
 
+bool is_stream(const std::string& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) ||
+         is_descriptor(path);
+}
+
 void require_replaceable(const std::string& output, const std::string& example) {
   std::error_code ignored;
   require_folder(output);
@@ -37,12 +45,13 @@ void require_replaceable(const std::string& output, const std::string& example) 
     throw BadInput(fmt::format("{} is a folder: name a file in it with -o, as {}", output,
                                (fs::path(output) / example).string()));
   }
-  if ((fs::exists(status) && !fs::is_regular_file(status)) || is_descriptor(output)) {
+  if (is_stream(output)) {
     throw BadInput(
         fmt::format("{} is a pipe, a device or a descriptor: what is written replaces a file "
                     "whole. Name one with -o, as {}",
                     output, example));
   }
+  require_replaceable_file(output);
 }
 
 void require_not_read(const std::string& option, const std::string& output,
@@ -75,7 +84,8 @@ void require_text_output(const std::string& option, const std::string& output,
   if (fs::is_directory(output, ignored)) {
     throw BadInput(fmt::format("{} {}: it is a folder. Name a file in it.", option, output));
   }
-  if (force || !fs::is_regular_file(output, ignored) || is_descriptor(output)) return;
+  if (is_stream(output) || !fs::exists(output, ignored)) return;
+  if (force) return require_replaceable_file(output);
   throw BadInput(fmt::format(
       "{} exists and is kept. Write elsewhere with {} FILE, or replace it with --force.", output,
       option));

@@ -7,6 +7,10 @@
 // such folder, and is called before any work is done.
 namespace jostle {
 
+/// Whether a path is a pipe, a device, or a descriptor such as /dev/stdout: text can go there as it
+/// comes, but no file in its place.
+bool is_stream(const std::string& path);
+
 /// Refuses what no file can replace: a folder, a pipe, a device, a descriptor such as /dev/stdout.
 /// `example` is a file's name to choose instead.
 void require_replaceable(const std::string& output, const std::string& example);

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "cli/durations.hpp"
-#include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
 
 namespace jostle {
@@ -48,7 +48,7 @@ ProgressDisplay::~ProgressDisplay() {
   if (!clock_.joinable()) return;
   clock_.request_stop();
   clock_.join();
-  if (style_ == ProgressStyle::live) print_to_standard_error(clear_line);
+  if (style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
 }
 
 void ProgressDisplay::show_until(std::stop_token token) {
@@ -64,7 +64,7 @@ void ProgressDisplay::show_until(std::stop_token token) {
     const std::chrono::duration<double> since = now - last_time;
     const double rate = static_cast<double>(trials - last_trials) / since.count();
     const std::string line = progress_line(progress_, ahead_, rate, now - began);
-    print_to_standard_error(live ? clear_line + line : "jostle: " + line + "\n");
+    print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
     last_time = now;
     last_trials = trials;
   }

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
+#include "results/input_file.hpp"
 #include "results/live_run.hpp"
 
 namespace jostle {
@@ -26,10 +27,11 @@ bool has_value(const StudyPoint& point, const std::string& wanted) {
 }  // namespace
 
 bool is_results_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  char signature[8] = {};
-  file.read(signature, sizeof signature);
-  return file && std::memcmp(signature, "\x89HDF\r\n\x1a\n", sizeof signature) == 0;
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;  // and nothing is taken out of a pipe
+  std::array<std::byte, 8> signature{};
+  InputFile(path).read(signature);
+  return std::memcmp(signature.data(), "\x89HDF\r\n\x1a\n", signature.size()) == 0;
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -23,7 +22,6 @@
 #include "cli/scene_file.hpp"
 #include "cli/scene_tables.hpp"
 #include "cli/scene_warnings.hpp"
-#include "cli/standard_error.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/text_table.hpp"
@@ -226,7 +224,7 @@ bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, Op
   while (!compute(arguments, loaded, run, threads, work)) {
     if (until.targets.empty()) return false;
     const EnoughStatus status = enough_status(ResultsFile(run.output), until);
-    if (!arguments.quiet) std::fputs(enough_line(status).c_str(), stdout);
+    if (!arguments.quiet) print(enough_line(status));
     if (status.next == status.realizations) return false;
     run.study.realizations = status.next;
     run.taps_recorded = 0;
@@ -240,7 +238,7 @@ void print_results(const OpenedRun& run, const ProcessWork& work, int threads) {
   const std::string text =
       report(file) +
       process_line(work.progress, std::chrono::steady_clock::now() - work.began, threads);
-  std::fputs(text.c_str(), stdout);  // throws nothing: what is stored decides the exit code
+  print(text);
 }
 
 /// Derived tables do not outlive the data they were made of: names those that are gone.

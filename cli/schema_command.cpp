@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include "cli/commands.hpp"
+#include "cli/standard_streams.hpp"
 #include "config/scene.hpp"
 
 namespace jostle {
@@ -12,8 +11,8 @@ void add_schema(CLI::App& app, int& code) {
       "  jostle schema > scene.schema.json\n"
       "and \"$schema\": \"scene.schema.json\" in a scene lets an editor complete and check it.");
   command->callback([&code] {
-    fmt::print("{}", scene_schema());
-    if (!scene_schema().ends_with('\n')) fmt::print("\n");
+    print_exactly(scene_schema());
+    if (!scene_schema().ends_with('\n')) print_exactly("\n");
     code = exit_ok;
   });
 }

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -10,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/self_checks.hpp"
+#include "cli/standard_streams.hpp"
 
 namespace jostle {
 namespace {
@@ -41,10 +41,10 @@ class ScratchFolder {
 bool print_check(const SelfCheck& check) {
   try {
     const std::string found = check.run();
-    fmt::print("ok      {}: {}\n", check.name, found);
+    print(fmt::format("ok      {}: {}\n", check.name, found));
     return true;
   } catch (const std::exception& failure) {
-    fmt::print("FAILED  {}: {}; {}\n", check.name, failure.what(), check.remedy);
+    print(fmt::format("FAILED  {}: {}; {}\n", check.name, failure.what(), check.remedy));
     return false;
   }
 }
@@ -55,7 +55,6 @@ int selftest(const std::string& folder) {
   int code = exit_ok;
   for (const SelfCheck& check : self_checks(scratch.path())) {
     if (!print_check(check)) code = exit_broken_surroundings;
-    std::fflush(stdout);
   }
   return code;
 }

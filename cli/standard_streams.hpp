@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
+// What leaves the program on its standard streams: all of it goes through here.
 namespace jostle {
 
 /// First thing in the program. A standard stream that the caller closed is opened, so that no
@@ -9,5 +13,30 @@ void guard_files();
 
 /// From now on a reader of standard output or error that went away costs the text, not the run.
 void outlive_readers();
+
+/// Writes a text for people to standard output; what a terminal could take for a command is shown
+/// as \xNN. Throws nothing: results are stored though nobody reads about them. The first failure
+/// is said on standard error, and output_is_lost() from then on.
+void print(std::string_view text);
+
+/// The same for programs, to the byte.
+void print_exactly(std::string_view text);
+
+/// JSON, two blanks a level, and a newline. Names that are not UTF-8 show U+FFFD for the bytes that
+/// are none.
+template <class Json>
+void print_json(const Json& json) {
+  print_exactly(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// Whether something that was printed did not reach standard output: the exit code must say so.
+bool output_is_lost();
+
+/// Writes a message to standard error, as print() does. Where that goes to a full disk or a closed
+/// terminal the text is lost, and not the run.
+void print_to_standard_error(std::string_view text);
+
+/// Commands to the terminal among it.
+void print_to_standard_error_exactly(std::string_view text);
 
 }  // namespace jostle

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "cli/analyse_run.hpp"
@@ -15,10 +12,13 @@
 #include "cli/provenance.hpp"
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/structure_run.hpp"
 #include "cli/table_output.hpp"
 #include "config/json_text.hpp"
 #include "config/suggestion.hpp"
+#include "results/error.hpp"
+#include "results/input_file.hpp"
 
 namespace jostle {
 
@@ -37,14 +37,14 @@ struct StructureArguments {
 StructureSettings read_settings(const std::string& given) {
   std::string text = given;
   if (!given.starts_with('{')) {
-    std::ifstream file(given);
-    if (!file) {
+    try {
+      text = read_text_file(given, Pipes::allowed);
+    } catch (const ResultsError& error) {
       throw BadInput(
-          fmt::format("--settings {}: neither a file that can be read nor a JSON object, as "
+          fmt::format("--settings {}; nor is it a JSON object, as "
                       "'{{\"pores\": {{\"bin_width\": 0.01}}}}'",
-                      given));
+                      error.what()));
     }
-    text.assign(std::istreambuf_iterator<char>(file), {});
   }
   const ParsedStructure parsed = parse_structure(text);
   if (!parsed.settings) throw BadInput("--settings:\n" + fault_lines(parsed.faults));
@@ -83,13 +83,13 @@ bool show(const StructureArguments& arguments, const std::vector<Table>& tables,
     if (arguments.json) {
       listed.push_back(table_json(table));
     } else {
-      fmt::print("{}\n", table_text(table, Detail::brief));
+      print(fmt::format("{}\n", table_text(table, Detail::brief)));
     }
     csv += table_csv(table);
   }
   if (arguments.json) {
     const nlohmann::json object = {{"tables", listed}, {"provenance", provenance_json(by)}};
-    std::fputs((object.dump(2) + "\n").c_str(), stdout);
+    print_json(object);
   }
   if (!arguments.csv.empty()) write_text(arguments.csv, csv);
   return any;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -13,7 +12,7 @@
 #include "cli/point_scenes.hpp"
 #include "cli/provenance.hpp"
 #include "cli/scene_file.hpp"
-#include "cli/standard_error.hpp"
+#include "cli/standard_streams.hpp"
 #include "cli/table_output.hpp"
 #include "config/json_text.hpp"
 #include "ensemble/parallel.hpp"
@@ -286,7 +285,7 @@ void make_scene_structure(const std::string& results, int threads, bool quiet) {
     }
   }
   for (const Table& table : tables) {
-    if (!quiet) fmt::print("\n{}", table_text(table, Detail::brief));
+    if (!quiet) print(fmt::format("\n{}", table_text(table, Detail::brief)));
   }
   store_tables(results, "structure", tables, provenance_of_this_run(fmt::to_string(threads)));
 }

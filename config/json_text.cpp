@@ -11,6 +11,9 @@ namespace jostle {
 
 namespace {
 
+// More than any object of a scene has. A tree of values takes the square of it in time.
+constexpr std::size_t most_keys = 1000;
+
 /// Line and column, both from 1, of a byte of the text.
 std::string place(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
@@ -66,7 +69,9 @@ class TextChecker : public nlohmann::json_sax<Json> {
     if (!level.keys.insert(key).second) {
       faults_.push_back({pointer(), "this key is written twice in one object: keep one of them"});
     }
-    return true;
+    if (level.keys.size() <= most_keys) return true;
+    faults_.push_back({"", fmt::format("more than {} keys in one object", most_keys)});
+    return false;
   }
 
   bool parse_error(std::size_t position, const std::string&,

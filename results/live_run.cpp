@@ -72,8 +72,9 @@ class TemporaryFolder {
 };
 
 /// The file and its parts in one. Throws ResultsError also where a fold takes parts away meanwhile.
-ResultsFile joined_once(const std::string& results_path, Content content) {
-  ResultsFile file(results_path);
+ResultsFile joined_once(const std::string& results_path, const std::string& known_as,
+                        Content content) {
+  ResultsFile file(results_path, known_as);
   const auto with_parts = realizations_with_parts(results_path);
   if (with_parts.empty()) return file;
   const auto record = [&](RealizationId id) {
@@ -88,7 +89,7 @@ ResultsFile joined_once(const std::string& results_path, Content content) {
   const TemporaryFolder folder;
   const std::string joined = (folder.path() / "live.h5").string();
   write_results(joined, {file.study(), file.shard(), file.provenance(), file.run_id(), record});
-  return {joined, results_path};  // open, it outlives its name
+  return {joined, known_as};  // open, it outlives its name
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ ResultsFile live_results(const std::string& named, Content content) {
     const auto before = version_of(results_path);
     const auto parts = realizations_with_parts(results_path);
     try {
-      ResultsFile file = joined_once(results_path, content);
+      ResultsFile file = joined_once(results_path, named, content);
       if (version_of(results_path) == before || tries == most_tries) return file;
     } catch (const ResultsError&) {
       const bool folded =
