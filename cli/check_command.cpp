@@ -40,8 +40,7 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
 void print_size(const LoadedScene& loaded, const Study& study) {
   std::uint64_t taps = 0;
   for (const auto& point : study.points) taps += point.taps * study.realizations;
-  print(fmt::format("size\n  {} x {}, {}, {} in all\n",
-                    counted(study.points.size(), "sweep point"),
+  print(fmt::format("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
                     counted(study.realizations, "realization"),
                     counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
   for (const auto& point : study.points) {
@@ -89,8 +88,7 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   const std::size_t rounds = (realizations + threads - 1) / threads;
   const char* const about = settled ? "about" : "at least";
   print(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
-                    format_duration(mean * static_cast<double>(rounds)),
-                    counted(threads, "thread"),
+                    format_duration(mean * static_cast<double>(rounds)), counted(threads, "thread"),
                     mean.count() * static_cast<double>(realizations) / 3600));
   print(fmt::format("  memory: about {}\n",
                     format_bytes(process_bytes + static_cast<double>(threads * bytes))));

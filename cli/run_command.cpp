@@ -27,6 +27,7 @@
 #include "cli/text_table.hpp"
 #include "ensemble/counted.hpp"
 #include "results/live_run.hpp"
+#include "results/printable.hpp"
 #include "results/run_store.hpp"
 #include "results/tables.hpp"
 
@@ -198,7 +199,7 @@ bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun
   const bool retry_failed = arguments.retry_failed && work.rounds++ == 0;
   const auto pending = run.store->pending(retry_failed);
   RunSummary summary;
-  spdlog::info("{}: {} of {} to do on {}", run.output, pending.size(),
+  spdlog::info("{}: {} of {} to do on {}", printable(run.output), pending.size(),
                counted(loaded.plans.size() * run.study.realizations, "realization"),
                counted(static_cast<std::uint64_t>(threads), "thread"));
   {
@@ -282,7 +283,8 @@ int run(const RunArguments& arguments) {
   }
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   OpenedRun run = open_run(arguments, loaded, threads);
-  for (const std::string& warning : scene_warnings(loaded)) spdlog::info("warning: {}", warning);
+  for (const std::string& warning : scene_warnings(loaded))
+    spdlog::info("warning: {}", printable(warning));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
     ProcessWork work(stop);
