@@ -317,8 +317,9 @@ const std::function<void(const std::string&)> uses[] = {
     [](const std::string& path) { read_tables(path, "analysis"); },
     [](const std::string& path) { read_packing(path, {.point = 1, .realization = 2}); },
     [](const std::string& path) {
-      kept_frames(path, {0, 0}, {.all = true});
+      kept_frames(ResultsFile(path), {0, 0}, {.all = true});
     },
+    [](const std::string& path) { live_results(path); },
     [](const std::string& path) {
       merge_files(std::span(&path, 1), path + ".merged", provenance(), true);
     },
