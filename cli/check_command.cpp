@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,9 +44,16 @@ void print_size(const LoadedScene& loaded, const Study& study) {
   print(fmt::format("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
                     counted(study.realizations, "realization"),
                     counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
-  for (const auto& point : study.points) {
-    if (!point.label.empty()) print(fmt::format("  {}\n", point.label));
+  constexpr std::size_t most_labels = 1000;
+  std::string labels;
+  for (const auto& point :
+       std::span(study.points).first(std::min(study.points.size(), most_labels))) {
+    if (!point.label.empty()) labels += fmt::format("  {}\n", point.label);
   }
+  if (study.points.size() > most_labels) {
+    labels += fmt::format("  ... and {} more\n", study.points.size() - most_labels);
+  }
+  print(labels);
   if (!loaded.scene.until.targets.empty()) {
     print(fmt::format("  at first: realizations are added until they are enough, at most {}\n",
                       loaded.scene.until.at_most));

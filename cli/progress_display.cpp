@@ -17,6 +17,10 @@ constexpr std::chrono::milliseconds live_interval{500};
 constexpr std::chrono::seconds plain_interval{30};
 constexpr const char* clear_line = "\r\033[K";
 
+Clock::duration interval_of(ProgressStyle style) {
+  return style == ProgressStyle::live ? Clock::duration(live_interval) : plain_interval;
+}
+
 }  // namespace
 
 std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
@@ -53,7 +57,7 @@ ProgressDisplay::~ProgressDisplay() {
 
 void ProgressDisplay::show_until(std::stop_token token) {
   const bool live = style_ == ProgressStyle::live;
-  const Clock::duration interval = live ? Clock::duration(live_interval) : plain_interval;
+  const Clock::duration interval = interval_of(style_);
   const auto began = Clock::now();
   auto last_time = began;
   std::uint64_t last_trials = progress_.trials_done;
@@ -68,6 +72,20 @@ void ProgressDisplay::show_until(std::stop_token token) {
     last_time = now;
     last_trials = trials;
   }
+}
+
+StoringDisplay::~StoringDisplay() {
+  if (shown_ && style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
+}
+
+void StoringDisplay::show(std::uint64_t done, std::uint64_t of) {
+  const auto now = Clock::now();
+  if (style_ == ProgressStyle::none || now - last_ < interval_of(style_)) return;
+  last_ = now;
+  shown_ = true;
+  const std::string line = fmt::format("writing the results: {}/{} realizations", done, of);
+  const bool live = style_ == ProgressStyle::live;
+  print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
 }
 
 }  // namespace jostle

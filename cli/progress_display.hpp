@@ -42,6 +42,25 @@ class ProgressDisplay {
   std::jthread clock_;
 };
 
+/// Shows how far the writing of a results file is, which takes its time with many sweep points.
+class StoringDisplay {
+ public:
+  explicit StoringDisplay(ProgressStyle style)
+      : style_(style), last_(std::chrono::steady_clock::now()) {}
+  /// Clears a live line; says nothing further.
+  ~StoringDisplay();
+  StoringDisplay(const StoringDisplay&) = delete;
+  StoringDisplay& operator=(const StoringDisplay&) = delete;
+
+  /// Realizations that are written, of how many. A line where the last is old enough.
+  void show(std::uint64_t done, std::uint64_t of);
+
+ private:
+  ProgressStyle style_;
+  std::chrono::steady_clock::time_point last_;
+  bool shown_ = false;
+};
+
 /// One line of progress: "3/8 done, 2 running, 0 failed; taps 120/408; 41.0 M trials/s; 1 min 5 s
 /// left". `rate` in trials/s; `elapsed` since the run began.
 std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,

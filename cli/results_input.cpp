@@ -24,6 +24,22 @@ bool has_value(const StudyPoint& point, const std::string& wanted) {
                      [&](const auto& value) { return value.first + "=" + value.second == wanted; });
 }
 
+/// The sweep points that can be named, one a line.
+std::string known(const Study& study) {
+  constexpr std::size_t most_lines = 50;
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(study.points.size(), most_lines); ++i) {
+    lines += fmt::format("\n  {}", i);
+    for (const auto& [pointer, value] : study.points[i].sweep_values) {
+      lines += fmt::format("  {}={}", pointer, value);
+    }
+  }
+  if (study.points.size() > most_lines) {
+    lines += fmt::format("\n  ... and {} more", study.points.size() - most_lines);
+  }
+  return lines;
+}
+
 }  // namespace
 
 bool is_results_file(const std::string& path) {
@@ -78,19 +94,14 @@ void require_different(std::span<const std::string> paths) {
 
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
   std::vector<std::uint32_t> chosen;
-  std::string known;
   for (std::uint32_t i = 0; i < study.points.size(); ++i) {
-    const StudyPoint& point = study.points[i];
-    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(point, wanted)) {
+    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(study.points[i], wanted)) {
       chosen.push_back(i);
-    }
-    known += fmt::format("\n  {}", i);
-    for (const auto& [pointer, value] : point.sweep_values) {
-      known += fmt::format("  {}={}", pointer, value);
     }
   }
   if (chosen.empty()) {
-    throw BadInput(fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known));
+    throw BadInput(
+        fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known(study)));
   }
   return chosen;
 }

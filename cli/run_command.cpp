@@ -213,7 +213,8 @@ bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun
                             .stop = &work.stop.flag()},
                            *run.store, work.progress);
   }
-  run.store->finish();
+  StoringDisplay storing(progress_style(arguments));
+  run.store->finish([&](std::uint64_t done, std::uint64_t of) { storing.show(done, of); });
   return summary.done + summary.failed < pending.size();
 }
 

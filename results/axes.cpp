@@ -9,80 +9,66 @@
 namespace jostle {
 namespace {
 
+constexpr hsize_t numbers_a_chunk = 65536;
+
 template <class Number>
 Hdf5Handle write_counting_axis(hid_t group, const char* name, Number n, const char* long_name) {
-  std::vector<Number> values(n);
-  std::iota(values.begin(), values.end(), Number{0});
-  Hdf5Handle axis = write_numbers<Number>(group, name, {n}, values, chunk_along_first({n}));
-  write_label(axis, {name, "1", long_name, ""});
-  make_axis(axis, name);
-  return axis;
-}
-
-void write_moment(hid_t group, const Hdf5Handle& taps, const ObservableLabel& label,
-                  const std::vector<double>& values) {
-  const Hdf5Handle dataset = write_numbers<double>(group, label.name, {values.size()}, values,
-                                                   chunk_along_first({values.size()}));
-  write_label(dataset, label);
-  const Hdf5Handle* const axes[] = {&taps};
-  attach_axes(dataset, axes);
-}
-
-void write_ensemble_column(hid_t group, const Hdf5Handle& taps, const ObservableLabel& label,
-                           const std::vector<double>& column, std::uint32_t n_realizations) {
-  std::vector<double> mean, sigma, error;
-  std::vector<std::uint32_t> count;
-  for (std::size_t tap = 0; tap < column.size() / n_realizations; ++tap) {
-    Moments moments;
-    for (std::uint32_t r = 0; r < n_realizations; ++r)
-      moments.add(column[tap * n_realizations + r]);
-    mean.push_back(moments.mean());
-    sigma.push_back(moments.sigma());
-    error.push_back(moments.standard_error());
-    count.push_back(static_cast<std::uint32_t>(moments.count()));
+  RowsDataset<Number> axis(group, name, {n}, chunk_along_first({n}));
+  std::vector<Number> values;
+  for (Number first = 0; first < n; first += static_cast<Number>(values.size())) {
+    values.resize(std::min<std::size_t>(numbers_a_chunk, n - first));
+    std::iota(values.begin(), values.end(), first);
+    axis.write(first, values);
   }
-  const std::string& name = label.name;
-  write_moment(group, taps,
-               {name + "_mean", label.units, "mean of " + label.long_name, label.source}, mean);
-  write_moment(group, taps,
-               {name + "_sigma", label.units,
-                "standard deviation (1/M) over realizations of " + label.long_name, label.source},
-               sigma);
-  write_moment(group, taps,
-               {name + "_error", label.units, "standard error of the mean of " + label.long_name,
-                label.source},
-               error);
-  const Hdf5Handle counts = write_numbers<std::uint32_t>(group, name + "_count", {count.size()},
-                                                         count, chunk_along_first({count.size()}));
-  write_label(counts, {name, "1", "realizations with a value of " + label.long_name, ""});
+  write_label(axis.dataset(), {name, "1", long_name, ""});
+  make_axis(axis.dataset(), name);
+  return axis.take();
+}
+
+template <class Number>
+RowsDataset<Number> labelled_column(hid_t group, const Hdf5Handle& taps, std::uint64_t n_taps,
+                                    const ObservableLabel& label) {
+  RowsDataset<Number> column(group, label.name, {n_taps}, chunk_along_first({n_taps}));
+  write_label(column.dataset(), label);
   const Hdf5Handle* const axes[] = {&taps};
-  attach_axes(counts, axes);
+  attach_axes(column.dataset(), axes);
+  return column;
 }
 
 void write_histograms(hid_t group, const Hdf5Handle& taps, const Hdf5Handle& realizations,
-                      double bin_width, const std::vector<std::vector<double>>& histograms,
-                      const Shape& shape) {
+                      const Snapshots& snapshots, std::uint32_t n_realizations,
+                      const HistogramOf& histogram) {
+  const std::size_t n_taps = snapshots.taps.size();
   std::size_t n_bins = 0;
-  for (const auto& histogram : histograms) n_bins = std::max(n_bins, histogram.size());
+  for (std::size_t tap = 0; tap < n_taps; ++tap)
+    for (std::uint32_t r = 0; r < n_realizations; ++r)
+      n_bins = std::max(n_bins, histogram(tap, r).size());
   if (n_bins == 0) return;
   std::vector<double> heights, values;
   for (std::size_t k = 0; k < n_bins; ++k)
-    heights.push_back((static_cast<double>(k) + 0.5) * bin_width);
-  for (const auto& histogram : histograms) {
-    const double absent = histogram.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-    values.insert(values.end(), histogram.begin(), histogram.end());
-    values.insert(values.end(), n_bins - histogram.size(), absent);
-  }
+    heights.push_back((static_cast<double>(k) + 0.5) * snapshots.bin_width);
   const Hdf5Handle axis = write_numbers(group, "height", heights);
   write_label(axis, {"height", "diameter", "height of the middle of the bin above the floor", ""});
   make_axis(axis, "height");
-  const Shape all{shape[0], shape[1], n_bins};
-  const Hdf5Handle dataset =
-      write_numbers<double>(group, "height_histogram", all, values, chunk_along_first(all));
-  write_label(dataset, {"height_histogram", "1", "n(z), fraction of all centres in the bin",
-                        "Rosato et al. 2010, fig. 6"});
+  const Shape all{n_taps, n_realizations, n_bins}, chunk = chunk_along_first(all);
+  RowsDataset<double> dataset(group, "height_histogram", all, chunk);
+  for (std::size_t first = 0; first < n_taps; first += chunk[0]) {
+    values.clear();
+    for (std::size_t tap = first; tap < std::min<std::size_t>(first + chunk[0], n_taps); ++tap) {
+      for (std::uint32_t r = 0; r < n_realizations; ++r) {
+        const std::vector<double> bins = histogram(tap, r);
+        const double absent = bins.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+        values.insert(values.end(), bins.begin(), bins.end());
+        values.insert(values.end(), n_bins - bins.size(), absent);
+      }
+    }
+    dataset.write(first, values);
+  }
+  write_label(dataset.dataset(),
+              {"height_histogram", "1", "n(z), fraction of all centres in the bin",
+               "Rosato et al. 2010, fig. 6"});
   const Hdf5Handle* const axes[] = {&taps, &realizations, &axis};
-  attach_axes(dataset, axes);
+  attach_axes(dataset.dataset(), axes);
 }
 
 }  // namespace
@@ -103,7 +89,6 @@ void write_label(hid_t dataset, const ObservableLabel& label) {
 }
 
 Shape chunk_along_first(const Shape& shape) {
-  constexpr hsize_t numbers_a_chunk = 65536;
   hsize_t others = 1;
   for (std::size_t i = 1; i < shape.size(); ++i) others *= shape[i];
   Shape chunk = shape;
@@ -112,18 +97,56 @@ Shape chunk_along_first(const Shape& shape) {
   return chunk;
 }
 
-void write_ensemble_columns(hid_t group, const std::vector<ObservableLabel>& labels,
-                            const std::vector<std::vector<double>>& columns,
-                            std::uint32_t n_realizations) {
-  const Hdf5Handle taps = write_tap_axis(group, columns.front().size() / n_realizations);
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    write_ensemble_column(group, taps, labels[c], columns[c], n_realizations);
+std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns) {
+  constexpr std::uint64_t bytes_a_block = 16u << 20;
+  const std::uint64_t chunk = std::max<std::uint64_t>(numbers_a_chunk / n_realizations, 1);
+  const std::uint64_t bytes_a_row = n_columns * n_realizations * sizeof(double);
+  return std::max<std::uint64_t>(bytes_a_block / bytes_a_row / chunk, 1) * chunk;
+}
+
+EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<ObservableLabel>& labels,
+                               std::uint64_t n_taps, std::uint32_t n_realizations)
+    : n_realizations_(n_realizations) {
+  const Hdf5Handle taps = write_tap_axis(group, n_taps);
+  for (const auto& [name, units, long_name, source] : labels) {
+    const auto moment = [&](const char* ending, const std::string& what) {
+      return labelled_column<double>(group, taps, n_taps,
+                                     {name + ending, units, what + long_name, source});
+    };
+    columns_.push_back(
+        {moment("_mean", "mean of "),
+         moment("_sigma", "standard deviation (1/M) over realizations of "),
+         moment("_error", "standard error of the mean of "),
+         labelled_column<std::uint32_t>(
+             group, taps, n_taps,
+             {name + "_count", "1", "realizations with a value of " + long_name, ""})});
+  }
+}
+
+void EnsembleWriter::write(std::uint64_t first, const std::vector<std::vector<double>>& columns) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    std::vector<double> mean, sigma, error;
+    std::vector<std::uint32_t> count;
+    for (std::size_t tap = 0; tap < columns[c].size() / n_realizations_; ++tap) {
+      Moments moments;
+      for (std::uint32_t r = 0; r < n_realizations_; ++r)
+        moments.add(columns[c][tap * n_realizations_ + r]);
+      mean.push_back(moments.mean());
+      sigma.push_back(moments.sigma());
+      error.push_back(moments.standard_error());
+      count.push_back(static_cast<std::uint32_t>(moments.count()));
+    }
+    columns_[c].mean.write(first, mean);
+    columns_[c].sigma.write(first, sigma);
+    columns_[c].error.write(first, error);
+    columns_[c].count.write(first, count);
+  }
 }
 
 void write_snapshot_statistics(hid_t group, const Snapshots& snapshots,
                                std::uint32_t n_realizations,
                                const std::vector<double>& coordination,
-                               const std::vector<std::vector<double>>& histograms) {
+                               const HistogramOf& histogram) {
   const Hdf5Handle taps = write_numbers(group, "tap", snapshots.taps);
   write_label(taps, {"tap", "1", "number of taps; 0 is the start", ""});
   make_axis(taps, "tap");
@@ -139,7 +162,7 @@ void write_snapshot_statistics(hid_t group, const Snapshots& snapshots,
     attach_axes(dataset, axes);
   }
   if (snapshots.height_histogram)
-    write_histograms(group, taps, realizations, snapshots.bin_width, histograms, shape);
+    write_histograms(group, taps, realizations, snapshots, n_realizations, histogram);
 }
 
 }  // namespace jostle

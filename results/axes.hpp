@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "ensemble/plan.hpp"
@@ -9,6 +10,10 @@
 
 // Axes and labels of the datasets of a point, and the tables that are computed from its series.
 namespace jostle {
+
+/// Taps that are written and read at a time: whole chunks of about 65536 numbers, as many as take
+/// 16 MB for all columns of a point.
+std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns);
 
 Hdf5Handle write_tap_axis(hid_t group, std::uint64_t n_taps);
 Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations);
@@ -19,16 +24,33 @@ void write_label(hid_t dataset, const ObservableLabel& label);
 /// Chunks of about 65536 numbers that span all dimensions but the first.
 Shape chunk_along_first(const Shape& shape);
 
-/// /ensemble/<point>: mean, sigma, standard error and count of every column, [n_taps]. `columns`:
-/// [n_columns] of [n_taps, n_realizations], folded in the order of realizations.
-void write_ensemble_columns(hid_t group, const std::vector<ObservableLabel>& labels,
-                            const std::vector<std::vector<double>>& columns,
-                            std::uint32_t n_realizations);
+/// /ensemble/<point>: mean, sigma, standard error and count of every column, [n_taps], some taps at
+/// a time.
+class EnsembleWriter {
+ public:
+  EnsembleWriter(hid_t group, const std::vector<ObservableLabel>& labels, std::uint64_t n_taps,
+                 std::uint32_t n_realizations);
+  /// The taps from `first` on. `columns`: [n_columns] of [n, n_realizations], folded in the order
+  /// of realizations.
+  void write(std::uint64_t first, const std::vector<std::vector<double>>& columns);
 
-/// /snapshots/<point>: `coordination` and `histograms` have shape [n_taps, n_realizations].
+ private:
+  struct Column {
+    RowsDataset<double> mean, sigma, error;
+    RowsDataset<std::uint32_t> count;
+  };
+  std::uint32_t n_realizations_;
+  std::vector<Column> columns_;
+};
+
+/// Of a snapshot tap, by its place among them, and a realization; empty where there is none.
+using HistogramOf = std::function<std::vector<double>(std::size_t tap, std::uint32_t realization)>;
+
+/// /snapshots/<point>: `coordination` is [n_taps, n_realizations]. Histograms are asked for twice,
+/// in the order of taps.
 void write_snapshot_statistics(hid_t group, const Snapshots& snapshots,
                                std::uint32_t n_realizations,
                                const std::vector<double>& coordination,
-                               const std::vector<std::vector<double>>& histograms);
+                               const HistogramOf& histogram);
 
 }  // namespace jostle

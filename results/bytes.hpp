@@ -46,7 +46,10 @@ class ByteWriter {
 /// Throws std::out_of_range where the bytes end too early.
 class ByteReader {
  public:
-  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes), size_(bytes.size()) {}
+
+  /// Bytes that were read.
+  std::uint64_t position() const { return size_ - rest_.size(); }
 
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T> T get() {
@@ -76,6 +79,14 @@ class ByteReader {
     if (n > 0) std::memcpy(values.data(), take(n * sizeof(T)).data(), n * sizeof(T));
     return values;
   }
+  /// Reads past a vector; returns its length.
+  template <class T>
+  std::uint64_t skip_vector() {
+    const auto n = get<std::uint64_t>();
+    if (n > rest_.size() / sizeof(T)) throw std::out_of_range("too short");
+    take(n * sizeof(T));
+    return n;
+  }
   std::string get_string() {
     const auto raw = take(get<std::uint64_t>());
     return {reinterpret_cast<const char*>(raw.data()), raw.size()};
@@ -91,6 +102,7 @@ class ByteReader {
   }
 
   std::span<const std::byte> rest_;
+  std::uint64_t size_;
 };
 
 }  // namespace jostle

@@ -39,13 +39,27 @@ class Digest {
   template <class Read>
   void add_values(const std::string& what, hid_t type, hid_t space, Read&& read);
   template <class Number, class Read>
-  void add_numbers(std::size_t n, Read&& read);
+  void add_numbers(hid_t memory_type, const Shape& shape, Read&& read);
   template <class Read>
   void add_texts(hid_t space, std::size_t n, Read&& read);
 
   Sha256 sum_;
   Walk walk_;
 };
+
+/// Rows of a dataset, from `first` of its first dimension on; without a shape all of it.
+struct Piece {
+  hsize_t first = 0;
+  Shape shape = {};
+};
+
+/// Whole chunks of results files (chunk_along_first), and no more than a few of them.
+hsize_t rows_a_piece(const Shape& shape) {
+  constexpr hsize_t numbers_a_chunk = 65536, chunks_a_piece = 32;
+  const hsize_t a_row = std::max<hsize_t>(n_elements(shape) / std::max<hsize_t>(shape[0], 1), 1);
+  const hsize_t a_chunk = std::max<hsize_t>(numbers_a_chunk / a_row, 1);
+  return std::max<hsize_t>(numbers_a_chunk * chunks_a_piece / a_row / a_chunk, 1) * a_chunk;
+}
 
 using Names = std::vector<std::string>;
 
@@ -106,8 +120,11 @@ void Digest::add_object(hid_t parent, const Member& member, const std::string& p
 void Digest::add_dataset(hid_t dataset, const std::string& path) {
   const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  add_values(path + " dataset", type, space, [&](hid_t memory_type, void* values) {
-    return H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values);
+  add_values(path + " dataset", type, space, [&](hid_t memory_type, void* values, Piece piece) {
+    if (piece.shape.empty())
+      return H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values);
+    read_rows(dataset, memory_type, piece.shape, piece.first, values);
+    return herr_t{0};
   });
 }
 
@@ -123,9 +140,12 @@ void Digest::add_attribute(hid_t object, const std::string& name, const std::str
   const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  add_values(path + " attribute " + name, type, space, [&](hid_t memory_type, void* values) {
-    return H5Aread(attribute, memory_type, values);
-  });
+  add_values(path + " attribute " + name, type, space,
+             [&](hid_t memory_type, void* values, const Piece& piece) {
+               if (!piece.shape.empty())
+                 throw Hdf5Error("an attribute of millions of numbers: not written by jostle");
+               return H5Aread(attribute, memory_type, values);
+             });
 }
 
 /// Axes lie in the group of what stands along them, and a reference to one is its address there:
@@ -144,24 +164,25 @@ void Digest::add_axes(hid_t dataset, const std::string& path, const Paths& paths
 
 template <class Read>
 void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read) {
-  const std::size_t n = n_elements(shape_of_space(space));
+  const Shape shape = shape_of_space(space);
+  const std::size_t n = n_elements(shape);
   const std::size_t size = H5Tget_size(type);
   const bool is_signed = H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
   switch (H5Tget_class(type)) {
     case H5T_FLOAT:
       sum_.add(what + " float" + std::to_string(8 * size) + shape_text(space) + "\n");
-      return add_numbers<double>(n, [&](void* to) { return read(H5T_NATIVE_DOUBLE, to); });
+      return add_numbers<double>(H5T_NATIVE_DOUBLE, shape, read);
     case H5T_INTEGER:
       sum_.add(what + (is_signed ? " int" : " uint") + std::to_string(8 * size) +
                shape_text(space) + "\n");
-      return add_numbers<std::uint64_t>(
-          n, [&](void* to) { return read(is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, to); });
+      return add_numbers<std::uint64_t>(is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, shape,
+                                        read);
     case H5T_STRING:
       sum_.add(what + " text" + shape_text(space) + "\n");
       if (H5Tis_variable_str(type) > 0) return add_texts(space, n, read);
       {
         std::vector<std::byte> raw(n * size);
-        checked(read(type, raw.data()));
+        checked(read(type, raw.data(), Piece{}));
         return sum_.add(std::span<const std::byte>(raw));
       }
     default:
@@ -170,13 +191,24 @@ void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&&
 }
 
 template <class Number, class Read>
-void Digest::add_numbers(std::size_t n, Read&& read) {
-  std::vector<Number> values(n);
-  if (n > 0) checked(read(values.data()));
-  if constexpr (std::is_floating_point_v<Number>)
-    for (Number& value : values)
-      if (std::isnan(value)) value = std::numeric_limits<Number>::quiet_NaN();
-  sum_.add(std::as_bytes(std::span(values)));
+void Digest::add_numbers(hid_t memory_type, const Shape& shape, Read&& read) {
+  std::vector<Number> values;
+  const auto add = [&](const Shape& part, const Piece& piece) {
+    values.resize(n_elements(part));
+    if (!values.empty()) checked(read(memory_type, values.data(), piece));
+    if constexpr (std::is_floating_point_v<Number>)
+      for (Number& value : values)
+        if (std::isnan(value)) value = std::numeric_limits<Number>::quiet_NaN();
+    sum_.add(std::as_bytes(std::span(values)));
+  };
+  const hsize_t n_rows = shape.empty() ? 1 : shape[0];
+  const hsize_t a_piece = shape.empty() ? 1 : rows_a_piece(shape);
+  if (n_rows <= a_piece) return add(shape, {});
+  for (hsize_t first = 0; first < n_rows; first += a_piece) {
+    Shape part = shape;
+    part[0] = std::min(a_piece, n_rows - first);
+    add(part, {first, part});
+  }
 }
 
 template <class Read>
@@ -184,7 +216,7 @@ void Digest::add_texts(hid_t space, std::size_t n, Read&& read) {
   if (n == 0) return;
   const Hdf5Handle type = text_type();
   std::vector<char*> texts(n, nullptr);
-  checked(read(type, texts.data()));
+  checked(read(type, texts.data(), Piece{}));
   for (const char* text : texts) {
     const std::string_view view = text ? text : "";
     sum_.add(std::to_string(view.size()) + ":");

@@ -74,6 +74,17 @@ void require_shape(hid_t parent, const std::string& name, const Shape& shape) {
     throw Hdf5Error(fmt::format("{} has the shape [{}], not [{}]", name, text(found), text(shape)));
 }
 
+void read_rows(hid_t dataset, hid_t memory_type, const Shape& shape, hsize_t first, void* values) {
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  const Hdf5Handle memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                          H5Sclose);
+  Shape offset(shape.size(), 0);
+  offset[0] = first;
+  checked(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr));
+  checked(H5Dread(dataset, memory_type, memory, space, transfer_properties(), values));
+}
+
 std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
                                const Shape& shape) {
   const Hdf5Handle dataset = open_dataset(parent, name);

@@ -34,6 +34,9 @@ std::vector<Number> read_numbers(hid_t parent, const std::string& name,
 }
 
 /// The part of a dataset of numbers that begins at `offset` and has `shape`.
+/// Reads `shape` values from index `first` of the first dimension on, over the whole of the others.
+void read_rows(hid_t dataset, hid_t memory_type, const Shape& shape, hsize_t first, void* values);
+
 std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
                                const Shape& shape);
 

@@ -64,16 +64,29 @@ Hdf5Handle create_group(hid_t parent, const std::string& name) {
   return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose};
 }
 
-Hdf5Handle write_raw(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type,
-                     const Shape& shape, const void* values, const Shape& chunk) {
+Hdf5Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type,
+                          const Shape& shape, const Shape& chunk) {
   // The index of a chunked dataset takes more room than so few numbers.
   constexpr std::size_t smallest_chunked = 512;
   const bool small = n_elements(shape) <= smallest_chunked;
   const Hdf5Handle space = space_of(shape),
                    properties = dataset_properties(small ? Shape{} : chunk);
-  Hdf5Handle dataset(
-      H5Dcreate2(parent, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
-      H5Dclose);
+  return {H5Dcreate2(parent, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+          H5Dclose};
+}
+
+void write_rows(hid_t dataset, hid_t memory_type, Shape shape, hsize_t first, const void* values) {
+  const Hdf5Handle file_space(H5Dget_space(dataset), H5Sclose), memory_space = space_of(shape);
+  Shape offset(shape.size(), 0);
+  offset[0] = first;
+  checked(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, offset.data(), nullptr, shape.data(),
+                              nullptr));
+  checked(H5Dwrite(dataset, memory_type, memory_space, file_space, transfer_properties(), values));
+}
+
+Hdf5Handle write_raw(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type,
+                     const Shape& shape, const void* values, const Shape& chunk) {
+  Hdf5Handle dataset = create_dataset(parent, name, file_type, shape, chunk);
   if (n_elements(shape) > 0)
     checked(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values));
   return dataset;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "results/hdf5_handle.hpp"
@@ -50,6 +51,12 @@ Hdf5Handle create_group(hid_t parent, const std::string& name);
 Hdf5Handle write_raw(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type,
                      const Shape& shape, const void* values, const Shape& chunk);
 
+/// The same without its values.
+Hdf5Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type,
+                          const Shape& shape, const Shape& chunk);
+/// Writes values from index `first` of the first dimension on, over the whole of the others.
+void write_rows(hid_t dataset, hid_t memory_type, Shape shape, hsize_t first, const void* values);
+
 template <class Number>
 Hdf5Handle write_numbers(hid_t parent, const std::string& name, const Shape& shape,
                          std::span<const Number> values, const Shape& chunk = {}) {
@@ -60,6 +67,28 @@ template <class Number>
 Hdf5Handle write_numbers(hid_t parent, const std::string& name, const std::vector<Number>& values) {
   return write_numbers<Number>(parent, name, {values.size()}, values);
 }
+
+/// A dataset of numbers that is written some rows at a time: it can be larger than memory.
+template <class Number>
+class RowsDataset {
+ public:
+  RowsDataset(hid_t parent, const std::string& name, Shape shape, const Shape& chunk)
+      : shape_(std::move(shape)),
+        dataset_(create_dataset(parent, name, Hdf5Number<Number>::file(), shape_, chunk)) {}
+
+  /// Writes the rows from `first` on; `rows` is [n, the other extents].
+  void write(hsize_t first, std::span<const Number> rows) {
+    Shape shape = shape_;
+    shape[0] = rows.size() / (n_elements(shape_) / shape_[0]);
+    write_rows(dataset_, Hdf5Number<Number>::memory(), shape, first, rows.data());
+  }
+  const Hdf5Handle& dataset() const { return dataset_; }
+  Hdf5Handle take() { return std::move(dataset_); }
+
+ private:
+  Shape shape_;
+  Hdf5Handle dataset_;
+};
 
 /// A dataset of texts with the given shape ({} is one text).
 Hdf5Handle write_texts(hid_t parent, const std::string& name, const Shape& shape,

@@ -1,6 +1,7 @@
 #include "results/input_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -81,6 +82,25 @@ bool InputFile::next_line(std::string& line) {
   }
 }
 
+void InputFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t got =
+        ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_on_disk(path_, "read", errno);
+    if (got == 0) throw ResultsError(path_, "ends before what was written into it");
+    offset += static_cast<std::uint64_t>(got);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+  }
+}
+
+std::string InputFile::stamp() const {
+  struct stat status;
+  if (::fstat(file_.get(), &status) != 0) fail_on_disk(path_, "read", errno);
+  return fmt::format("{} {} {} {}.{}", status.st_dev, status.st_ino, status.st_size,
+                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
 std::string InputFile::rest() {
   std::string text;
   std::vector<std::byte> some(piece);
@@ -93,6 +113,10 @@ std::string InputFile::rest() {
 
 std::vector<std::byte> read_bytes(const std::string& path) {
   InputFile file(path);
+  return read_bytes(file);
+}
+
+std::vector<std::byte> read_bytes(InputFile& file) {
   std::vector<std::byte> bytes;
   std::size_t n = 0;
   do {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,11 @@ class InputFile {
   std::size_t read(std::span<std::byte> bytes);
   /// The next line without its newline; false at the end of the file.
   bool next_line(std::string& line);
+  /// Fills the bytes from a place in the file; throws where the file ends before.
+  void read_at(std::uint64_t offset, std::span<std::byte> bytes);
+  /// Tells it from another that was put in its place: of no other file that is there or was made
+  /// since.
+  std::string stamp() const;
   /// All that has not been read.
   std::string rest();
 
@@ -36,6 +42,7 @@ class InputFile {
 };
 
 /// A whole file.
+std::vector<std::byte> read_bytes(InputFile& file);
 std::vector<std::byte> read_bytes(const std::string& path);
 std::string read_text_file(const std::string& path, Pipes pipes = Pipes::refused);
 

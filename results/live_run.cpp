@@ -77,18 +77,17 @@ ResultsFile joined_once(const std::string& results_path, const std::string& know
   ResultsFile file(results_path, known_as);
   const auto with_parts = realizations_with_parts(results_path);
   if (with_parts.empty()) return file;
-  const auto record = [&](RealizationId id) {
-    RealizationRecord base = file.record(id, content);
+  const auto realization = [&](RealizationId id) {
+    auto base = file.realization(id, content);
     if (!std::ranges::binary_search(with_parts, id)) return base;
     const std::size_t n_columns =
         file.study().points[id.point].observables.size() + n_relaxation_columns;
-    base = join(std::move(base), results_path, {file.run_id(), id}, n_columns);
-    if (content == Content::without_snapshots) base.snapshots.clear();
-    return base;
+    return continued(std::move(base), results_path, {file.run_id(), id}, n_columns, content);
   };
   const TemporaryFolder folder;
   const std::string joined = (folder.path() / "live.h5").string();
-  write_results(joined, {file.study(), file.shard(), file.provenance(), file.run_id(), record});
+  write_results(joined,
+                {file.study(), file.shard(), file.provenance(), file.run_id(), realization});
   return {joined, known_as};  // open, it outlives its name
 }
 

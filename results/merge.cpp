@@ -130,7 +130,7 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
   write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
                          [&](RealizationId id) {
                            const Source& source = owners.at(id);
-                           return source.file->record(source.stored);
+                           return source.file->realization(source.stored);
                          }});
 }
 

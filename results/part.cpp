@@ -52,7 +52,8 @@ void check_sum(const std::string& path, std::span<const std::byte> bytes) {
 ByteReader open_part(const std::string& path, std::span<const std::byte> bytes,
                      const PartIdentity& identity, std::uint32_t number) {
   check_sum(path, bytes);
-  ByteReader reader(bytes.subspan(magic.size(), bytes.size() - magic.size() - sum_size));
+  ByteReader reader(bytes.first(bytes.size() - sum_size));
+  for (std::size_t i = 0; i < magic.size(); ++i) reader.get<char>();
   if (const auto version = reader.get<std::uint32_t>(); version != format_version)
     throw ResultsError(path, fmt::format("part of format {}, but this jostle reads format {}",
                                          version, format_version));
@@ -67,9 +68,9 @@ ByteReader open_part(const std::string& path, std::span<const std::byte> bytes,
 }
 
 template <class Content>
-Content read_part(const std::string& path, const PartIdentity& identity, std::uint32_t number,
-                  Content (*get)(ByteReader&)) {
-  const std::vector<std::byte> bytes = read_bytes(path);
+Content read_part(InputFile& file, const std::string& path, const PartIdentity& identity,
+                  std::uint32_t number, Content (*get)(ByteReader&)) {
+  const std::vector<std::byte> bytes = read_bytes(file);
   try {
     ByteReader reader = open_part(path, bytes, identity, number);
     return get(reader);
@@ -108,12 +109,21 @@ void write_segment(const std::string& path, const PartIdentity& identity, std::u
 }
 
 PartState read_state(const std::string& path, const PartIdentity& identity) {
-  return read_part(path, identity, state_number, get_part_state);
+  InputFile file(path);
+  return read_part(file, path, identity, state_number, get_part_state);
 }
 
-SeriesPiece read_segment(const std::string& path, const PartIdentity& identity,
-                         std::uint32_t number) {
-  return read_part(path, identity, number, get_piece);
+PartOutline read_state_outline(const std::string& path, const PartIdentity& identity) {
+  InputFile file(path);
+  PartOutline outline = read_part(file, path, identity, state_number, get_part_outline);
+  outline.stamp = file.stamp();
+  return outline;
+}
+
+PiecePlaces read_segment_places(const std::string& path, const PartIdentity& identity,
+                                std::uint32_t number) {
+  InputFile file(path);
+  return read_part(file, path, identity, number, get_piece_places);
 }
 
 }  // namespace jostle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,23 @@ struct PartState {
   std::optional<RealizationState> state;
 };
 
+/// Where in a part's file a snapshot lies.
+struct SnapshotPlace {
+  std::uint64_t tap = 0, n_spheres = 0, centres_at = 0, n_bins = 0, histogram_at = 0;
+  std::optional<double> coordination;
+};
+/// And a piece.
+struct PiecePlaces {
+  std::uint64_t first_row = 0, n_numbers = 0, rows_at = 0;
+  std::vector<SnapshotPlace> snapshots;
+};
+/// A checkpoint whose tail stays in its file.
+struct PartOutline {
+  PartState part;  // without its tail
+  PiecePlaces tail;
+  std::string stamp;  // of its file: another checkpoint may replace it
+};
+
 std::string parts_folder(const std::string& results_path);
 std::string state_path(const std::string& results_path, RealizationId id);
 std::string segment_path(const std::string& results_path, RealizationId id, std::uint32_t number);
@@ -51,8 +69,10 @@ void write_segment(const std::string& path, const PartIdentity& identity, std::u
 /// Read a part. Throw ResultsError where it is missing, truncated, damaged, of another run or
 /// another realization.
 PartState read_state(const std::string& path, const PartIdentity& identity);
-SeriesPiece read_segment(const std::string& path, const PartIdentity& identity,
-                         std::uint32_t number);
+/// As the others, where series and snapshots are wanted later.
+PartOutline read_state_outline(const std::string& path, const PartIdentity& identity);
+PiecePlaces read_segment_places(const std::string& path, const PartIdentity& identity,
+                                std::uint32_t number);
 
 /// Restart states, also as they are kept in the results file. Reading throws std::out_of_range
 /// where the bytes end too early or are those of another version of the program.

@@ -135,11 +135,32 @@ void put(ByteWriter& writer, const PartState& part) {
   if (part.state) put(writer, *part.state);
 }
 
-PartState get_part_state(ByteReader& reader) {
-  PartState part;
-  part.base_rows = reader.get<std::uint64_t>();
-  part.n_segments = reader.get<std::uint32_t>();
-  part.tail = get_piece(reader);
+PiecePlaces get_piece_places(ByteReader& reader) {
+  // Behind its length, which comes first.
+  const auto skip = [&]<class T>(std::uint64_t& at, T) {
+    at = reader.position() + sizeof(std::uint64_t);
+    return reader.skip_vector<T>();
+  };
+  PiecePlaces piece;
+  piece.first_row = reader.get<std::uint64_t>();
+  piece.n_numbers = skip(piece.rows_at, double{});
+  const auto n_snapshots = reader.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < n_snapshots; ++i) {
+    SnapshotPlace place;
+    place.tap = reader.get<std::uint64_t>();
+    place.n_spheres = skip(place.centres_at, Vec3{});
+    const bool has_coordination = reader.get_flag();
+    const double coordination = reader.get<double>();
+    if (has_coordination) place.coordination = coordination;
+    place.n_bins = skip(place.histogram_at, double{});
+    piece.snapshots.push_back(place);
+  }
+  return piece;
+}
+
+namespace {
+
+void get_after_tail(ByteReader& reader, PartState& part) {
   part.status = reader.get_enum(RealizationStatus::failed);
   part.reason = reader.get_string();
   part.work.seconds = reader.get<double>();
@@ -147,7 +168,26 @@ PartState get_part_state(ByteReader& reader) {
   part.work.trials = reader.get<std::uint64_t>();
   part.work.distance_tests = reader.get<std::uint64_t>();
   if (reader.get_flag()) part.state = get_realization_state(reader);
+}
+
+}  // namespace
+
+PartState get_part_state(ByteReader& reader) {
+  PartState part;
+  part.base_rows = reader.get<std::uint64_t>();
+  part.n_segments = reader.get<std::uint32_t>();
+  part.tail = get_piece(reader);
+  get_after_tail(reader, part);
   return part;
+}
+
+PartOutline get_part_outline(ByteReader& reader) {
+  PartOutline outline;
+  outline.part.base_rows = reader.get<std::uint64_t>();
+  outline.part.n_segments = reader.get<std::uint32_t>();
+  outline.tail = get_piece_places(reader);
+  get_after_tail(reader, outline.part);
+  return outline;
 }
 
 }  // namespace jostle

@@ -54,14 +54,7 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       number_(point),
       n_realizations_(study.realizations),
       labels_(column_labels(point_)),
-      columns_(labels_.size()),
-      statuses_(n_realizations_, 0),
-      rows_(n_realizations_, 0),
-      reasons_(n_realizations_),
-      work_(n_realizations_),
-      fittings_(n_realizations_),
-      coordination_(point_.snapshots.taps.size() * n_realizations_, nan),
-      histograms_(coordination_.size()) {
+      coordination_(point_.snapshots.taps.size() * n_realizations_, nan) {
   for (const char* folder : {"observables", "ensemble", "snapshots", "restart", "timing"})
     create_group(file_, std::string(folder) + "/" + point_name(number_));
 }
@@ -71,86 +64,95 @@ Hdf5Handle PointWriter::group_under(const char* folder) const {
   return {H5Gopen2(file_, path.c_str(), H5P_DEFAULT), H5Gclose};
 }
 
-RealizationStatus PointWriter::add(std::uint32_t realization, const RealizationRecord& record) {
-  RealizationStatus status = record.status;
-  take_series(realization, record);
-  if (status == RealizationStatus::done && rows_[realization] <= point_.taps)
-    status = RealizationStatus::running;
-  statuses_[realization] = static_cast<std::uint8_t>(status);
-  reasons_[realization] = record.reason;
-  work_[realization] = record.work;
-  take_snapshots(realization, record);
-  if (record.state) {
-    fittings_[realization] = record.state->fitting;
-    write_restart(realization, record);
-  }
-  return status;
+RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realization) {
+  RealizationHead head = realization->head();
+  rows_.push_back(std::min(realization->n_rows(), point_.taps + 1));
+  if (head.status == RealizationStatus::done && rows_.back() <= point_.taps)
+    head.status = RealizationStatus::running;
+  statuses_.push_back(static_cast<std::uint8_t>(head.status));
+  reasons_.push_back(head.reason);
+  work_.push_back(head.work);
+  fittings_.push_back(head.state ? head.state->fitting : std::nullopt);
+  take_snapshots(*realization);
+  if (head.state) write_restart(*head.state);
+  realizations_.push_back(std::move(realization));
+  return head.status;
 }
 
-/// A tap's numbers lie together: more taps follow on those that are there.
-void PointWriter::make_room(std::uint64_t n_rows) {
-  n_rows_ = n_rows;
-  for (std::vector<double>& column : columns_) column.resize(n_rows_ * n_realizations_, nan);
-}
-
-void PointWriter::take_series(std::uint32_t realization, const RealizationRecord& record) {
-  const std::uint64_t n_rows = std::min(record.rows.size() / columns_.size(), point_.taps + 1);
-  rows_[realization] = n_rows;
-  if (n_rows > n_rows_) make_room(n_rows);
-  for (std::uint64_t tap = 0; tap < n_rows; ++tap)
-    for (std::size_t c = 0; c < columns_.size(); ++c)
-      columns_[c][tap * n_realizations_ + realization] =
-          canonical(record.rows[tap * columns_.size() + c]);
-}
-
-void PointWriter::take_snapshots(std::uint32_t realization, const RealizationRecord& record) {
+void PointWriter::take_snapshots(StoredRealization& realization) {
+  const auto number = static_cast<std::uint32_t>(realizations_.size());
   const auto& taps = point_.snapshots.taps;
-  std::vector<const SnapshotRecord*> frames;
-  for (const SnapshotRecord& snapshot : record.snapshots) {
-    const auto place = std::lower_bound(taps.begin(), taps.end(), snapshot.tap);
+  std::vector<std::uint64_t> frames;
+  for (const SnapshotOutline& snapshot : realization.snapshots()) {
+    const auto place = std::ranges::lower_bound(taps, snapshot.tap);
     if (place == taps.end() || *place != snapshot.tap) continue;
-    const std::size_t cell =
-        static_cast<std::size_t>(place - taps.begin()) * n_realizations_ + realization;
-    coordination_[cell] = canonical(snapshot.coordination.value_or(nan));
-    histograms_[cell] = snapshot.height_histogram;
-    if (!snapshot.centres.empty()) frames.push_back(&snapshot);
+    const auto row = static_cast<std::size_t>(place - taps.begin());
+    coordination_[row * n_realizations_ + number] = canonical(snapshot.coordination.value_or(nan));
+    if (snapshot.n_spheres > 0) frames.push_back(snapshot.tap);
   }
-  if (!frames.empty())
-    write_particles(file_, particles_name({number_, realization}), point_.container, frames);
+  if (frames.empty()) return;
+  write_particles(file_, particles_name({number_, number}), point_.container, point_.n_spheres,
+                  frames, [&](std::uint64_t tap) { return realization.centres(tap); });
 }
 
-void PointWriter::write_restart(std::uint32_t realization, const RealizationRecord& record) {
+void PointWriter::write_restart(const RealizationState& state) {
   ByteWriter bytes;
-  put(bytes, essential(*record.state));
+  put(bytes, essential(state));
   const auto raw =
       std::span(reinterpret_cast<const std::uint8_t*>(bytes.bytes().data()), bytes.bytes().size());
   // Its own axis: one of all realizations would have to name each of them.
-  const std::string name = realization_name(realization);
+  const std::string name = realization_name(static_cast<std::uint32_t>(realizations_.size()));
   make_axis(write_numbers<std::uint8_t>(group_under("restart"), name, {raw.size()}, raw), name);
 }
 
 void PointWriter::finish() {
-  if (n_rows_ == 0) make_room(1);
   write_observables();
-  write_ensemble();
   write_snapshots();
   write_fittings();
   write_timing();
 }
 
+/// The columns and their moments, a block of taps at a time. Taps beyond the farthest realization's
+/// are left out, whatever is planned.
+void PointWriter::write_series(hid_t group, const Hdf5Handle& taps,
+                               const Hdf5Handle& realizations) {
+  const std::uint64_t n_taps = std::max<std::uint64_t>(1, std::ranges::max(rows_));
+  const Shape shape{n_taps, n_realizations_};
+  const Hdf5Handle* const both[] = {&taps, &realizations};
+  std::vector<RowsDataset<double>> series;
+  for (const ObservableLabel& label : labels_) {
+    series.emplace_back(group, label.name, shape, chunk_along_first(shape));
+    write_label(series.back().dataset(), label);
+    attach_axes(series.back().dataset(), both);
+  }
+  EnsembleWriter ensemble(group_under("ensemble"), labels_, n_taps, n_realizations_);
+  const std::uint64_t a_block = rows_a_block(n_realizations_, labels_.size());
+  std::vector<double> rows;
+  for (std::uint64_t first = 0; first < n_taps; first += a_block) {
+    const std::uint64_t n = std::min(a_block, n_taps - first);
+    std::vector<std::vector<double>> columns(labels_.size(),
+                                             std::vector<double>(n * n_realizations_, nan));
+    for (std::uint32_t r = 0; r < n_realizations_; ++r) {
+      const std::uint64_t end = std::clamp(rows_[r], first, first + n);
+      rows.resize((end - first) * labels_.size());
+      if (!rows.empty()) realizations_[r]->read_rows(first, rows);
+      const double* number = rows.data();
+      for (std::uint64_t tap = 0; tap < end - first; ++tap)
+        for (std::vector<double>& column : columns)
+          column[tap * n_realizations_ + r] = canonical(*number++);
+    }
+    for (std::size_t c = 0; c < labels_.size(); ++c) series[c].write(first, columns[c]);
+    ensemble.write(first, columns);
+  }
+}
+
 void PointWriter::write_observables() {
   const Hdf5Handle group = group_under("observables");
-  const Hdf5Handle taps = write_tap_axis(group, n_rows_);
+  const Hdf5Handle taps =
+      write_tap_axis(group, std::max<std::uint64_t>(1, std::ranges::max(rows_)));
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
-  const Hdf5Handle* const both[] = {&taps, &realizations};
   const Hdf5Handle* const one[] = {&realizations};
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    const Hdf5Handle column =
-        write_numbers<double>(group, labels_[c].name, {n_rows_, n_realizations_}, columns_[c],
-                              chunk_along_first({n_rows_, n_realizations_}));
-    write_label(column, labels_[c]);
-    attach_axes(column, both);
-  }
+  write_series(group, taps, realizations);
   const Hdf5Handle status = write_numbers(group, "status", statuses_);
   const std::uint8_t flags[] = {0, 1, 2, 3};
   write_attribute<std::uint8_t>(status, "flag_values", flags);
@@ -172,14 +174,13 @@ void PointWriter::write_observables() {
   attach_axes(key, one);
 }
 
-void PointWriter::write_ensemble() {
-  write_ensemble_columns(group_under("ensemble"), labels_, columns_, n_realizations_);
-}
-
 void PointWriter::write_snapshots() {
   if (point_.snapshots.taps.empty()) return;
-  write_snapshot_statistics(group_under("snapshots"), point_.snapshots, n_realizations_,
-                            coordination_, histograms_);
+  write_snapshot_statistics(
+      group_under("snapshots"), point_.snapshots, n_realizations_, coordination_,
+      [&](std::size_t tap, std::uint32_t realization) {
+        return realizations_[realization]->height_histogram(point_.snapshots.taps[tap]);
+      });
 }
 
 // Only of points that start from a fitted pour.

@@ -4,12 +4,15 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <span>
 
+#include "results/axes.hpp"
 #include "results/hdf5_read.hpp"
 #include "results/layout.hpp"
 #include "results/part.hpp"
 #include "results/particles.hpp"
 #include "results/point_writer.hpp"
+#include "results/recently_used.hpp"
 #include "results/seal.hpp"
 #include "results/study_writer.hpp"
 #include "results/validate.hpp"
@@ -32,8 +35,8 @@ struct PointTables {
   std::vector<std::uint64_t> rows;
   std::vector<std::string> reasons;
   std::vector<Work> work;
-  std::vector<double> coordination;      // [n_snapshot_taps, n_realizations], or empty
-  std::vector<double> height_histogram;  // [n_snapshot_taps, n_realizations, n_bins], or empty
+  std::vector<double> coordination;  // [n_snapshot_taps, n_realizations], or empty
+  std::size_t n_bins = 0;            // of height histograms; 0 where there are none
 };
 
 std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& each) {
@@ -91,17 +94,50 @@ class ResultsFile::Impl {
     return *cached_;
   }
 
-  /// [n_columns] of [n_rows, n_realizations].
-  const std::vector<std::vector<double>>& columns(std::uint32_t point) {
-    if (cached_columns_point_ != point) {
-      cached_columns_.clear();
+  /// [n_columns] of [n, n_realizations]: the block of rows that `row` is in.
+  const std::vector<std::vector<double>>& row_block(std::uint32_t point, std::uint64_t row) {
+    const std::uint64_t first = row / block_rows(point) * block_rows(point);
+    return row_blocks_.get({point, first}, [&] {
       const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
-      const Shape shape{stored_rows(observables, point), study.realizations};
-      for (const ObservableLabel& label : column_labels(study.points.at(point)))
-        cached_columns_.push_back(read_numbers<double>(observables, label.name, &shape));
-      cached_columns_point_ = point;
-    }
-    return cached_columns_;
+      const std::uint64_t rows = stored_rows(observables, point);
+      const std::uint64_t n = std::min(block_rows(point), rows - std::min(first, rows));
+      std::vector<std::vector<double>> columns;
+      for (const ObservableLabel& label : column_labels(study.points.at(point))) {
+        require_shape(observables, label.name, {rows, study.realizations});
+        columns.push_back(read_block(observables, label.name, {first, 0}, {n, study.realizations}));
+      }
+      return columns;
+    });
+  }
+  std::uint64_t block_rows(std::uint32_t point) const {
+    return rows_a_block(study.realizations, n_columns(point));
+  }
+  std::size_t n_columns(std::uint32_t point) const {
+    return study.points.at(point).observables.size() + n_relaxation_columns;
+  }
+
+  /// A snapshot's height histogram, with the zeros that pad it; empty where none was kept.
+  std::span<const double> histogram(RealizationId id, std::size_t snapshot) {
+    const std::size_t n_bins = tables(id.point).n_bins;
+    const std::uint64_t n_taps = study.points.at(id.point).snapshots.taps.size();
+    if (n_bins == 0) return {};
+    const Shape all{n_taps, study.realizations, n_bins};
+    const std::uint64_t n_a_block = chunk_along_first(all)[0];
+    const std::uint64_t first = snapshot / n_a_block * n_a_block;
+    const auto& block = histogram_blocks_.get({id.point, first}, [&] {
+      const Hdf5Handle group = open_group(file, "snapshots/" + point_name(id.point));
+      return read_block(group, "height_histogram", {first, 0, 0},
+                        {std::min(n_a_block, n_taps - first), study.realizations, n_bins});
+    });
+    const std::size_t cell = (snapshot - first) * study.realizations + id.realization;
+    const auto bins = std::span(block).subspan(cell * n_bins, n_bins);
+    return std::isnan(bins[0]) ? std::span<const double>{} : bins;
+  }
+
+  const ParticleFrames& frames(RealizationId id) {
+    return frames_.get(id, [&] {
+      return ParticleFrames(file, particles_name(id), study.points.at(id.point).n_spheres);
+    });
   }
 
   std::string path;
@@ -114,8 +150,11 @@ class ResultsFile::Impl {
   PointTables read_tables(std::uint32_t point) const;
 
   std::optional<PointTables> cached_;
-  std::optional<std::uint32_t> cached_columns_point_;
-  std::vector<std::vector<double>> cached_columns_;
+  using Block = std::pair<std::uint32_t, std::uint64_t>;  // of a point, from a row or a snapshot on
+  // Two, as what is written from them comes in other blocks where it has more realizations.
+  RecentlyUsed<Block, std::vector<std::vector<double>>, 2> row_blocks_;
+  RecentlyUsed<Block, std::vector<double>, 2> histogram_blocks_;
+  RecentlyUsed<RealizationId, ParticleFrames, 1> frames_;
 };
 
 PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
@@ -135,10 +174,10 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   if (exists(snapshots, "coordination"))
     tables.coordination = read_numbers<double>(snapshots, "coordination", &taken);
   if (exists(snapshots, "height_histogram")) {
-    tables.height_histogram = read_numbers<double>(snapshots, "height_histogram");
-    const std::size_t n_cells = n_elements(taken);
-    if (n_cells == 0 || tables.height_histogram.size() % n_cells != 0)
+    const Shape shape = shape_of(open_dataset(snapshots, "height_histogram"));
+    if (shape.size() != 3 || shape[0] != taken[0] || shape[1] != taken[1] || shape[2] == 0)
       throw Hdf5Error("height_histogram does not stand along taps and realizations");
+    tables.n_bins = shape[2];
   }
   return tables;
 }
@@ -189,15 +228,18 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
 }
 
 std::vector<Series> ResultsFile::series(std::uint32_t point) const {
+  std::vector<Series> all;
+  const std::uint64_t n_taps = n_stored_rows(point);
+  for (const ObservableLabel& label : columns(point))
+    all.push_back({label, n_taps, study().realizations,
+                   block(point, label.name, {0, n_taps}, {0, study().realizations})});
+  return all;
+}
+
+std::uint64_t ResultsFile::n_stored_rows(std::uint32_t point) const {
+  if (!impl_->has_points) return 0;
   return naming_file(impl_->path, [&] {
-    std::vector<Series> all;
-    for (const ObservableLabel& label : columns(point)) {
-      Series series{label, 0, study().realizations, {}};
-      if (impl_->has_points) series.values = impl_->columns(point).at(all.size());
-      series.n_taps = series.values.size() / study().realizations;
-      all.push_back(std::move(series));
-    }
-    return all;
+    return impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point);
   });
 }
 
@@ -252,64 +294,118 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
   });
 }
 
-std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
-  if (!impl_->has_points) return {};
-  return naming_file(impl_->path, [&] {
-    std::map<std::uint64_t, SnapshotRecord> by_tap;
-    const std::uint32_t n_spheres = study().points.at(id.point).n_spheres;
-    for (SnapshotRecord& frame : read_particles(impl_->file, particles_name(id), n_spheres))
-      by_tap[frame.tap] = std::move(frame);
-    const PointTables& tables = impl_->tables(id.point);
-    const auto& taps = study().points.at(id.point).snapshots.taps;
-    const std::size_t n_cells = taps.size() * study().realizations;
-    const std::size_t n_bins = n_cells == 0 ? 0 : tables.height_histogram.size() / n_cells;
-    for (std::size_t s = 0; s < taps.size(); ++s) {
-      const std::size_t cell = s * study().realizations + id.realization;
-      if (!tables.coordination.empty() && !std::isnan(tables.coordination.at(cell)))
-        by_tap[taps[s]].coordination = tables.coordination[cell];
-      if (n_bins == 0 || std::isnan(tables.height_histogram[cell * n_bins])) continue;
-      // The last bin of a histogram holds the highest centre: what follows is padding.
-      std::size_t n = n_bins;
-      while (n > 0 && tables.height_histogram[cell * n_bins + n - 1] == 0) --n;
-      const double* first = tables.height_histogram.data() + cell * n_bins;
-      by_tap[taps[s]].height_histogram.assign(first, first + n);
+/// A realization of a file that outlives it.
+class ResultsFile::Stored : public StoredRealization {
+ public:
+  Stored(const ResultsFile& file, RealizationId id, Content content)
+      : file_(file), impl_(*file.impl_), id_(id), content_(content) {}
+
+  RealizationHead head() override {
+    return naming_file(impl_.path, [&] {
+      const PointTables& tables = impl_.tables(id_.point);
+      return RealizationHead{static_cast<RealizationStatus>(tables.statuses.at(id_.realization)),
+                             tables.reasons.at(id_.realization), tables.work.at(id_.realization),
+                             file_.restart_state(id_)};
+    });
+  }
+  std::uint64_t n_rows() const override {
+    return naming_file(impl_.path,
+                       [&] { return impl_.tables(id_.point).rows.at(id_.realization); });
+  }
+  void read_rows(std::uint64_t first, std::span<double> rows) override;
+  std::vector<SnapshotOutline> snapshots() override;
+  std::vector<Vec3> centres(std::uint64_t tap) override;
+  std::vector<double> height_histogram(std::uint64_t tap) override;
+
+ private:
+  const StudyPoint& point() const { return file_.study().points.at(id_.point); }
+
+  const ResultsFile& file_;
+  Impl& impl_;
+  RealizationId id_;
+  Content content_;
+};
+
+void ResultsFile::Stored::read_rows(std::uint64_t first, std::span<double> rows) {
+  naming_file(impl_.path, [&] {
+    const std::size_t n_columns = impl_.n_columns(id_.point), n = impl_.study.realizations;
+    const std::uint64_t a_block = impl_.block_rows(id_.point);
+    for (std::size_t i = 0; i < rows.size() / n_columns; ++i) {
+      const auto& columns = impl_.row_block(id_.point, first + i);
+      for (std::size_t c = 0; c < n_columns; ++c)
+        rows[i * n_columns + c] = columns.at(c).at((first + i) % a_block * n + id_.realization);
     }
-    std::vector<SnapshotRecord> records;
-    for (auto& [tap, record] : by_tap) {
-      record.tap = tap;
-      records.push_back(std::move(record));
-    }
-    return records;
   });
 }
 
-RealizationRecord ResultsFile::record(RealizationId id, Content content) const {
-  RealizationRecord record;
-  if (!impl_->has_points || id.realization >= study().realizations) return record;
-  if (content == Content::everything) record.snapshots = snapshots(id);
-  naming_file(impl_->path, [&] {
-    const PointTables& tables = impl_->tables(id.point);
-    record.status = static_cast<RealizationStatus>(tables.statuses.at(id.realization));
-    record.reason = tables.reasons.at(id.realization);
-    record.work = tables.work.at(id.realization);
-    for (std::uint64_t tap = 0; tap < tables.rows.at(id.realization); ++tap)
-      for (const auto& column : impl_->columns(id.point))
-        record.rows.push_back(column.at(tap * study().realizations + id.realization));
+/// Where histograms were kept and nothing else, every snapshot tap that was reached may have one.
+std::vector<SnapshotOutline> ResultsFile::Stored::snapshots() {
+  if (content_ == Content::without_snapshots) return {};
+  return naming_file(impl_.path, [&] {
+    const PointTables& tables = impl_.tables(id_.point);
+    const auto& taps = point().snapshots.taps;
+    std::map<std::uint64_t, SnapshotOutline> by_tap;
+    for (const std::uint64_t tap : impl_.frames(id_).taps())
+      by_tap[tap].n_spheres = point().n_spheres;
+    for (std::size_t s = 0; s < taps.size(); ++s) {
+      const std::size_t cell = s * file_.study().realizations + id_.realization;
+      const bool coordinated =
+          !tables.coordination.empty() && !std::isnan(tables.coordination.at(cell));
+      if (coordinated) by_tap[taps[s]].coordination = tables.coordination[cell];
+      if (tables.n_bins > 0 && taps[s] < tables.rows.at(id_.realization)) by_tap[taps[s]];
+    }
+    std::vector<SnapshotOutline> outlines;
+    for (auto& [tap, outline] : by_tap) {
+      outline.tap = tap;
+      outlines.push_back(outline);
+    }
+    return outlines;
   });
-  record.state = restart_state(id);
-  return record;
+}
+
+std::vector<Vec3> ResultsFile::Stored::centres(std::uint64_t tap) {
+  if (content_ == Content::without_snapshots) return {};
+  return naming_file(impl_.path, [&] { return impl_.frames(id_).centres(tap); });
+}
+
+std::vector<double> ResultsFile::Stored::height_histogram(std::uint64_t tap) {
+  return naming_file(impl_.path, [&]() -> std::vector<double> {
+    const auto& taps = point().snapshots.taps;
+    const auto found = std::ranges::lower_bound(taps, tap);
+    if (content_ == Content::without_snapshots || found == taps.end() || *found != tap) return {};
+    auto bins = impl_.histogram(id_, static_cast<std::size_t>(found - taps.begin()));
+    // The last bin of a histogram holds the highest centre: what follows is padding.
+    while (!bins.empty() && bins.back() == 0) bins = bins.first(bins.size() - 1);
+    return {bins.begin(), bins.end()};
+  });
+}
+
+std::unique_ptr<StoredRealization> ResultsFile::realization(RealizationId id,
+                                                            Content content) const {
+  if (!impl_->has_points || id.realization >= study().realizations) return in_memory();
+  return std::make_unique<Stored>(*this, id, content);
+}
+
+std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
+  return snapshots_of(*realization(id));
+}
+
+RealizationRecord ResultsFile::record(RealizationId id) const {
+  return record_of(*realization(id), impl_->n_columns(id.point));
 }
 
 std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) const {
   return naming_file(impl_->path, [&]() -> std::optional<RealizationState> {
     const std::string name =
         "restart/" + point_name(id.point) + "/" + realization_name(id.realization);
-    if (!exists(impl_->file, name)) return std::nullopt;
+    if (!impl_->has_points || !exists(impl_->file, name)) return std::nullopt;
     const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
     ByteReader reader(std::as_bytes(std::span(bytes)));
     try {
       RealizationState state = get_realization_state(reader);
       validate(state, study().points.at(id.point));
+      if (state.rows != impl_->tables(id.point).rows.at(id.realization))
+        throw Hdf5Error("/" + name + " goes on from another tap than the last that is stored");
       return state;
     } catch (const std::out_of_range&) {
       throw Hdf5Error("/" + name +

@@ -8,6 +8,7 @@
 
 #include "engine/packing.hpp"
 #include "results/record.hpp"
+#include "results/stored_realization.hpp"
 #include "results/study.hpp"
 
 namespace jostle {
@@ -92,8 +93,14 @@ class ResultsFile {
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
   /// What fitting did to each pour between walls (fitting_columns); nothing of another start.
   std::vector<RealizationValues> fittings(std::uint32_t point) const;
-  /// Everything stored of one realization, or that without its snapshots.
-  RealizationRecord record(RealizationId id, Content content = Content::everything) const;
+  /// How many taps its series hold: to the last that any realization has come to.
+  std::uint64_t n_stored_rows(std::uint32_t point) const;
+  /// A realization, to be read piece by piece while this file is there; or that without its
+  /// snapshots.
+  std::unique_ptr<StoredRealization> realization(RealizationId id,
+                                                 Content content = Content::everything) const;
+  /// Everything stored of one realization.
+  RealizationRecord record(RealizationId id) const;
   /// Where it goes on; nothing for missing and failed ones.
   std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.
@@ -101,6 +108,7 @@ class ResultsFile {
 
  private:
   class Impl;
+  class Stored;
   std::unique_ptr<Impl> impl_;
 };
 

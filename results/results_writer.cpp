@@ -15,13 +15,15 @@ bool write_points(const WritableHdf5File& file, const FileContent& content) {
   bool complete = true;
   const Study& study = content.study;
   create_point_folders(file);
+  const std::uint64_t all = study.points.size() * std::uint64_t{study.realizations};
   for (std::uint32_t p = 0; p < study.points.size(); ++p) {
     PointWriter writer(file, study, p);
     for (std::uint32_t r = 0; r < study.realizations; ++r) {
-      const RealizationStatus status = writer.add(r, content.record({p, r}));
+      const RealizationStatus status = writer.add(content.realization({p, r}));
       const bool ended = status == RealizationStatus::done || status == RealizationStatus::failed;
       if (in_share(content.shard, study, {p, r}) && !ended) complete = false;
       file.check();
+      if (content.progress) content.progress(p * std::uint64_t{study.realizations} + r + 1, all);
     }
     writer.finish();
   }
@@ -33,7 +35,7 @@ void write_hdf5(const std::string& path, const FileContent& content) {
   write_root(file);
   write_study(file, content.study);
   RunState state = RunState::running;
-  if (content.record)
+  if (content.realization)
     state = write_points(file, content) ? RunState::complete : RunState::interrupted;
   write_provenance(file, content, state);
   file.close();

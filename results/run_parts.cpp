@@ -7,8 +7,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <utility>
 
 #include "results/error.hpp"
+#include "results/input_file.hpp"
 #include "results/publish.hpp"
 
 namespace jostle {
@@ -68,23 +71,179 @@ std::map<std::string, PartName> list_parts(const std::string& results_path) {
   return parts;
 }
 
-/// Reads all segments and hands them over, then the tail; verifies that rows follow on rows.
-template <class Take>
-void for_each_piece(const std::string& results_path, const PartIdentity& identity,
-                    const PartState& part, std::size_t n_columns, Take&& take) {
-  const std::string path = state_path(results_path, identity.id);
-  std::uint64_t next_row = part.base_rows;
-  const auto accept = [&](const SeriesPiece& piece) {
-    if (piece.first_row != next_row || piece.rows.size() % n_columns != 0)
-      throw ResultsError(path, "its rows do not follow on one another");
-    next_row += piece.rows.size() / n_columns;
-    take(piece);
+constexpr std::uint32_t in_state = 0xffffffff;  // in the place of a segment's number
+
+/// The parts of a realization, verified, and where its series and snapshots lie in them.
+struct PartsIndex {
+  struct Rows {
+    std::uint32_t segment;
+    std::uint64_t first, end, at;
   };
-  for (std::uint32_t k = 0; k < part.n_segments; ++k)
-    accept(read_segment(segment_path(results_path, identity.id, k), identity, k));
-  accept(part.tail);
-  if (part.state && part.state->rows != next_row)
+  struct Snapshot : SnapshotPlace {
+    std::uint32_t segment;
+  };
+  PartOutline outline;
+  std::vector<Rows> rows;
+  std::vector<Snapshot> snapshots;
+
+  std::uint64_t n_rows() const { return rows.back().end; }
+};
+
+PartsIndex index_parts(const std::string& results_path, const PartIdentity& identity,
+                       std::size_t n_columns) {
+  const std::string path = state_path(results_path, identity.id);
+  PartsIndex index{read_state_outline(path, identity), {}, {}};
+  std::uint64_t next_row = index.outline.part.base_rows;
+  const auto accept = [&](const PiecePlaces& piece, std::uint32_t segment) {
+    if (piece.first_row != next_row || piece.n_numbers % n_columns != 0)
+      throw ResultsError(path, "its rows do not follow on one another");
+    next_row += piece.n_numbers / n_columns;
+    index.rows.push_back({segment, piece.first_row, next_row, piece.rows_at});
+    for (const SnapshotPlace& one : piece.snapshots) {
+      if (!index.snapshots.empty() && one.tap <= index.snapshots.back().tap)
+        throw ResultsError(path, "its snapshots do not follow on one another");
+      index.snapshots.push_back({one, segment});
+    }
+  };
+  for (std::uint32_t k = 0; k < index.outline.part.n_segments; ++k)
+    accept(read_segment_places(segment_path(results_path, identity.id, k), identity, k), k);
+  accept(index.outline.tail, in_state);
+  index.outline.tail.snapshots.clear();
+  if (index.outline.part.state && index.outline.part.state->rows != next_row)
     throw ResultsError(path, "its state and its rows disagree");
+  return index;
+}
+
+/// What a results file holds of a realization, continued by its parts.
+class Continued : public StoredRealization {
+ public:
+  Continued(std::unique_ptr<StoredRealization> base, const std::string& results_path,
+            PartIdentity identity, std::size_t n_columns, Content content)
+      : base_(std::move(base)),
+        results_path_(results_path),
+        identity_(std::move(identity)),
+        n_columns_(n_columns),
+        content_(content),
+        index_(index_parts(results_path, identity_, n_columns)),
+        n_rows_(index_.n_rows()),
+        base_rows_(index_.outline.part.base_rows) {
+    if (base_->n_rows() < base_rows_)
+      throw ResultsError(state_path(results_path, identity_.id),
+                         "goes on from taps that the results file does not hold");
+    PartState& part = index_.outline.part;
+    head_ = {part.status, std::move(part.reason), part.work, std::exchange(part.state, {})};
+  }
+
+  RealizationHead head() override { return std::move(head_); }
+  std::uint64_t n_rows() const override { return n_rows_; }
+  void read_rows(std::uint64_t first, std::span<double> rows) override;
+  std::vector<SnapshotOutline> snapshots() override;
+  std::vector<Vec3> centres(std::uint64_t tap) override;
+  std::vector<double> height_histogram(std::uint64_t tap) override;
+
+ private:
+  /// Where something lies that was indexed.
+  struct Place {
+    std::uint32_t segment;
+    std::uint64_t at;
+  };
+  /// Reads what `place` finds in the index. A live run goes on: another checkpoint may have taken
+  /// the place of the one that was indexed, or its tail become a segment; all is indexed anew then,
+  /// and what was there is there again.
+  void read(const std::function<Place()>& place, std::span<std::byte> bytes);
+  const PartsIndex::Rows& rows_with(std::uint64_t row) const;
+  const PartsIndex::Snapshot* snapshot_at(std::uint64_t tap) const;
+  template <class T>
+  std::vector<T> read_vector(std::uint64_t tap, std::uint64_t SnapshotPlace::*length,
+                             std::uint64_t SnapshotPlace::*at);
+
+  std::unique_ptr<StoredRealization> base_;
+  const std::string& results_path_;
+  PartIdentity identity_;
+  std::size_t n_columns_;
+  Content content_;
+  PartsIndex index_;
+  std::uint64_t n_rows_, base_rows_;
+  RealizationHead head_;
+};
+
+void Continued::read(const std::function<Place()>& place, std::span<std::byte> bytes) {
+  for (;;) {
+    const auto [segment, at] = place();
+    const bool in_tail = segment == in_state;
+    InputFile file(in_tail ? state_path(results_path_, identity_.id)
+                           : segment_path(results_path_, identity_.id, segment));
+    if (!in_tail || file.stamp() == index_.outline.stamp) return file.read_at(at, bytes);
+    index_ = index_parts(results_path_, identity_, n_columns_);
+    index_.outline.part.state.reset();
+    if (index_.n_rows() < n_rows_ || index_.outline.part.base_rows != base_rows_)
+      throw ResultsError(state_path(results_path_, identity_.id), "has changed meanwhile");
+  }
+}
+
+const PartsIndex::Rows& Continued::rows_with(std::uint64_t row) const {
+  return *std::ranges::upper_bound(index_.rows, row, {}, &PartsIndex::Rows::end);
+}
+
+void Continued::read_rows(std::uint64_t first, std::span<double> rows) {
+  while (!rows.empty()) {
+    const std::uint64_t left = rows.size() / n_columns_;
+    const bool in_base = first < base_rows_;
+    const std::uint64_t end = in_base ? base_rows_ : std::min(rows_with(first).end, n_rows_);
+    const std::uint64_t n = std::min(left, end - first);
+    const auto head = rows.first(n * n_columns_);
+    const auto place = [&]() -> Place {
+      const PartsIndex::Rows& piece = rows_with(first);
+      return {piece.segment, piece.at + (first - piece.first) * n_columns_ * sizeof(double)};
+    };
+    if (in_base)
+      base_->read_rows(first, head);
+    else
+      read(place, std::as_writable_bytes(head));
+    rows = rows.subspan(head.size());
+    first += n;
+  }
+}
+
+std::vector<SnapshotOutline> Continued::snapshots() {
+  if (content_ == Content::without_snapshots) return {};
+  std::vector<SnapshotOutline> outlines = base_->snapshots();
+  std::erase_if(outlines, [&](const SnapshotOutline& one) { return one.tap >= base_rows_; });
+  for (const PartsIndex::Snapshot& one : index_.snapshots)
+    outlines.push_back({one.tap, static_cast<std::uint32_t>(one.n_spheres), one.coordination});
+  return outlines;
+}
+
+const PartsIndex::Snapshot* Continued::snapshot_at(std::uint64_t tap) const {
+  if (content_ == Content::without_snapshots) return nullptr;
+  const auto found = std::ranges::lower_bound(index_.snapshots, tap, {}, &SnapshotPlace::tap);
+  return found == index_.snapshots.end() || found->tap != tap ? nullptr : &*found;
+}
+
+template <class T>
+std::vector<T> Continued::read_vector(std::uint64_t tap, std::uint64_t SnapshotPlace::*length,
+                                      std::uint64_t SnapshotPlace::*at) {
+  const PartsIndex::Snapshot* const there = snapshot_at(tap);
+  if (there == nullptr) return {};
+  std::vector<T> values(there->*length);
+  const auto place = [&]() -> Place {
+    const PartsIndex::Snapshot* const snapshot = snapshot_at(tap);
+    if (snapshot == nullptr || snapshot->*length != values.size())
+      throw ResultsError(state_path(results_path_, identity_.id), "has changed meanwhile");
+    return {snapshot->segment, snapshot->*at};
+  };
+  if (!values.empty()) read(place, std::as_writable_bytes(std::span(values)));
+  return values;
+}
+
+std::vector<Vec3> Continued::centres(std::uint64_t tap) {
+  if (tap < base_rows_) return base_->centres(tap);
+  return read_vector<Vec3>(tap, &SnapshotPlace::n_spheres, &SnapshotPlace::centres_at);
+}
+
+std::vector<double> Continued::height_histogram(std::uint64_t tap) {
+  if (tap < base_rows_) return base_->height_histogram(tap);
+  return read_vector<double>(tap, &SnapshotPlace::n_bins, &SnapshotPlace::histogram_at);
 }
 
 }  // namespace
@@ -146,9 +305,8 @@ std::map<RealizationId, RealizationSummary> verify_parts(const std::string& resu
     const std::string path = state_path(results_path, id);
     if (id.point >= study.points.size() || id.realization >= study.realizations)
       throw ResultsError(path, "part of a realization that the study does not have");
-    const PartState part = read_state(path, {run_id, id});
     const std::size_t n_columns = study.points[id.point].observables.size() + n_relaxation_columns;
-    for_each_piece(results_path, {run_id, id}, part, n_columns, [](const SeriesPiece&) {});
+    const PartState part = index_parts(results_path, {run_id, id}, n_columns).outline.part;
     summaries[id] = summary_of(id, part);
     n_segments[id] = part.n_segments;
   }
@@ -159,24 +317,11 @@ std::map<RealizationId, RealizationSummary> verify_parts(const std::string& resu
   return summaries;
 }
 
-RealizationRecord join(RealizationRecord base, const std::string& results_path,
-                       const PartIdentity& identity, std::size_t n_columns) {
-  const std::string path = state_path(results_path, identity.id);
-  PartState part = read_state(path, identity);
-  if (base.rows.size() < part.base_rows * n_columns)
-    throw ResultsError(path, "goes on from taps that the results file does not hold");
-  base.rows.resize(part.base_rows * n_columns);
-  std::erase_if(base.snapshots,
-                [&](const SnapshotRecord& record) { return record.tap >= part.base_rows; });
-  for_each_piece(results_path, identity, part, n_columns, [&](const SeriesPiece& piece) {
-    base.rows.insert(base.rows.end(), piece.rows.begin(), piece.rows.end());
-    base.snapshots.insert(base.snapshots.end(), piece.snapshots.begin(), piece.snapshots.end());
-  });
-  base.status = part.status;
-  base.reason = part.reason;
-  base.work = part.work;
-  base.state = std::move(part.state);
-  return base;
+std::unique_ptr<StoredRealization> continued(std::unique_ptr<StoredRealization> base,
+                                             const std::string& results_path,
+                                             const PartIdentity& identity, std::size_t n_columns,
+                                             Content content) {
+  return std::make_unique<Continued>(std::move(base), results_path, identity, n_columns, content);
 }
 
 }  // namespace jostle

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,11 @@ std::map<RealizationId, RealizationSummary> verify_parts(const std::string& resu
                                                          const std::string& run_id,
                                                          const Study& study);
 
-/// What the file holds of a realization (`base`), continued by its parts.
-RealizationRecord join(RealizationRecord base, const std::string& results_path,
-                       const PartIdentity& identity, std::size_t n_columns);
+/// What the file holds of a realization (`base`), continued by its parts, which are verified now
+/// and read as they are asked for. `results_path` must outlive it.
+std::unique_ptr<StoredRealization> continued(std::unique_ptr<StoredRealization> base,
+                                             const std::string& results_path,
+                                             const PartIdentity& identity, std::size_t n_columns,
+                                             Content content = Content::everything);
 
 }  // namespace jostle

@@ -58,7 +58,7 @@ class RunStore::Impl {
 
   void start(const Provenance& provenance);
   void go_on(const Provenance& provenance);
-  void fold();
+  void fold(const StoringProgress& progress = {});
   RealizationSummary summary(RealizationId id) const;
   PartState last_checkpoint(RealizationId id) const;
   std::size_t n_columns(RealizationId id) const;
@@ -154,15 +154,15 @@ void RunStore::Impl::fold_parts_of_the_stored_points() {
 }
 
 /// Replaces the file by one that also holds what the parts hold.
-void RunStore::Impl::fold() {
+void RunStore::Impl::fold(const StoringProgress& progress) {
   const PointNumbers in_file(file->study());
-  const auto record = [&](RealizationId id) {
+  const auto realization = [&](RealizationId id) {
     const auto stored = in_file.of(study.points[id.point].id);
-    RealizationRecord base = stored ? file->record({*stored, id.realization}) : RealizationRecord{};
+    auto base = stored ? file->realization({*stored, id.realization}) : in_memory();
     if (!in_parts.contains(id)) return base;
-    return join(std::move(base), path, {run_id, id}, n_columns(id));
+    return continued(std::move(base), path, {run_id, id}, n_columns(id));
   };
-  write_results(path, {study, shard, processes, run_id, record});
+  write_results(path, {study, shard, processes, run_id, realization, progress});
   open_file();
 }
 
@@ -274,11 +274,11 @@ void RunStore::end(RealizationId id, const RealizationState& state, const Outcom
   impl_->recorders.erase(id);
 }
 
-void RunStore::finish() {
+void RunStore::finish(const StoringProgress& progress) {
   const std::lock_guard guard(impl_->mutex);
   impl_->recorders.clear();
   // A file to which nothing is added stays as it is, with its derived tables.
-  if (!impl_->in_parts.empty() || impl_->file->state() != RunState::complete) impl_->fold();
+  if (!impl_->in_parts.empty() || impl_->file->state() != RunState::complete) impl_->fold(progress);
   remove_parts(impl_->path);
   impl_->in_parts.clear();
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ensemble/sink.hpp"
+#include "results/stored_realization.hpp"
 #include "results/study.hpp"
 
 namespace jostle {
@@ -48,8 +49,8 @@ class RunStore : public Sink {
 
   /// Folds everything into a new file in the order of (point, realization), replaces the old one
   /// by it, then deletes the parts. At the end of a run and at a graceful stop alike: the
-  /// restart states of unfinished realizations are in the file.
-  void finish();
+  /// restart states of unfinished realizations are in the file. `progress` is told how far it is.
+  void finish(const StoringProgress& progress = {});
 
  private:
   class Impl;

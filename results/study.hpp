@@ -41,8 +41,8 @@ struct Study {
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations);
 
-/// The numbers of a study's sweep points by their ids. A point keeps its id when values are added to
-/// a sweep, not its number.
+/// The numbers of a study's sweep points by their ids. A point keeps its id when values are added
+/// to a sweep, not its number.
 class PointNumbers {
  public:
   explicit PointNumbers(const Study& study);

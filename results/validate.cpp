@@ -21,6 +21,7 @@ constexpr std::uint32_t most_spheres = 10'000'000;
 constexpr std::uint64_t most_taps = std::uint64_t{1} << 40;
 constexpr double widest = 10'000;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
+constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols
 
 void require(bool sound, const std::string& what) {
   if (!sound) throw Hdf5Error(printable(what) + ": not written by jostle");
@@ -65,7 +66,7 @@ void validate_point(const StudyPoint& point, const std::string& name) {
   require(point.n_spheres >= 1 && point.n_spheres <= most_spheres,
           fmt::format("{} has {} spheres", name, point.n_spheres));
   require(point.taps <= most_taps, fmt::format("{} has {} taps", name, point.taps));
-  require(point.label.size() <= longest_text, name + " has a label that is too long");
+  require(point.label.size() <= longest_label, name + " has a label that is too long");
   for (const auto& [pointer, value] : point.sweep_values)
     require(nesting_of(value) <= deepest_nesting, name + " has a value nested too deep");
   validate_container(point.container, name);

@@ -88,6 +88,17 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("thousands of points and realizations take time in proportion too", "[nightly]") {
+  SECTION("points") {
+    check_growth("points", {.points = 1000, .realizations = 1},
+                 {.points = times * 1000, .realizations = 1});
+  }
+  SECTION("realizations") {
+    check_growth("realizations", {.points = 1, .realizations = 5000},
+                 {.points = 1, .realizations = times * 5000});
+  }
+}
+
 TEST_CASE("a run that is stopped early stores what is there, however much was planned") {
   std::uintmax_t bytes = 0;
   for (const std::uint64_t taps : {1'000ULL, 1'000'000ULL, 100'000'000'000ULL}) {
@@ -99,7 +110,7 @@ TEST_CASE("a run that is stopped early stores what is there, however much was pl
       RealizationRecord one;
       one.status = RealizationStatus::running;
       one.rows.assign((id.realization == 0 ? 7 : 3) * n_columns, 0.5);
-      return one;
+      return in_memory(one, n_columns);
     };
     write_results(path, {study, {}, {synthetic::provenance()}, "run", record});
     const ResultsFile file(path);

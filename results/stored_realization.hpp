@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "results/record.hpp"
+
+namespace jostle {
+
+/// A snapshot without what of it takes room.
+struct SnapshotOutline {
+  std::uint64_t tap = 0;
+  std::uint32_t n_spheres = 0;  // whose positions were kept
+  std::optional<double> coordination;
+};
+
+/// What results files are written from: all that is stored of one realization. Its series and its
+/// snapshots can be larger than memory and are read piece by piece. All throw ResultsError.
+class StoredRealization {
+ public:
+  StoredRealization() = default;
+  StoredRealization(const StoredRealization&) = delete;
+  StoredRealization& operator=(const StoredRealization&) = delete;
+  virtual ~StoredRealization() = default;
+
+  /// To be called once: where it goes on is not kept.
+  virtual RealizationHead head() = 0;
+  virtual std::uint64_t n_rows() const = 0;
+  /// Fills `rows`, [n, n_columns], with those from `first` on; they must be there.
+  virtual void read_rows(std::uint64_t first, std::span<double> rows) = 0;
+  /// With ascending taps.
+  virtual std::vector<SnapshotOutline> snapshots() = 0;
+  /// Of a snapshot; empty where none was kept at that tap.
+  virtual std::vector<Vec3> centres(std::uint64_t tap) = 0;
+  virtual std::vector<double> height_histogram(std::uint64_t tap) = 0;
+};
+
+/// Told, while a results file is written, how many of its realizations are.
+using StoringProgress = std::function<void(std::uint64_t done, std::uint64_t of)>;
+
+/// One that is held in memory; by default one of which nothing is there.
+std::unique_ptr<StoredRealization> in_memory(RealizationRecord record = {},
+                                             std::size_t n_columns = 1);
+
+/// All of it at once.
+std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization);
+RealizationRecord record_of(StoredRealization& realization, std::size_t n_columns);
+
+}  // namespace jostle
