@@ -50,7 +50,8 @@ void check_growth(const char* what, const synthetic::Sizes& small, const synthet
     const Study study = synthetic::study(sizes);
     std::filesystem::remove(path(sizes));
     const auto store = RunStore::create(path(sizes), study, {}, synthetic::provenance());
-    synthetic::run_pending(*store, study);
+    // A checkpoint writes the last piece of a series anew, of which there are few in a real run.
+    synthetic::run_pending(*store, study, {.checkpoint_every = 10'000});
     store->finish();
   };
   const auto opened = [&](const synthetic::Sizes& sizes) {
@@ -83,8 +84,8 @@ TEST_CASE(
                  {.points = 1, .realizations = times * 60});
   }
   SECTION("taps") {
-    check_growth("taps", {.points = 1, .realizations = 1, .taps = 5000},
-                 {.points = 1, .realizations = 1, .taps = times * 5000});
+    check_growth("taps", {.points = 1, .realizations = 1, .taps = 20'000},
+                 {.points = 1, .realizations = 1, .taps = times * 20'000});
   }
 }
 
@@ -127,6 +128,6 @@ TEST_CASE("a run that is stopped early stores what is there, however much was pl
     CHECK(file.record({0, 0}).rows.size() == 7 * n_columns);
     CHECK(digest_of(path).size() == 64);
     if (bytes == 0) bytes = std::filesystem::file_size(path);
-    CHECK(std::filesystem::file_size(path) == bytes);
+    CHECK(std::filesystem::file_size(path) <= bytes + 100);  // more digits in the scene
   }
 }

@@ -37,7 +37,7 @@ RealizationState begin_state(const StudyPoint& point, RealizationId id) {
 void step(RealizationState& state) {
   for (Vec3& r : state.centres) {
     r.x = noise(++state.move.next_trial, static_cast<std::uint64_t>(1e6 * r.x));
-    r.z *= 1 + 1e-3 * r.x;
+    r.z *= 1 + 1e-3 * (r.x - 0.5);
   }
   state.move.step *= 0.995;
   ++state.relaxation.trials;
