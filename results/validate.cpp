@@ -98,6 +98,9 @@ void validate(const Study& study, const FileProvenance& provenance) {
 
 void validate(const RealizationState& state, const StudyPoint& point) {
   require(state.rows <= point.taps + 1, "a restart state beyond the last tap");
+  // Stopped while its start was made, a realization has nothing yet.
+  const bool not_begun = state.rows == 0 && !state.relaxing;
+  if (not_begun && state.centres.empty() && state.observable_windows.empty()) return;
   require(
       state.centres.size() == point.n_spheres && std::ranges::all_of(state.centres, is_position),
       "a restart state without its spheres");

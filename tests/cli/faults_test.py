@@ -332,7 +332,7 @@ class Reading(Faults):
                         ["fit", "tiny.h5", "--observable", "mean_height"],
                         ["structure", "tiny.h5"], ["export", "tiny.h5", "--format", "vtp"]):
             with self.subTest(command=command):
-                self.assertIn("goes on or was killed, and its file has no taps yet. Finish it",
+                self.assertIn("its file has no taps yet; --live reads its checkpoints. Finish it",
                               self.jostle(*command, expect=BAD_INPUT).stderr)
 
     def test_info_of_a_live_run_says_how_far_its_parts_are(self):

@@ -92,9 +92,9 @@ class Retry(Case):
         self.assertRegex(first.stdout, r"realization 0 failed \(seed 4711\): \S")
         self.assertIn("3 done, 0 failed", first.stdout)
         digest = self.digest("tiny.h5")
-        self.assertIn("0 realizations of 6 to do", self.run_scene("--resume", expect=FAILED).stderr)
+        self.assertIn("0 of 6 realizations to do", self.run_scene("--resume", expect=FAILED).stderr)
         again = self.run_scene("--retry-failed", expect=FAILED)
-        self.assertIn("3 realizations of 6 to do", again.stderr)
+        self.assertIn("3 of 6 realizations to do", again.stderr)
         self.assertEqual(self.digest("tiny.h5"), digest)
 
 

@@ -192,7 +192,7 @@ class Structure(Case):
         for arguments, answer in ((["tiny.h5", "--part", "poers"], "there is no such part"),
                                   (["tiny.h5", "--tap", 3], "there are 0, 4"),
                                   (["tiny.h5", "--settings", "bad.json"], 'mean "bin_width"'),
-                                  (["tiny.h5", "--settings", "none.json"], "neither a file"),
+                                  (["tiny.h5", "--settings", "none.json"], "nor is it a JSON"),
                                   (["tiny.h5", "tiny.h5"], "one results file"),
                                   (["scene.json"], "neither a results file"),
                                   (["radii.xyz"], "must be in diameters"),
