@@ -13,7 +13,7 @@ import numpy as np
 
 from support import BAD_INPUT, BROKEN, FAILED, JOSTLE, OK, PLAIN, TINY, Case, changed
 
-SMALL = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 12}], snapshots={"taps": [0, 12]})
+SMALL = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], snapshots={"taps": [0, 40]})
 del SMALL["sweep"]
 SEAL = len("\njostle-sha256 \n") + 64
 POINT = "sweep/point_0000"
@@ -164,14 +164,14 @@ KIN = {
     "statuses that mean nothing": lambda file: replace(file, f"{SERIES}/status",
                                                        np.full(3, 99, np.uint8)),
     "series of one row": lambda file: replace(file, f"{SERIES}/mean_height", np.zeros((1, 3))),
-    "series of texts": lambda file: replace(file, f"{SERIES}/mean_height", ["x"] * 39,
+    "series of texts": lambda file: replace(file, f"{SERIES}/mean_height", ["x"] * 123,
                                             dtype=h5py.string_dtype()),
     "an axis with a hole": lambda file: file.__delitem__(f"{SERIES}/tap"),
     "4 billion spheres": attribute(POINT, "n_spheres", np.uint32(2**32 - 1)),
     "no spheres": attribute(POINT, "n_spheres", np.uint32(0)),
     "other spheres": attribute(POINT, "n_spheres", np.uint32(47)),
     "snapshots out of order": lambda file: replace(file, f"{POINT}/snapshot_taps",
-                                                   np.array([12, 0], np.uint64)),
+                                                   np.array([40, 0], np.uint64)),
     "a restart state of nothing": lambda file: replace(
         file, "restart/point_0000/realization_00001", np.zeros(0, np.uint8)),
     "a restart state of 255s": lambda file: replace(
@@ -206,7 +206,7 @@ class Crafted(Case):
     def setUp(self):
         super().setUp()
         self.write(SMALL)
-        self.write(changed(SMALL, protocol=[{"tap": {"dilate": 0.05}, "count": 14}]), "longer.json")
+        self.write(changed(SMALL, protocol=[{"tap": {"dilate": 0.05}, "count": 44}]), "longer.json")
         self.write(changed(SMALL, name="from", start={"file": {"path": "file.h5"}}), "from.json")
         self.run_scene("-o", "good.h5")
         os.mkfifo(self.folder / "fifo")
