@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -67,8 +68,11 @@ void validate_point(const StudyPoint& point, const std::string& name) {
           fmt::format("{} has {} spheres", name, point.n_spheres));
   require(point.taps <= most_taps, fmt::format("{} has {} taps", name, point.taps));
   require(point.label.size() <= longest_label, name + " has a label that is too long");
-  for (const auto& [pointer, value] : point.sweep_values)
+  for (const auto& [pointer, value] : point.sweep_values) {
     require(nesting_of(value) <= deepest_nesting, name + " has a value nested too deep");
+    require(nlohmann::json::accept(value),
+            name + " has a value of " + pointer + " that is no JSON");
+  }
   validate_container(point.container, name);
   validate_labels(point, name);
   validate_snapshots(point.snapshots, point.taps, name);

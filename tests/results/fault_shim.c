@@ -70,8 +70,8 @@ static const char* path_of(int descriptor, char* path) {
 static int counts_path(const char* path) { return counts_kind("changes") && is_below(path); }
 
 static int is_open_below(int descriptor) {
-  char path[4096];
-  return prefix() && is_below(path_of(descriptor, path));
+  char path[4096];  // "pipe:[17]" of a pipe, which is below no folder
+  return prefix() && path_of(descriptor, path)[0] == '/' && is_below(path);
 }
 static int counts_descriptor(int descriptor) {
   return counts_kind("changes") && is_open_below(descriptor);
