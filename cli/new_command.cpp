@@ -44,8 +44,10 @@ std::string text_of(const std::string& name) {
 /// of that name.
 std::string with_string(const std::string& text, const char* key, const std::string& value) {
   const std::regex member(fmt::format("(\"{}\"\\s*:\\s*)\"[^\"]*\"", key));
-  return std::regex_replace(text, member, fmt::format("$1\"{}\"", value),
-                            std::regex_constants::format_first_only);
+  std::smatch found;
+  if (!std::regex_search(text, found, member)) return text;
+  return fmt::format("{}{}\"{}\"{}", found.prefix().str(), found.str(1), value,
+                     found.suffix().str());
 }
 
 /// The schema beside the scene, which editors complete its keys by.

@@ -48,11 +48,12 @@ double power_at(double effect, double critical, double dof) {
     return density(s) *
            (normal_below(effect - critical * s) + normal_below(-effect - critical * s));
   };
-  // s beyond which nothing is left, and where the normal variable decides.
-  const double end = 1 + 9 / std::sqrt(std::max(dof, 1.0));
-  const double low = std::clamp((effect - 8) / critical, 0.0, end);
-  const double high = std::clamp((effect + 8) / critical, 0.0, end);
-  return integral(0, low, 128, density) + integral(low, high, 128, found);
+  // s outside of which nothing is left, and where the normal variable decides.
+  const double spread = 9 / std::sqrt(std::max(dof, 1.0));
+  const double start = std::max(0.0, 1 - spread), end = 1 + spread;
+  const double low = std::clamp((effect - 8) / critical, start, end);
+  const double high = std::clamp((effect + 8) / critical, start, end);
+  return integral(start, low, 128, density) + integral(low, high, 128, found);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace jostle {
 struct RunsTest {
   std::size_t runs = 0;
   double expected = 0;
-  double z = 0;  // deviation in standard errors; negative where residuals hang together
+  double z = 0;  // deviation in standard errors; negative where residuals are correlated
   double p = 1;  // of so large a |z|; 1 where all signs are alike and nothing can be said
 };
 RunsTest runs_test(const std::vector<double>& residuals);

@@ -36,7 +36,7 @@ struct PartState {
   SeriesPiece tail;
   RealizationStatus status = RealizationStatus::running;
   std::string reason;
-  Work work{};  // over all processes that lived to tell
+  Work work{};  // over all processes that reported
   std::optional<RealizationState> state;
 };
 

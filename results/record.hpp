@@ -16,7 +16,7 @@ inline constexpr std::size_t n_relaxation_columns = std::size(relaxation_columns
 struct RealizationHead {
   RealizationStatus status = RealizationStatus::missing;
   std::string reason;                     // of a failure
-  Work work{};                            // over all processes that lived to tell
+  Work work{};                            // over all processes that reported
   std::optional<RealizationState> state;  // where it goes on; none for missing and failed ones
 };
 

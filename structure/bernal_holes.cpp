@@ -72,7 +72,7 @@ class HoleFiller {
     return found;
   }
 
-  // Tetrahedra fill a polyhedron whose corners all lie on its surface if they hang together by
+  // Tetrahedra fill a polyhedron whose corners all lie on its surface if they are joined by
   // their faces and leave 2 n_corners - 4 triangles outside, as Euler's formula has it.
   bool fills(const std::vector<std::uint32_t>& within, std::size_t n_corners) const {
     std::vector<std::pair<Face, std::uint32_t>> faces;

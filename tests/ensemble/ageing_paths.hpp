@@ -17,7 +17,7 @@ inline const AgeingGrid grid = {.waiting_times = {0, 1000000, 2000000},
                                 .lags = logarithmic_taps(1, 100000, 8)};
 
 enum class Memory {
-  long_,  // Brownian motion in the law's own time: neighbouring lags hang together
+  long_,  // Brownian motion in the law's own time: neighbouring lags are correlated
   short_  // half of the mean square is that of X(t_W), the other half new at every lag
 };
 

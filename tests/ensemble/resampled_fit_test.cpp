@@ -117,7 +117,7 @@ TEST_CASE("A fixed parameter stays fixed in every resample") {
   CHECK(errors.errors.at(2) > 0);
 }
 
-TEST_CASE("Where points hang together, resampling gives the scatter that a fit's errors miss",
+TEST_CASE("Where points are correlated, resampling gives the scatter that a fit's errors miss",
           "[statistics]") {
   // The true scatter of X_inf over 200 independent ensembles of 16.
   const InverseLog model;

@@ -26,7 +26,7 @@ TEST_CASE("p-values are those of Student's t and of a normal variable") {
 
 TEST_CASE("The power of Student's test is the tail of the noncentral t distribution") {
   // From the level where there is no effect, to certainty.
-  for (const double dof : {1.0, 2.5, 30.0, infinite}) {
+  for (const double dof : {1.0, 2.5, 30.0, 100.0, 1e3, 1e4, 1e6, 9e6, infinite}) {
     CAPTURE(dof);
     CHECK(student_power(0, 0.05, dof) == Approx(0.05).epsilon(1e-6));
     CHECK(student_power(1000, 0.05, dof) == Approx(1).epsilon(1e-6));
@@ -36,6 +36,13 @@ TEST_CASE("The power of Student's test is the tail of the noncentral t distribut
   }
   // Normal: the quantiles of 0.975 and 0.8 added up.
   CHECK(smallest_effect_found(0.05, infinite) == Approx(1.959964 + 0.841621).epsilon(1e-5));
+  // Nearly normal, first in 1 / dof.
+  const double normal = smallest_effect_found(0.05, infinite);
+  for (const double dof : {1e3, 1e4, 1e5, 1e6}) {
+    CAPTURE(dof);
+    CHECK(smallest_effect_found(0.05, dof) - normal < 4 / dof);
+    CHECK(smallest_effect_found(0.05, dof) > normal - 1e-5);
+  }
   // One degree of freedom: |N| below effect / 12.706 with probability 0.8 for a large effect.
   CHECK(smallest_effect_found(0.05, 1) == Approx(12.7062 * 1.281552).epsilon(0.01));
 }

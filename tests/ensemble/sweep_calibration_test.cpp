@@ -115,6 +115,10 @@ void check(const std::vector<std::size_t>& points, const std::vector<std::size_t
         CHECK(std::abs(counts.straight - 0.05) <= of_5);
         CHECK(std::abs(counts.slope_95 - 0.95) <= of_5);
         CHECK(std::abs(counts.slope_68 - 0.6827) <= of_68);
+        const double found = counts.maximum_of_bell * static_cast<double>(ensembles);
+        if (found < 20) continue;  // too few places to count
+        CHECK(std::abs(counts.place_95 - 0.95) <= 3 * std::sqrt(0.05 * 0.95 / found));
+        CHECK(std::abs(counts.place_68 - 0.6827) <= 3 * std::sqrt(0.68 * 0.32 / found));
       }
     }
   }

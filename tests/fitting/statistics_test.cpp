@@ -104,7 +104,7 @@ TEST_CASE("runs are counted, and too few of them noticed") {
   CHECK(runs_test({}).p == 1);
 }
 
-TEST_CASE("residuals that hang together are worth fewer points", "[statistics]") {
+TEST_CASE("residuals that are correlated are worth fewer points", "[statistics]") {
   // AR(1) with rho = 0.9: n_eff / n = (1 - rho) / (1 + rho) = 1 / 19.
   Noise noise(7);
   double value = 0, mean_factor = 0;
