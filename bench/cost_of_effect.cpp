@@ -5,12 +5,12 @@
 #include <string>
 
 #include "bench/cost_state.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
 #include "ensemble/realization.hpp"
 #include "structure/observables.hpp"
-#include "structure/pores.hpp"
 #include "structure/snapshot_statistics.hpp"
-#include "structure/voronoi.hpp"
+#include "structure/voids/pores.hpp"
+#include "structure/voids/voronoi.hpp"
 
 namespace jostle::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "bench/cost_state.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
 
 int main(int argc, char** argv) {
   using namespace jostle;

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bench/cost_state.hpp"
-#include "engine/typed_trial_loop.hpp"
+#include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
 
 int main(int argc, char** argv) {
   using namespace jostle;

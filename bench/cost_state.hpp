@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
-#include "engine/starts.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
 
 namespace jostle::bench {

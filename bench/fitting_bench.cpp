@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "bench/stopwatch.hpp"
-#include "ensemble/resampled_fit.hpp"
-#include "fitting/curve_residuals.hpp"
-#include "fitting/models.hpp"
+#include "ensemble/statistics/resampled_fit.hpp"
+#include "fitting/models/models.hpp"
+#include "fitting/solver/curve_residuals.hpp"
 #include "tests/fitting/nist_sets.hpp"
 
 namespace jostle::bench {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "engine/trial_loop.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
 
 namespace jostle::bench {
 

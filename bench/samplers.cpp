@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "bench/stopwatch.hpp"
-#include "engine/relaxation.hpp"
-#include "engine/starts.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
-#include "engine/trial_loop.hpp"
 
 namespace jostle::bench {
 namespace {

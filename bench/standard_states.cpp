@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "engine/cell_grid.hpp"
-#include "engine/geometry.hpp"
-#include "engine/random.hpp"
-#include "engine/relaxation.hpp"
-#include "engine/starts.hpp"
+#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
-#include "engine/trial_loop.hpp"
 
 namespace jostle::bench {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "engine/moves.hpp"
-#include "engine/packing.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/monte_carlo/moves.hpp"
 
 // The packings that rates are quoted for, made by the program itself: the same bits everywhere.
 namespace jostle::bench {

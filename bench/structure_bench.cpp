@@ -7,7 +7,7 @@
 #include "bench/run_registered.hpp"
 #include "bench/standard_states.hpp"
 #include "structure/measure.hpp"
-#include "structure/voronoi.hpp"
+#include "structure/voids/voronoi.hpp"
 
 namespace jostle::bench {
 namespace {

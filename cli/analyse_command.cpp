@@ -18,8 +18,8 @@
 #include "cli/standard_streams.hpp"
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
-#include "config/json_text.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 
 namespace jostle {
 

@@ -12,8 +12,8 @@
 #include "cli/sweep_analysis.hpp"
 #include "cli/table_output.hpp"
 #include "config/grids.hpp"
-#include "ensemble/ageing_table.hpp"
-#include "ensemble/hysteresis.hpp"
+#include "ensemble/analysis/ageing/ageing_table.hpp"
+#include "ensemble/analysis/hysteresis.hpp"
 #include "results/layout.hpp"
 #include "results/tables.hpp"
 

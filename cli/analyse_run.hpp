@@ -7,7 +7,7 @@
 
 #include "cli/observable_series.hpp"
 #include "config/scene.hpp"
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {

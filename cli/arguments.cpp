@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "config/json_text.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 
 namespace jostle {
 

@@ -16,8 +16,8 @@
 #include "cli/scene_warnings.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
-#include "config/json_text.hpp"
-#include "ensemble/counted.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 namespace {

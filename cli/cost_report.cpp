@@ -8,7 +8,7 @@
 
 #include "cli/durations.hpp"
 #include "cli/text_table.hpp"
-#include "ensemble/counted.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "config/ladder.hpp"
-#include "ensemble/accuracy.hpp"
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/accuracy.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {

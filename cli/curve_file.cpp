@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli/scene_file.hpp"
-#include "results/input_file.hpp"
-#include "results/printable.hpp"
+#include "results/export/input_file.hpp"
+#include "results/export/printable.hpp"
 
 namespace jostle {
 

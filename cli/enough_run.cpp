@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "ensemble/counted.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "ensemble/analysis/table.hpp"
 #include "ensemble/enough.hpp"
-#include "ensemble/table.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {

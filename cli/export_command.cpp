@@ -13,8 +13,8 @@
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/text_table.hpp"
-#include "ensemble/counted.hpp"
-#include "results/export.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/export/export.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {

@@ -18,9 +18,9 @@
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
-#include "config/json_text.hpp"
-#include "config/suggestion.hpp"
-#include "fitting/models.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
+#include "fitting/models/models.hpp"
 
 namespace jostle {
 

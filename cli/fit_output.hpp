@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "ensemble/resampled_fit.hpp"
+#include "ensemble/statistics/resampled_fit.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/report.hpp"
 

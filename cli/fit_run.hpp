@@ -7,8 +7,8 @@
 
 #include "cli/fit_output.hpp"
 #include "cli/fit_source.hpp"
-#include "ensemble/table.hpp"
-#include "fitting/models.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "fitting/models/models.hpp"
 
 namespace jostle {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "fitting/distributions.hpp"
 #include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
 
 namespace jostle {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 
 namespace jostle {
 

@@ -7,9 +7,9 @@
 
 #include "cli/output_file.hpp"
 #include "cli/standard_streams.hpp"
-#include "results/descriptor.hpp"
+#include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
-#include "results/publish.hpp"
+#include "results/hdf5/descriptor.hpp"
 #include "results/tables.hpp"
 
 namespace jostle {

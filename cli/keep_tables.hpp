@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"
 
 namespace jostle {

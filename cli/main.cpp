@@ -13,7 +13,7 @@
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/version.hpp"
-#include "results/printable.hpp"
+#include "results/export/printable.hpp"
 
 namespace jostle {
 namespace {

@@ -17,7 +17,7 @@
 #include "cli/scene_tables.hpp"
 #include "cli/standard_streams.hpp"
 #include "config/sweep.hpp"
-#include "ensemble/counted.hpp"
+#include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
 #include "results/merge.hpp"
 

@@ -11,10 +11,10 @@
 #include "cli/keep_tables.hpp"
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
-#include "config/json_text.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 #include "config/shipped_scenes.hpp"
-#include "config/suggestion.hpp"
-#include "results/input_file.hpp"
+#include "results/export/input_file.hpp"
 
 namespace jostle {
 namespace {

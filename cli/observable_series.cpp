@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "cli/scene_file.hpp"
-#include "config/json_text.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle {

@@ -6,8 +6,8 @@
 
 #include "cli/results_input.hpp"
 #include "cli/scene_file.hpp"
+#include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
-#include "results/publish.hpp"
 
 namespace jostle {
 namespace {

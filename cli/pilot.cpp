@@ -6,11 +6,11 @@
 #include <string>
 #include <variant>
 
-#include "engine/relaxation.hpp"
-#include "engine/slab.hpp"
-#include "engine/starts.hpp"
+#include "engine/bed/slab.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
-#include "engine/trial_loop.hpp"
 #include "ensemble/processor_clock.hpp"
 #include "ensemble/protocol_steps.hpp"
 

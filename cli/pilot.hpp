@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/durations.hpp"
-#include "engine/container.hpp"
+#include "engine/bed/container.hpp"
 #include "ensemble/plan.hpp"
 
 namespace jostle {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "cli/version.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
 
 namespace jostle {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
-#include "results/input_file.hpp"
+#include "results/export/input_file.hpp"
 #include "results/live_run.hpp"
 
 namespace jostle {

@@ -25,9 +25,9 @@
 #include "cli/standard_streams.hpp"
 #include "cli/stop_request.hpp"
 #include "cli/text_table.hpp"
-#include "ensemble/counted.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/export/printable.hpp"
 #include "results/live_run.hpp"
-#include "results/printable.hpp"
 #include "results/run_store.hpp"
 #include "results/tables.hpp"
 

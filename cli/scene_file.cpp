@@ -8,12 +8,12 @@
 #include <map>
 #include <span>
 
-#include "ensemble/counted.hpp"
-#include "results/container_text.hpp"
+#include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
-#include "results/input_file.hpp"
-#include "results/packing_file.hpp"
-#include "results/printable.hpp"
+#include "results/export/container_text.hpp"
+#include "results/export/input_file.hpp"
+#include "results/export/packing_file.hpp"
+#include "results/export/printable.hpp"
 
 namespace jostle {
 namespace {

@@ -8,13 +8,13 @@
 #include <span>
 
 #include "cli/provenance.hpp"
-#include "engine/plain_loop.hpp"
-#include "engine/starts.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/monte_carlo/plain_loop.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "ensemble/realization.hpp"
 #include "ensemble/run.hpp"
 #include "fitting/fit.hpp"
-#include "fitting/models.hpp"
+#include "fitting/models/models.hpp"
 #include "results/error.hpp"
 #include "results/record.hpp"
 #include "results/results_file.hpp"

@@ -10,7 +10,7 @@
 #include <initializer_list>
 #include <iostream>
 
-#include "results/printable.hpp"
+#include "results/export/printable.hpp"
 
 namespace jostle {
 namespace {

@@ -15,10 +15,10 @@
 #include "cli/standard_streams.hpp"
 #include "cli/structure_run.hpp"
 #include "cli/table_output.hpp"
-#include "config/json_text.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 #include "results/error.hpp"
-#include "results/input_file.hpp"
+#include "results/export/input_file.hpp"
 
 namespace jostle {
 

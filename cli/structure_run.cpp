@@ -14,13 +14,13 @@
 #include "cli/scene_file.hpp"
 #include "cli/standard_streams.hpp"
 #include "cli/table_output.hpp"
-#include "config/json_text.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/analysis/structure_tables.hpp"
 #include "ensemble/parallel.hpp"
-#include "ensemble/structure_tables.hpp"
-#include "results/export.hpp"
-#include "results/extended_xyz.hpp"
+#include "results/export/export.hpp"
+#include "results/export/extended_xyz.hpp"
+#include "results/export/particle_columns.hpp"
 #include "results/layout.hpp"
-#include "results/particle_columns.hpp"
 #include "results/tables.hpp"
 
 namespace jostle {

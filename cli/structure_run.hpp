@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 #include "structure/measure.hpp"
 

@@ -12,9 +12,9 @@
 #include "cli/analyse_run.hpp"
 #include "cli/point_scenes.hpp"
 #include "cli/scene_file.hpp"
-#include "config/json_text.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/analysis/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
-#include "ensemble/sweep_curve.hpp"
 #include "results/layout.hpp"
 #include "results/tables.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle {

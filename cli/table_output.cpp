@@ -7,8 +7,8 @@
 
 #include "cli/half_widths.hpp"
 #include "cli/text_table.hpp"
-#include "config/json_text.hpp"
-#include "ensemble/counted.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 
 // Tables of fits and analyses, for people and for programs. A quantity "x" and its "x_error" stand
 // together.

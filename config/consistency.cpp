@@ -5,8 +5,8 @@
 #include <map>
 
 #include "config/grids.hpp"
-#include "config/parts.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/suggestion.hpp"
+#include "config/parts/parts.hpp"
 #include "ensemble/sink.hpp"
 
 namespace jostle {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
 
 namespace jostle {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "config/grids.hpp"
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 
 namespace jostle {
 

@@ -1,4 +1,4 @@
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
 
 namespace jostle {

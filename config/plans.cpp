@@ -5,7 +5,7 @@
 
 #include "config/grids.hpp"
 #include "config/sweep.hpp"
-#include "ensemble/counted.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "config/names.hpp"
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 
 namespace jostle {
 

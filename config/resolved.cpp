@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "config/names.hpp"
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 
 namespace jostle {
 

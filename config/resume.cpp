@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "config/grids.hpp"
-#include "config/parts.hpp"
+#include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
-#include "ensemble/counted.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "ensemble/analyses.hpp"
+#include "ensemble/analysis/analyses.hpp"
 #include "ensemble/enough.hpp"
 #include "ensemble/plan.hpp"
 #include "structure/measure.hpp"

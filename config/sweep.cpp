@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "config/parts.hpp"
-#include "config/suggestion.hpp"
+#include "config/json/suggestion.hpp"
+#include "config/parts/parts.hpp"
 
 namespace jostle {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/json_text.hpp"
+#include "config/json/json_text.hpp"
 #include "config/scene.hpp"
 
 namespace jostle {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/cell_grid.hpp"
-#include "engine/geometry.hpp"
+#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/geometry.hpp"
 
 namespace jostle {
 

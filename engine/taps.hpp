@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <variant>
 
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
 
 // The excitation of one tap. Strengths are dimensionless or in diameters.
 namespace jostle {

@@ -5,8 +5,8 @@
 #include <cassert>
 #include <limits>
 
+#include "structure/density/profiles.hpp"
 #include "structure/observables.hpp"
-#include "structure/profiles.hpp"
 
 namespace jostle {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/packing.hpp"
+#include "engine/bed/packing.hpp"
 
 namespace jostle {
 

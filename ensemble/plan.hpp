@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/container.hpp"
-#include "engine/moves.hpp"
-#include "engine/starts.hpp"
-#include "engine/stops.hpp"
+#include "engine/bed/container.hpp"
+#include "engine/monte_carlo/moves.hpp"
+#include "engine/monte_carlo/stops.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
-#include "engine/trial_loop.hpp"
 #include "structure/observables.hpp"
 
 namespace jostle {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "engine/relaxation.hpp"
-#include "engine/slab.hpp"
+#include "engine/bed/slab.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
 #include "engine/taps.hpp"
 #include "ensemble/processor_clock.hpp"
 #include "structure/snapshot_statistics.hpp"

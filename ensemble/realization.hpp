@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
-#include "engine/starts.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/sink.hpp"
 #include "structure/observables.hpp"

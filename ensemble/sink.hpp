@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/relaxation.hpp"
-#include "engine/trial_loop.hpp"
-#include "engine/vec3.hpp"
+#include "engine/bed/vec3.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
 #include "ensemble/fitting_report.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.

@@ -6,9 +6,9 @@
 #include <limits>
 #include <variant>
 
-#include "fitting/curve_residuals.hpp"
 #include "fitting/fit.hpp"
-#include "fitting/fit_statistics.hpp"
+#include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/solver/curve_residuals.hpp"
 
 namespace jostle {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/model.hpp"
+#include "fitting/models/model.hpp"
 
 // Laws of distributions, fitted to counts in bins by maximum likelihood. Least squares weighted by
 // the counts observed trust bins that came out low by chance and are biased: Baker & Cousins 1984,

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
-#include "fitting/combination.hpp"
-#include "fitting/curve_residuals.hpp"
-#include "fitting/distributions.hpp"
-#include "fitting/fit_errors.hpp"
-#include "fitting/fit_statistics.hpp"
-#include "fitting/profile.hpp"
+#include "fitting/intervals/distributions.hpp"
+#include "fitting/intervals/fit_errors.hpp"
+#include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/intervals/profile.hpp"
+#include "fitting/models/combination.hpp"
 #include "fitting/refusal.hpp"
+#include "fitting/solver/curve_residuals.hpp"
 
 namespace jostle {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fitting/curve.hpp"
-#include "fitting/diagnostics.hpp"
-#include "fitting/levenberg_marquardt.hpp"
-#include "fitting/memory.hpp"
-#include "fitting/model.hpp"
+#include "fitting/intervals/diagnostics.hpp"
+#include "fitting/intervals/memory.hpp"
+#include "fitting/models/model.hpp"
+#include "fitting/solver/levenberg_marquardt.hpp"
 
 namespace jostle {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ensemble/plan.hpp"
-#include "results/hdf5_write.hpp"
+#include "results/hdf5/write.hpp"
 #include "structure/observables.hpp"
 
 // Axes and labels of the datasets of a point, and the tables that are computed from its series.

@@ -5,12 +5,12 @@
 #include <limits>
 #include <unordered_map>
 
-#include "results/checksum.hpp"
-#include "results/hdf5_axes.hpp"
-#include "results/hdf5_policy.hpp"
-#include "results/hdf5_read.hpp"
+#include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/hdf5/axes.hpp"
+#include "results/hdf5/policy.hpp"
+#include "results/hdf5/read.hpp"
 #include "results/results_file.hpp"
-#include "results/seal.hpp"
 #include "results/tables.hpp"
 
 // The digest is a SHA-256 over a canonical text and byte stream: for every object in the order of

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "results/checkpoints/publish.hpp"
+#include "results/checkpoints/run_parts.hpp"
 #include "results/error.hpp"
-#include "results/publish.hpp"
 #include "results/results_writer.hpp"
-#include "results/run_parts.hpp"
 
 namespace jostle {
 namespace {

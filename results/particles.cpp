@@ -4,9 +4,9 @@
 #include <array>
 
 #include "results/axes.hpp"
-#include "results/container_text.hpp"
-#include "results/hdf5_read.hpp"
-#include "results/hdf5_write.hpp"
+#include "results/export/container_text.hpp"
+#include "results/hdf5/read.hpp"
+#include "results/hdf5/write.hpp"
 
 namespace jostle {
 namespace {

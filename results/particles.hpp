@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/container.hpp"
-#include "engine/vec3.hpp"
-#include "results/hdf5_handle.hpp"
+#include "engine/bed/container.hpp"
+#include "engine/bed/vec3.hpp"
+#include "results/hdf5/handle.hpp"
 
 namespace jostle {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/random.hpp"
+#include "engine/bed/random.hpp"
 #include "results/axes.hpp"
-#include "results/hdf5_read.hpp"
+#include "results/checkpoints/part.hpp"
+#include "results/hdf5/read.hpp"
 #include "results/layout.hpp"
-#include "results/part.hpp"
 #include "results/particles.hpp"
 
 namespace jostle {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "results/hdf5_write.hpp"
+#include "results/hdf5/write.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
 

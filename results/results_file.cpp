@@ -6,11 +6,11 @@
 #include <span>
 
 #include "results/axes.hpp"
-#include "results/hdf5_read.hpp"
+#include "results/checkpoints/part.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/hdf5/read.hpp"
 #include "results/layout.hpp"
-#include "results/part.hpp"
 #include "results/results_file_impl.hpp"
-#include "results/seal.hpp"
 #include "results/validate.hpp"
 
 namespace jostle {

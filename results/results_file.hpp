@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/packing.hpp"
+#include "engine/bed/packing.hpp"
 #include "results/record.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"

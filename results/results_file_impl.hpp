@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "results/hdf5_read.hpp"
+#include "results/hdf5/read.hpp"
 #include "results/layout.hpp"
 #include "results/particles.hpp"
 #include "results/point_writer.hpp"

@@ -1,11 +1,11 @@
 #include "results/results_writer.hpp"
 
-#include "results/hdf5_writable_file.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/checkpoints/temporary_file.hpp"
+#include "results/hdf5/writable_file.hpp"
 #include "results/layout.hpp"
 #include "results/point_writer.hpp"
-#include "results/seal.hpp"
 #include "results/study_writer.hpp"
-#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {

@@ -9,15 +9,15 @@
 #include <mutex>
 #include <utility>
 
-#include "results/checksum.hpp"
+#include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/publish.hpp"
+#include "results/checkpoints/recorder.hpp"
+#include "results/checkpoints/run_parts.hpp"
+#include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
-#include "results/lock.hpp"
-#include "results/publish.hpp"
-#include "results/recorder.hpp"
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
-#include "results/run_parts.hpp"
-#include "results/temporary_file.hpp"
 
 namespace jostle {
 namespace {

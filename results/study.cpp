@@ -11,7 +11,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "results/checksum.hpp"
+#include "results/checkpoints/checksum.hpp"
 #include "results/record.hpp"
 
 namespace jostle {

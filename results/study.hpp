@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/container.hpp"
+#include "engine/bed/container.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/sink.hpp"
 #include "structure/observables.hpp"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
-#include "results/container_text.hpp"
-#include "results/hdf5_read.hpp"
+#include "results/export/container_text.hpp"
+#include "results/hdf5/read.hpp"
 #include "results/layout.hpp"
 #include "results/study_writer.hpp"
 

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
-#include "results/container_text.hpp"
-#include "results/hdf5_write.hpp"
+#include "results/export/container_text.hpp"
+#include "results/hdf5/write.hpp"
 #include "results/layout.hpp"
 
 namespace jostle {

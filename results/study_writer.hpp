@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/hdf5_handle.hpp"
+#include "results/hdf5/handle.hpp"
 #include "results/results_writer.hpp"
 
 // The parts of a results file that describe the study: the root, /h5md, /scene, /sweep,

@@ -7,16 +7,16 @@
 #include <stdexcept>
 
 #include "results/axes.hpp"
-#include "results/hdf5_axes.hpp"
-#include "results/hdf5_policy.hpp"
-#include "results/hdf5_read.hpp"
-#include "results/hdf5_writable_file.hpp"
-#include "results/hdf5_write.hpp"
-#include "results/input_file.hpp"
-#include "results/lock.hpp"
-#include "results/publish.hpp"
-#include "results/seal.hpp"
-#include "results/temporary_file.hpp"
+#include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/publish.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/checkpoints/temporary_file.hpp"
+#include "results/export/input_file.hpp"
+#include "results/hdf5/axes.hpp"
+#include "results/hdf5/policy.hpp"
+#include "results/hdf5/read.hpp"
+#include "results/hdf5/writable_file.hpp"
+#include "results/hdf5/write.hpp"
 
 namespace jostle {
 namespace {

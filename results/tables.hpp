@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ensemble/table.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"
 
 // What is derived from a run's data and kept in its file: the groups /fits, /analysis and

@@ -8,10 +8,10 @@
 #include <set>
 #include <string>
 
-#include "results/container_text.hpp"
-#include "results/hdf5_handle.hpp"
+#include "results/export/container_text.hpp"
+#include "results/export/printable.hpp"
+#include "results/hdf5/handle.hpp"
 #include "results/point_writer.hpp"
-#include "results/printable.hpp"
 
 namespace jostle {
 namespace {

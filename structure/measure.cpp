@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/slab.hpp"
+#include "engine/bed/slab.hpp"
 #include "structure/measure_parts.hpp"
-#include "structure/neighbours.hpp"
-#include "structure/pores.hpp"
+#include "structure/order/neighbours.hpp"
+#include "structure/voids/pores.hpp"
 
 namespace jostle {
 
@@ -40,8 +40,7 @@ void require_diameters(const Packing& packing) {
 std::string in_words(const Region& region, const Container& container) {
   std::string words = "heights " + std::to_string(region.low);
   words.append(" to ").append(std::to_string(region.high));
-  if (std::holds_alternative<WalledBox>(container) ||
-      std::holds_alternative<Cylinder>(container)) {
+  if (std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container)) {
     words.append(", ").append(std::to_string(region.from_sides)).append(" from the walls");
   }
   return words;

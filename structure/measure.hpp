@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
-#include "engine/stops.hpp"
-#include "structure/bernal_holes.hpp"
-#include "structure/layers.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/monte_carlo/stops.hpp"
+#include "structure/density/layers.hpp"
 #include "structure/measurement.hpp"
 #include "structure/region.hpp"
+#include "structure/voids/bernal_holes.hpp"
 
 // The structure of a packing, part by part: docs/structure.md says what each quantity means.
 // Lengths in diameters.

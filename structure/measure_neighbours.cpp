@@ -1,11 +1,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/slab.hpp"
-#include "structure/bond_order.hpp"
-#include "structure/crystal_order.hpp"
+#include "engine/bed/slab.hpp"
 #include "structure/measure_parts.hpp"
-#include "structure/pair_correlation.hpp"
+#include "structure/order/bond_order.hpp"
+#include "structure/order/crystal_order.hpp"
+#include "structure/order/pair_correlation.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "structure/measure.hpp"
-#include "structure/voronoi.hpp"
+#include "structure/voids/voronoi.hpp"
 
 // The parts of measure().
 namespace jostle {

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/slab.hpp"
-#include "structure/gradient.hpp"
+#include "engine/bed/slab.hpp"
+#include "structure/density/gradient.hpp"
+#include "structure/density/profile_parts.hpp"
+#include "structure/density/profiles.hpp"
 #include "structure/measure_parts.hpp"
-#include "structure/profile_parts.hpp"
-#include "structure/profiles.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle {

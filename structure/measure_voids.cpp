@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "structure/measure_parts.hpp"
-#include "structure/pores.hpp"
+#include "structure/voids/pores.hpp"
 
 namespace jostle {
 

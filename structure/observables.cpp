@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "engine/slab.hpp"
+#include "engine/bed/slab.hpp"
 
 namespace jostle {
 

@@ -4,8 +4,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/packing.hpp"
-#include "engine/stops.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/monte_carlo/stops.hpp"
 
 // What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
 // list of them is all that is computed.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/container.hpp"
-#include "engine/vec3.hpp"
+#include "engine/bed/container.hpp"
+#include "engine/bed/vec3.hpp"
 
 namespace jostle {
 

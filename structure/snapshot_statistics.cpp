@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "structure/neighbours.hpp"
+#include "structure/order/neighbours.hpp"
 
 namespace jostle {
 

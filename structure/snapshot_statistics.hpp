@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/packing.hpp"
+#include "engine/bed/packing.hpp"
 #include "structure/region.hpp"
 
 // What is measured of a packing at snapshots only.

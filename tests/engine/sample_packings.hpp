@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "engine/geometry.hpp"
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
 
 // Packings for tests, made without the code under test.
 namespace jostle {

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "engine/starts.hpp"
+#include "engine/starts/starts.hpp"
 #include "sample_packings.hpp"
 
 using namespace jostle;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/random.hpp"
+#include "engine/bed/random.hpp"
 
 namespace jostle {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bits.hpp"
-#include "engine/starts.hpp"
+#include "engine/starts/starts.hpp"
 #include "small_plans.hpp"
 #include "structure/snapshot_statistics.hpp"
 

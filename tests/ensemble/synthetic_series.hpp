@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/random.hpp"
+#include "engine/bed/random.hpp"
 
 // Series with known answers.
 namespace jostle::synthetic {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "fitting/fit.hpp"
-#include "fitting/models.hpp"
+#include "fitting/models/models.hpp"
 #include "noise.hpp"
 
 // Every hard case ends in a right answer or a named refusal, and no number of a fit is NaN.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/levenberg_marquardt.hpp"
+#include "fitting/solver/levenberg_marquardt.hpp"
 #include "tests/fitting/nist_models.hpp"
 
 namespace jostle {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit.hpp"
-#include "fitting/models.hpp"
+#include "fitting/models/models.hpp"
 
 namespace jostle {
 namespace {

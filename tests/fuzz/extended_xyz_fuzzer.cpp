@@ -1,5 +1,5 @@
 #include "results/error.hpp"
-#include "results/extended_xyz.hpp"
+#include "results/export/extended_xyz.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
 // A file holds a packing, or is refused with a ResultsError.

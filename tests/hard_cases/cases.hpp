@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/geometry.hpp"
-#include "engine/starts.hpp"
-#include "engine/trial_loop.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
 #include "tests/ensemble/bits.hpp"
 
 #include "ensemble/realization.hpp"

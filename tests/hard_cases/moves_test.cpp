@@ -1,4 +1,4 @@
-#include "engine/relaxation.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
 #include "tests/engine/sample_packings.hpp"
 #include "tests/hard_cases/cases.hpp"
 

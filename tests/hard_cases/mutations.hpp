@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/random.hpp"
+#include "engine/bed/random.hpp"
 
 // Damage as it happens to files: to their bytes, and to the structure of JSON. The same random
 // stream does the same damage on every machine.

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/moments.hpp"
-#include "ensemble/spectra.hpp"
-#include "ensemble/steady_state.hpp"
 #include "tests/ensemble/noise.hpp"
 
 using namespace jostle;

@@ -5,9 +5,9 @@
 
 #include "ensemble/realization.hpp"
 #include "short_scene.hpp"
+#include "structure/density/profiles.hpp"
 #include "structure/observables.hpp"
-#include "structure/pores.hpp"
-#include "structure/profiles.hpp"
+#include "structure/voids/pores.hpp"
 
 // The start of Philippe & Bideau's figures between walls, at full size: 4096 spheres on 16 x 16.
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/geometry.hpp"
+#include "engine/bed/geometry.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/run.hpp"
 #include "structure/measure.hpp"

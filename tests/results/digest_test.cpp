@@ -2,11 +2,11 @@
 #include <functional>
 #include <random>
 
-#include "results/hdf5_writable_file.hpp"
-#include "results/hdf5_write.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/hdf5/writable_file.hpp"
+#include "results/hdf5/write.hpp"
 #include "results/results_file.hpp"
 #include "results/results_writer.hpp"
-#include "results/seal.hpp"
 #include "synthetic.hpp"
 #include "temporary_folder.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "forked.hpp"
 #include "results/axes.hpp"
-#include "results/part.hpp"
-#include "results/run_parts.hpp"
+#include "results/checkpoints/part.hpp"
+#include "results/checkpoints/run_parts.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

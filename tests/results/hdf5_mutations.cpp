@@ -10,13 +10,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "results/export.hpp"
-#include "results/hdf5_writable_file.hpp"
+#include "results/checkpoints/seal.hpp"
+#include "results/export/export.hpp"
+#include "results/export/packing_file.hpp"
+#include "results/hdf5/writable_file.hpp"
 #include "results/live_run.hpp"
 #include "results/merge.hpp"
-#include "results/packing_file.hpp"
 #include "results/run_store.hpp"
-#include "results/seal.hpp"
 #include "results/tables.hpp"
 #include "synthetic.hpp"
 

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "results/checkpoints/run_parts.hpp"
 #include "results/live_run.hpp"
-#include "results/run_parts.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "results/checkpoints/part.hpp"
 #include "results/error.hpp"
-#include "results/part.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

@@ -9,8 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "results/checkpoints/lock.hpp"
 #include "results/error.hpp"
-#include "results/lock.hpp"
 #include "results/results_file.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/slab.hpp"
+#include "engine/bed/slab.hpp"
 #include "reference_deposit.hpp"
-#include "structure/pores.hpp"
-#include "structure/profiles.hpp"
-#include "structure/voronoi.hpp"
+#include "structure/density/profiles.hpp"
+#include "structure/voids/pores.hpp"
+#include "structure/voids/voronoi.hpp"
 
 using namespace jostle;
 

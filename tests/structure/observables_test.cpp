@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "engine/slab.hpp"
+#include "engine/bed/slab.hpp"
 #include "reference_deposit.hpp"
 
 using namespace jostle;

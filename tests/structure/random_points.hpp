@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/geometry.hpp"
-#include "engine/packing.hpp"
-#include "engine/random.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
 
 namespace jostle {
 

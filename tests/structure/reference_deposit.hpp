@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/packing.hpp"
+#include "engine/bed/packing.hpp"
 
 namespace jostle {
 

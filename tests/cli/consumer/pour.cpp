@@ -1,7 +1,7 @@
 // A program outside the project: pours a packing with the installed library and prints <Z>.
 #include <cstdio>
 
-#include "engine/starts.hpp"
+#include "engine/starts/starts.hpp"
 
 int main() {
   jostle::RandomStream random(jostle::stream_key(1, 0, 0, jostle::Purpose::start));

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/json/json_text.hpp"
+
+namespace jostle {
+
+/// The numbers a key may take.
+struct Range {
+  double low = 0, high = 0;
+  bool low_included = true, high_included = true;
+};
+constexpr Range between(double low, double high) {
+  return {low, high};
+}
+constexpr Range above(double low, double high) {
+  return {low, high, false, true};
+}
+constexpr Range strictly_between(double low, double high) {
+  return {low, high, false, false};
+}
+
+/// A choice as scenes write it: {"name": settings}, or "name" alone where every setting has a
+/// default (settings are then an empty object).
+struct Choice;
+
+/// One value of a scene with its place in the file. Whatever does not suit is noted as a fault, and
+/// what was to be read keeps its default: so reading goes on and finds the other faults.
+class Reader {
+ public:
+  Reader(const Json& value, std::string pointer, std::vector<Fault>& faults)
+      : value_(&value), pointer_(std::move(pointer)), faults_(&faults) {}
+
+  const Json& value() const { return *value_; }
+  const std::string& pointer() const { return pointer_; }
+  void fault(std::string message) const { faults_->push_back({pointer_, std::move(message)}); }
+  /// Notes that a key is missing; `what` says what it should hold.
+  void missing(std::string_view key, std::string_view what) const;
+  /// Whether no fault was noted at this value or below it.
+  bool sound() const;
+
+  /// Whether this is an object; keys other than `allowed` are faults.
+  bool is_object_of(const std::vector<std::string>& allowed) const;
+  /// Whether this is a list of `least` to `most` values.
+  bool is_list(std::size_t least, std::size_t most, std::string_view of_what) const;
+  Reader element(std::size_t index) const;
+  std::optional<Reader> find(const std::string& key) const;
+
+  /// The value itself; nothing, and a fault, where it is of another type or out of range.
+  std::optional<double> number(Range range) const;
+  std::optional<std::uint64_t> whole_number(std::uint64_t least, std::uint64_t most) const;
+  std::optional<bool> boolean() const;
+  std::optional<std::string> text() const;
+  /// One of `names`.
+  std::optional<std::string> one_of(const std::vector<std::string>& names) const;
+  /// {"name": settings} with one of `names`.
+  std::optional<Choice> choice(const std::vector<std::string>& names) const;
+  /// "name" or {"name": settings}.
+  std::optional<Choice> named_choice(const std::vector<std::string>& names) const;
+
+  /// A member of this object; `into` keeps its value where the key is absent or faulty.
+  void read(const std::string& key, double& into, Range range) const;
+  template <std::unsigned_integral Whole>
+  void read_whole(const std::string& key, Whole& into, std::uint64_t least,
+                  std::uint64_t most) const {
+    static_assert(!std::same_as<Whole, bool>);
+    if (const auto member = find(key)) {
+      if (const auto whole = member->whole_number(least, most)) into = static_cast<Whole>(*whole);
+    }
+  }
+  void read_flag(const std::string& key, bool& into) const;
+  /// A member that names an enumerator; `names` is a table of (name, enumerator).
+  template <class Names, class Enum>
+  void read_name(const std::string& key, Enum& into, const Names& names) const {
+    const auto member = find(key);
+    if (!member) return;
+    std::vector<std::string> allowed;
+    for (const auto& [name, value] : names) allowed.emplace_back(name);
+    const auto written = member->one_of(allowed);
+    if (!written) return;
+    for (const auto& [name, value] : names) {
+      if (*written == name) into = value;
+    }
+  }
+
+ private:
+  void wrong_type(std::string_view expected) const;
+
+  const Json* value_;
+  std::string pointer_;
+  std::vector<Fault>* faults_;
+};
+
+struct Choice {
+  std::string name;
+  Reader settings;
+};
+
+/// "the string \"abc\"", "the number 3", "an object": a value as messages name it.
+std::string described(const Json& value);
+
+/// "a, b, c".
+std::string listed(const std::vector<std::string>& names);
+
+/// Whether no fault lies at `pointer` or below.
+bool sound(const std::vector<Fault>& faults, std::string_view pointer);
+
+}  // namespace jostle

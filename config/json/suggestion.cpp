@@ -1,0 +1,47 @@
+#include "config/json/suggestion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace jostle {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+    before.swap(above);
+    above.swap(row);
+  }
+  return above[b.size()];
+}
+
+namespace {
+
+constexpr std::size_t shortest_part = 4;
+
+}  // namespace
+
+std::string did_you_mean(std::string_view written, const std::vector<std::string>& candidates) {
+  const std::string* nearest = nullptr;
+  std::size_t least = 2 + written.size() / 4;
+  for (const std::string& candidate : candidates) {
+    const bool part = written.size() >= shortest_part && candidate.find(written) != candidate.npos;
+    const std::size_t distance = part ? 1 : edit_distance(written, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = &candidate;
+    }
+  }
+  return nearest ? fmt::format(" Did you mean \"{}\"?", *nearest) : "";
+}
+
+}  // namespace jostle

@@ -1,0 +1,118 @@
+#include <algorithm>
+
+#include "config/parts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double widest = 10'000;
+
+struct Widths {
+  double x = 16, y = 16;
+};
+
+Widths read_widths(const Reader& in) {
+  Widths widths;
+  const auto width = in.find("width");
+  if (!width) {
+    in.missing("width", "a number, or a list of two, diameters");
+    return widths;
+  }
+  if (!width->value().is_array()) {
+    widths.x = width->number(above(0, widest)).value_or(widths.x);
+    widths.y = widths.x;
+  } else if (width->is_list(2, 2, "numbers")) {
+    widths.x = width->element(0).number(above(0, widest)).value_or(widths.x);
+    widths.y = width->element(1).number(above(0, widest)).value_or(widths.y);
+  }
+  return widths;
+}
+
+/// Notes the fault that the engine finds in the container's widths at the key they came from.
+void check_width(const Reader& in, const std::string& key, const Container& container) {
+  const auto member = in.find(key);
+  if (!member || !member->sound()) return;
+  if (const auto fault = width_fault(container)) member->fault(*fault);
+}
+
+Container read_cylinder(const Reader& in) {
+  Cylinder tube;
+  if (!in.is_object_of({"sides", "diameter"})) return tube;
+  if (!in.find("diameter")) in.missing("diameter", "a number, diameters of a sphere");
+  in.read("diameter", tube.diameter, above(0, widest));
+  check_width(in, "diameter", tube);
+  return tube;
+}
+
+Container read_fully_periodic(const Reader& in) {
+  FullyPeriodicBox box;
+  if (!in.is_object_of({"sides", "width", "height"})) return box;
+  const Widths widths = read_widths(in);
+  box.width_x = widths.x;
+  box.width_y = widths.y;
+  if (!in.find("height")) in.missing("height", "a number, diameters");
+  in.read("height", box.height, above(0, widest));
+  const double narrower = std::min(widths.x, widths.y);
+  check_width(in, "width", FullyPeriodicBox{narrower, narrower, narrower});
+  check_width(in, "height", FullyPeriodicBox{box.height, box.height, box.height});
+  return box;
+}
+
+template <class Box>
+Container read_box(const Reader& in) {
+  Box box;
+  if (!in.is_object_of({"sides", "width"})) return box;
+  const Widths widths = read_widths(in);
+  box.width_x = widths.x;
+  box.width_y = widths.y;
+  check_width(in, "width", box);
+  return box;
+}
+
+Json written_width(double x, double y) {
+  return x == y ? plain_number(x) : Json{plain_number(x), plain_number(y)};
+}
+
+struct Writer {
+  Json operator()(const PeriodicBox& box) const {
+    return {{"sides", "periodic"}, {"width", written_width(box.width_x, box.width_y)}};
+  }
+  Json operator()(const WalledBox& box) const {
+    return {{"sides", "walls"}, {"width", written_width(box.width_x, box.width_y)}};
+  }
+  Json operator()(const Cylinder& tube) const {
+    return {{"sides", "cylinder"}, {"diameter", plain_number(tube.diameter)}};
+  }
+  Json operator()(const FullyPeriodicBox& box) const {
+    return {{"sides", "fully_periodic"},
+            {"width", written_width(box.width_x, box.width_y)},
+            {"height", plain_number(box.height)}};
+  }
+};
+
+}  // namespace
+
+Container read_container(const Reader& in) {
+  const std::vector<std::string> kinds{"periodic", "walls", "cylinder", "fully_periodic"};
+  const auto sides = in.find("sides");
+  if (!sides) {
+    if (in.is_object_of({"sides", "width", "height", "diameter"})) {
+      in.missing("sides", "one of the strings " + listed(kinds));
+    }
+    return {};
+  }
+  const auto kind = sides->one_of(kinds);
+  if (kind == "periodic") return read_box<PeriodicBox>(in);
+  if (kind == "walls") return read_box<WalledBox>(in);
+  if (kind == "cylinder") return read_cylinder(in);
+  if (kind == "fully_periodic") return read_fully_periodic(in);
+  in.is_object_of({"sides", "width", "height", "diameter"});
+  return {};
+}
+
+Json written(const Container& container) {
+  return std::visit(Writer{}, container);
+}
+
+}  // namespace jostle

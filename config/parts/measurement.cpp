@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "config/parts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::uint64_t most_taps = 1'000'000'000;
+constexpr std::size_t longest_name = 64;
+constexpr double highest = 1e6;
+
+struct Bounds {
+  double low, high;
+};
+
+std::optional<Bounds> read_bounds(const Reader& in, double most) {
+  if (!in.is_list(2, 2, "numbers, low and high")) return std::nullopt;
+  const auto low = in.element(0).number(between(0, most));
+  const auto high = in.element(1).number(between(0, most));
+  if (!low || !high) return std::nullopt;
+  if (*low < *high) return Bounds{*low, *high};
+  in.fault(fmt::format("the window from {} to {} is empty: the first number must be the lower",
+                       *low, *high));
+  return std::nullopt;
+}
+
+QuantileWindow read_quantiles(const Reader& in) {
+  const auto bounds = read_bounds(in, 1);
+  return bounds ? QuantileWindow{bounds->low, bounds->high} : QuantileWindow{};
+}
+
+/// Letters, digits and underscores, beginning with a lower-case letter: a name in a file.
+bool is_name(const std::string& name) {
+  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && name.size() <= longest_name && lower(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+Observable read_bulk_fraction(const Reader& in) {
+  BulkFraction bulk;
+  if (!in.is_object_of({"name", "heights", "quantiles"})) return bulk;
+  if (const auto name = in.find("name")) {
+    bulk.name = name->text().value_or(bulk.name);
+    if (!is_name(bulk.name)) {
+      name->fault(
+          fmt::format("expected lower-case letters, digits and underscores, a letter "
+                      "first, at most {} of them",
+                      longest_name));
+    }
+  }
+  const auto heights = in.find("heights");
+  const auto quantiles = in.find("quantiles");
+  if (heights) bulk.window = read_heights(*heights);
+  if (quantiles) bulk.window = read_quantiles(*quantiles);
+  if (heights && quantiles) in.fault("expected only one of the keys heights, quantiles");
+  return bulk;
+}
+
+Observable read_observable(const Reader& in) {
+  const auto choice =
+      in.named_choice({"mean_height", "bottom_fraction", "corrected_fraction", "bulk_fraction"});
+  if (!choice) return MeanHeight{};
+  const Reader& settings = choice->settings;
+  if (choice->name == "bulk_fraction") return read_bulk_fraction(settings);
+  if (choice->name == "corrected_fraction") {
+    CorrectedFraction corrected;
+    if (settings.is_object_of({"depth"})) settings.read("depth", corrected.depth, above(0, 1));
+    return corrected;
+  }
+  settings.is_object_of({});
+  if (choice->name == "bottom_fraction") return BottomFraction{};
+  return MeanHeight{};
+}
+
+std::vector<std::uint64_t> read_tap_list(const Reader& in) {
+  std::set<std::uint64_t> taps;
+  if (!in.is_list(0, 100'000, "tap numbers")) return {};
+  for (std::size_t i = 0; i < in.value().size(); ++i) {
+    const auto tap = in.element(i).whole_number(0, most_taps);
+    if (tap && !taps.insert(*tap).second) {
+      in.element(i).fault(fmt::format("tap {} is listed twice", *tap));
+    }
+  }
+  return {taps.begin(), taps.end()};
+}
+
+LogarithmicTaps read_logarithmic_taps(const Reader& in) {
+  LogarithmicTaps grid;
+  if (!in.is_object_of({"log", "also"})) return grid;
+  if (const auto log = in.find("log")) {
+    if (log->is_object_of({"from", "to", "per_decade"})) {
+      if (!log->find("to")) log->missing("to", "the tap at which the grid ends");
+      log->read_whole("from", grid.from, 1, most_taps);
+      log->read_whole("to", grid.to, 1, most_taps);
+      log->read_whole("per_decade", grid.per_decade, 1, 100);
+    }
+    if (log->sound() && grid.from > grid.to) {
+      log->fault(fmt::format("the grid from {} to {} is empty: from must not be above to",
+                             grid.from, grid.to));
+    }
+  } else {
+    in.missing("log", "an object with the keys from, to, per_decade");
+  }
+  if (const auto also = in.find("also")) grid.also = read_tap_list(*also);
+  return grid;
+}
+
+void read_keep(const Reader& in, SnapshotChoice& snapshots) {
+  if (!in.is_list(0, 3, "of the strings positions, coordination, height_histogram")) return;
+  std::set<std::string> kept;
+  for (std::size_t i = 0; i < in.value().size(); ++i) {
+    const Reader element = in.element(i);
+    const auto what = element.one_of({"positions", "coordination", "height_histogram"});
+    if (what && !kept.insert(*what).second) element.fault(*what + " is listed twice");
+  }
+  snapshots.positions = kept.contains("positions");
+  snapshots.coordination = kept.contains("coordination");
+  snapshots.height_histogram = kept.contains("height_histogram");
+}
+
+Json written_taps(const TapChoice& choice) {
+  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice)) {
+    return {{"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
+            {"also", grid->also}};
+  }
+  return std::get<std::vector<std::uint64_t>>(choice);
+}
+
+}  // namespace
+
+HeightWindow read_heights(const Reader& in) {
+  const auto bounds = read_bounds(in, highest);
+  return bounds ? HeightWindow{bounds->low, bounds->high} : HeightWindow{};
+}
+
+Json written_bounds(double low, double high) {
+  return Json::array({plain_number(low), plain_number(high)});
+}
+
+Window read_window(const Reader& in) {
+  const auto window = in.choice({"heights", "quantiles"});
+  if (!window) return QuantileWindow{};
+  if (window->name == "heights") return read_heights(window->settings);
+  return read_quantiles(window->settings);
+}
+
+std::vector<Observable> read_observables(const Reader& in) {
+  std::vector<Observable> observables;
+  if (!in.is_list(0, 100, "observables")) return observables;
+  for (std::size_t i = 0; i < in.value().size(); ++i) {
+    observables.push_back(read_observable(in.element(i)));
+  }
+  return observables;
+}
+
+TapChoice read_taps(const Reader& in) {
+  if (in.value().is_object()) return read_logarithmic_taps(in);
+  return read_tap_list(in);
+}
+
+SnapshotChoice read_snapshots(const Reader& in) {
+  SnapshotChoice snapshots;
+  if (!in.is_object_of({"taps", "keep", "contact_cut", "bin_width"})) return snapshots;
+  if (const auto taps = in.find("taps")) snapshots.taps = read_taps(*taps);
+  if (const auto keep = in.find("keep")) read_keep(*keep, snapshots);
+  in.read("contact_cut", snapshots.contact_cut, between(1, 3));
+  in.read("bin_width", snapshots.bin_width, between(0.001, 10));
+  return snapshots;
+}
+
+std::string name_of(const Observable& observable) {
+  if (const auto* bulk = std::get_if<BulkFraction>(&observable)) return bulk->name;
+  if (std::holds_alternative<CorrectedFraction>(observable)) return "corrected_fraction";
+  if (std::holds_alternative<BottomFraction>(observable)) return "bottom_fraction";
+  return "mean_height";
+}
+
+std::vector<Observable> default_observables() {
+  return {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
+}
+
+Json written(const Window& window) {
+  if (const auto* heights = std::get_if<HeightWindow>(&window)) {
+    return {{"heights", written_bounds(heights->low, heights->high)}};
+  }
+  const auto& quantiles = std::get<QuantileWindow>(window);
+  return {{"quantiles", written_bounds(quantiles.low, quantiles.high)}};
+}
+
+Json written(const std::vector<Observable>& observables) {
+  Json list = Json::array();
+  for (const Observable& observable : observables) {
+    if (const auto* corrected = std::get_if<CorrectedFraction>(&observable)) {
+      list.push_back({{"corrected_fraction", {{"depth", plain_number(corrected->depth)}}}});
+    } else if (const auto* bulk = std::get_if<BulkFraction>(&observable)) {
+      Json settings{{"name", bulk->name}};
+      settings.update(written(bulk->window));
+      list.push_back({{"bulk_fraction", settings}});
+    } else {
+      list.push_back(name_of(observable));
+    }
+  }
+  return list;
+}
+
+Json written(const SnapshotChoice& snapshots) {
+  Json out;
+  out["taps"] = written_taps(snapshots.taps);
+  out["keep"] = Json::array();
+  if (snapshots.positions) out["keep"].push_back("positions");
+  if (snapshots.coordination) out["keep"].push_back("coordination");
+  if (snapshots.height_histogram) out["keep"].push_back("height_histogram");
+  out["contact_cut"] = plain_number(snapshots.contact_cut);
+  out["bin_width"] = plain_number(snapshots.bin_width);
+  return out;
+}
+
+}  // namespace jostle

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "config/json/reader.hpp"
+#include "config/scene.hpp"
+
+// The parts of a scene, in from JSON and out to it. A read_* function always returns a part; where
+// it noted a fault, the part is a default that stands in for it.
+namespace jostle {
+
+Container read_container(const Reader& in);
+StartChoice read_start(const Reader& in);
+std::vector<ProtocolLine> read_protocol(const Reader& in);
+Relaxation read_relaxation(const Reader& in);
+Window read_window(const Reader& in);
+HeightWindow read_heights(const Reader& in);
+std::vector<Observable> read_observables(const Reader& in);
+TapChoice read_taps(const Reader& in);
+SnapshotChoice read_snapshots(const Reader& in);
+std::vector<SweepAxis> read_sweep(const Reader& in);
+std::vector<FitRequest> read_fits(const Reader& in);
+Enough read_until(const Reader& in);
+Analyses read_analyses(const Reader& in);
+StructureSettings read_structure(const Reader& in);
+
+Json written(const Container& container);
+Json written(const StartChoice& start);
+Json written(const Tap& tap);
+Json written(const std::vector<ProtocolLine>& protocol);
+Json written(const Relaxation& relaxation);
+Json written(const Window& window);
+Json written(const std::vector<Observable>& observables);
+Json written(const SnapshotChoice& snapshots);
+Json written(const std::vector<SweepAxis>& sweep);
+Json written(const std::vector<FitRequest>& fits);
+Json written(const Enough& enough);
+Json written(const Analyses& analyses);
+Json written(const StructureSettings& settings);
+/// [low, high]
+Json written_bounds(double low, double high);
+
+/// A number as a person writes it: 16, not 16.0.
+Json plain_number(double value);
+
+/// What an observable is called in the scene and in the results.
+std::string name_of(const Observable& observable);
+/// Default of "observe": one of each kind.
+std::vector<Observable> default_observables();
+
+/// The scene of a JSON object, with defaults in the place of what is faulty or missing. Sweeps are
+/// read, not expanded.
+Scene read_scene(const Reader& in);
+
+/// Notes what is at odds in values that are right one by one.
+void check_consistency(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns its analyses.
+void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the structure of its packings.
+void check_structure(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the number of realizations.
+void check_until(const Scene& scene, std::vector<Fault>& faults);
+/// Notes analyses over the points of a sweep that does not have what they need.
+void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults);
+
+}  // namespace jostle

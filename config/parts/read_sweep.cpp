@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/parts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::size_t most_values = 100'000;
+
+/// Numbers as plain_number writes them, so that 8 and 8.0 are one value.
+Json with_plain_numbers(Json value) {
+  if (value.is_number_float()) return plain_number(value.get<double>());
+  if (!value.is_structured()) return value;
+  for (auto& member : value) member = with_plain_numbers(member);
+  return value;
+}
+
+/// One pointer with its values, put at the end of an axis.
+void read_column(const Reader& in, const std::string& pointer, SweepAxis& axis) {
+  if (!pointer.starts_with('/')) {
+    in.fault("expected a JSON pointer, which begins with /");
+    return;
+  }
+  if (!in.is_list(1, most_values, "values")) return;
+  auto& [name, values] = axis.columns.emplace_back();
+  name = pointer;
+  for (const Json& value : in.value()) values.push_back(with_plain_numbers(value));
+}
+
+/// {"/a": [...], "/b": [...]}: lists of one length that vary together.
+void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
+  if (!in.value().is_object() || in.value().empty()) {
+    in.fault("expected an object of JSON pointers with lists of values, found " +
+             described(in.value()));
+    return;
+  }
+  SweepAxis axis;
+  for (const auto& [pointer, values] : in.value().items()) {
+    read_column(*in.find(pointer), pointer, axis);
+  }
+  const bool uneven =
+      std::any_of(axis.columns.begin(), axis.columns.end(),
+                  [&](const auto& column) { return column.second.size() != axis.size(); });
+  if (uneven) {
+    std::vector<std::string> lengths;
+    for (const auto& [pointer, values] : axis.columns) {
+      lengths.push_back(fmt::format("{} has {}", pointer, values.size()));
+    }
+    in.fault("zipped lists must have the same length: " + listed(lengths));
+    return;
+  }
+  if (axis.size() > 0) sweep.push_back(std::move(axis));
+}
+
+}  // namespace
+
+std::vector<SweepAxis> read_sweep(const Reader& in) {
+  std::vector<SweepAxis> sweep;
+  if (!in.value().is_object()) {
+    in.fault("expected an object of JSON pointers with lists of values, found " +
+             described(in.value()));
+    return sweep;
+  }
+  for (const auto& [key, value] : in.value().items()) {
+    const Reader member = *in.find(key);
+    if (key == "zip" && value.is_array()) {
+      for (std::size_t i = 0; i < value.size(); ++i) read_zipped(member.element(i), sweep);
+    } else if (key == "zip") {
+      read_zipped(member, sweep);
+    } else if (!key.starts_with('/')) {
+      member.fault("expected a JSON pointer, which begins with /, or \"zip\"");
+    } else {
+      SweepAxis axis;
+      read_column(member, key, axis);
+      if (axis.size() > 0) sweep.push_back(std::move(axis));
+    }
+  }
+  return sweep;
+}
+
+Json written(const std::vector<SweepAxis>& sweep) {
+  Json out = Json::object();
+  // A later axis must not overtake an earlier one: from the first zipped axis on, all are zipped.
+  bool zipped = false;
+  for (const SweepAxis& axis : sweep) {
+    zipped = zipped || axis.columns.size() > 1;
+    Json columns = Json::object();
+    for (const auto& [pointer, values] : axis.columns) columns[pointer] = values;
+    if (zipped) {
+      out["zip"].push_back(columns);
+    } else {
+      out.update(columns);
+    }
+  }
+  return out;
+}
+
+}  // namespace jostle

@@ -1,0 +1,160 @@
+#include <algorithm>
+
+#include "config/names.hpp"
+#include "config/parts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr std::uint64_t most_sweeps = 1'000'000'000;
+
+StartChoice read_pour(const Reader& in) {
+  const auto pour = in.named_choice({"steepest_descent", "fitted"});
+  if (!pour) return SteepestDescentPour{};
+  if (pour->name == "steepest_descent") {
+    pour->settings.is_object_of({});
+    return SteepestDescentPour{};
+  }
+  // Of the rule before: random moves of every sphere.
+  for (const std::string moves : {"max_step", "max_sweeps"}) {
+    if (const auto key = pour->settings.find(moves)) {
+      key->fault(
+          "a fitted pour has no settings any more: it pours the spheres that overlap a wall again "
+          "and moves no others, so there are no random moves to bound; write {\"pour\": "
+          "\"fitted\"}");
+      return FittedPour{};
+    }
+  }
+  pour->settings.is_object_of({});
+  return FittedPour{};
+}
+
+StartChoice read_random_settle(const Reader& in) {
+  RandomSettle settle;
+  if (in.is_object_of({"dilute_fraction"})) {
+    in.read("dilute_fraction", settle.dilute_fraction, above(0, 0.25));
+  }
+  return settle;
+}
+
+Lattice lattice_named(const std::string& name) {
+  return name == "fcc" ? Lattice::fcc : Lattice::hcp;
+}
+
+StartChoice read_crystal(const Reader& in) {
+  Crystal crystal;
+  if (in.value().is_string()) {
+    if (const auto name = in.one_of({"hcp", "fcc"})) crystal.lattice = lattice_named(*name);
+  } else if (in.is_object_of({"lattice", "stretch"})) {
+    if (!in.find("lattice")) in.missing("lattice", "one of the strings hcp, fcc");
+    in.read_name("lattice", crystal.lattice, lattices);
+    in.read_flag("stretch", crystal.stretch);
+  }
+  return crystal;
+}
+
+StartChoice read_grow(const Reader& in) {
+  Grow grow;
+  if (in.is_object_of({"max_sweeps"})) in.read_whole("max_sweeps", grow.max_sweeps, 1, most_sweeps);
+  return grow;
+}
+
+bool ends_with_one_of(const std::string& path, std::initializer_list<std::string_view> endings) {
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](std::string_view ending) { return path.ends_with(ending); });
+}
+
+/// "last" or a number.
+void read_last_or(const Reader& in, const std::string& key, std::optional<std::uint64_t>& into) {
+  const auto member = in.find(key);
+  if (!member || member->value() == "last") return;
+  if (member->value().is_number()) {
+    into = member->whole_number(0, most_sweeps);
+  } else {
+    member->fault("expected a whole number or \"last\", found " + described(member->value()));
+  }
+}
+
+void check_path(const Reader& in, const std::string& path) {
+  if (ends_with_one_of(path, {".h5", ".hdf5", ".xyz", ".extxyz"})) return;
+  in.fault(
+      "a packing file must end in .h5 or .hdf5 (results of an earlier run), or in .xyz or "
+      ".extxyz (extended XYZ)");
+}
+
+StartChoice read_file(const Reader& in) {
+  PackingFile file;
+  if (in.value().is_string()) {
+    file.path = in.value().get<std::string>();
+    check_path(in, file.path);
+    return file;
+  }
+  const std::vector<std::string> of_results{"path", "point", "realization", "tap"};
+  const std::vector<std::string> of_xyz{"path", "frame"};
+  const auto path = in.find("path");
+  if (path) {
+    file.path = path->text().value_or("");
+    if (path->sound()) check_path(*path, file.path);
+  }
+  const bool known = path && path->sound();
+  const bool xyz = known && ends_with_one_of(file.path, {".xyz", ".extxyz"});
+  if (!in.is_object_of(
+          xyz     ? of_xyz
+          : known ? of_results
+                  : std::vector<std::string>{"path", "point", "realization", "tap", "frame"})) {
+    return file;
+  }
+  if (!path) in.missing("path", "the file of a saved packing, from the folder of the scene");
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  in.read_whole("point", file.point, 0, most);
+  in.read_whole("realization", file.realization, 0, most);
+  read_last_or(in, "tap", file.tap);
+  read_last_or(in, "frame", file.frame);
+  return file;
+}
+
+Json number_or_last(const std::optional<std::uint64_t>& number) {
+  return number ? Json(*number) : Json("last");
+}
+
+struct Writer {
+  Json operator()(const SteepestDescentPour&) const { return {{"pour", "steepest_descent"}}; }
+  Json operator()(const FittedPour&) const { return {{"pour", "fitted"}}; }
+  Json operator()(const RandomSettle& settle) const {
+    return {{"random_settle", {{"dilute_fraction", plain_number(settle.dilute_fraction)}}}};
+  }
+  Json operator()(const Crystal& crystal) const {
+    return {{"crystal",
+             {{"lattice", name_in(lattices, crystal.lattice)}, {"stretch", crystal.stretch}}}};
+  }
+  Json operator()(const Grow& grow) const { return {{"grow", {{"max_sweeps", grow.max_sweeps}}}}; }
+  Json operator()(const PackingFile& file) const {
+    if (ends_with_one_of(file.path, {".xyz", ".extxyz"})) {
+      return {{"file", {{"path", file.path}, {"frame", number_or_last(file.frame)}}}};
+    }
+    return {{"file",
+             {{"path", file.path},
+              {"point", file.point},
+              {"realization", file.realization},
+              {"tap", number_or_last(file.tap)}}}};
+  }
+};
+
+}  // namespace
+
+StartChoice read_start(const Reader& in) {
+  const auto start = in.choice({"pour", "random_settle", "crystal", "grow", "file"});
+  if (!start) return SteepestDescentPour{};
+  if (start->name == "pour") return read_pour(start->settings);
+  if (start->name == "random_settle") return read_random_settle(start->settings);
+  if (start->name == "crystal") return read_crystal(start->settings);
+  if (start->name == "grow") return read_grow(start->settings);
+  return read_file(start->settings);
+}
+
+Json written(const StartChoice& start) {
+  return std::visit(Writer{}, start);
+}
+
+}  // namespace jostle

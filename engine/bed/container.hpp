@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "engine/bed/vec3.hpp"
+
+// What holds the spheres. Lengths in diameters. Every container but the fully periodic one has a
+// floor at z = 0 and an open top; every container's footprint lies in [0, width_x] x [0, width_y].
+namespace jostle {
+
+inline constexpr double sphere_radius = 0.5;
+inline constexpr double sphere_volume = 0.52359877559829887307710723054658;  // pi / 6
+
+/// Periodic sides (P.B.C. of Philippe & Bideau 2001). Coordinates in [0, width).
+struct PeriodicBox {
+  double width_x = 16, width_y = 16;
+  bool operator==(const PeriodicBox&) const = default;
+};
+
+/// Four impassable vertical planes (F.B.C. of Philippe & Bideau 2001). Centres in [1/2, width -
+/// 1/2].
+struct WalledBox {
+  double width_x = 16, width_y = 16;
+  bool operator==(const WalledBox&) const = default;
+};
+
+/// A vertical tube whose axis stands at (diameter / 2, diameter / 2).
+struct Cylinder {
+  double diameter = 19;
+  bool operator==(const Cylinder&) const = default;
+};
+
+/// Periodic in all three directions and without gravity: the hard-sphere fluid, for checking.
+struct FullyPeriodicBox {
+  double width_x = 10, width_y = 10, height = 10;
+  bool operator==(const FullyPeriodicBox&) const = default;
+};
+
+using Container = std::variant<PeriodicBox, WalledBox, Cylinder, FullyPeriodicBox>;
+
+/// Least widths for which minimum images and walls are right: periodic sides must be wider than
+/// 2 diameters (exclusive), walls and tubes at least 1 diameter.
+inline constexpr double least_periodic_width = 2;
+inline constexpr double least_walled_width = 1;
+
+/// What is wrong with the container's widths, naming the least width; nothing if they are right.
+std::optional<std::string> width_fault(const Container& container);
+
+/// Area of the floor, diameters squared.
+double footprint_area(const Container& container);
+
+/// Widths of the box around the footprint, diameters.
+double width_x(const Container& container);
+double width_y(const Container& container);
+
+bool has_gravity(const Container& container);
+
+}  // namespace jostle

@@ -1,0 +1,76 @@
+#include "engine/bed/slab.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace jostle {
+
+namespace {
+
+// Volume of a unit-diameter sphere below height h above its lowest point: pi h^2 (3 R - h) / 3.
+double cap_volume(double h) {
+  constexpr double pi = 6 * sphere_volume;
+  if (h <= 0) return 0;
+  if (h >= 1) return sphere_volume;
+  return pi * h * h * (1.5 - h) / 3;
+}
+
+double quantile(std::vector<double>& heights, double q) {
+  const double position = q * static_cast<double>(heights.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(position);
+  const auto nth = heights.begin() + below;
+  std::nth_element(heights.begin(), nth, heights.end());
+  const double low = *nth;
+  if (nth + 1 == heights.end()) return low;
+  const double high = *std::min_element(nth + 1, heights.end());
+  return low + (position - static_cast<double>(below)) * (high - low);
+}
+
+// Area of the cut through a sphere centred at height z.
+double cut_area(double z, double height) {
+  constexpr double pi = 6 * sphere_volume;
+  const double squared = 0.25 - (height - z) * (height - z);
+  return squared > 0 ? pi * squared : 0;
+}
+
+}  // namespace
+
+double sphere_volume_in_slab(double z, double low, double high) {
+  const double bottom = z - sphere_radius;
+  return cap_volume(high - bottom) - cap_volume(low - bottom);
+}
+
+double solids_fraction(const Packing& packing, HeightWindow window) {
+  assert(window.low <= window.high);
+  constexpr double thin = 1e-5;  // the mean over so thin a slab is that of its middle to 1e-10
+  const bool is_cut = window.high - window.low < thin;
+  const double middle = 0.5 * (window.low + window.high);
+  double solid = 0;
+  const auto add = [&](double shift) {
+    for (const Vec3& centre : packing.centres) {
+      const double z = centre.z + shift;
+      solid += is_cut ? cut_area(z, middle) : sphere_volume_in_slab(z, window.low, window.high);
+    }
+  };
+  add(0);
+  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
+    add(bulk->height);
+    add(-bulk->height);
+  }
+  const double depth = is_cut ? 1 : window.high - window.low;
+  return solid / (footprint_area(packing.container) * depth);
+}
+
+HeightWindow resolve(const Window& window, const Packing& packing) {
+  if (const auto* heights = std::get_if<HeightWindow>(&window)) return *heights;
+  assert(!packing.centres.empty());
+  const auto& quantiles = std::get<QuantileWindow>(window);
+  std::vector<double> heights(packing.centres.size());
+  std::ranges::transform(packing.centres, heights.begin(), &Vec3::z);
+  const double low = quantile(heights, quantiles.low);
+  const double high = quantile(heights, quantiles.high);
+  return {low, high};
+}
+
+}  // namespace jostle

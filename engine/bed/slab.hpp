@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "engine/bed/packing.hpp"
+#include "engine/monte_carlo/stops.hpp"
+
+// Solids fractions in closed form: a plane cuts a sphere into segments of known volume.
+namespace jostle {
+
+/// Volume of the part of a unit-diameter sphere centred at height z that lies in
+/// [low, high], diameters cubed. Requires low <= high.
+double sphere_volume_in_slab(double z, double low, double high);
+
+/// Solids fraction of the container between two heights: volume of spheres / volume of the slab.
+/// Exact but for rounding. Of a window without depth, as the quantiles of a single layer on the
+/// floor give, it is the area fraction of the plane cut there (and so below 1e-5 diameters, to
+/// 1e-10). Requires window.low <= window.high, and in a fully periodic box a window inside [0,
+/// height]: spheres that reach through its ends count on both sides.
+double solids_fraction(const Packing& packing, HeightWindow window);
+
+/// The window in heights: a height window is itself; a quantile window is taken from the heights
+/// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
+HeightWindow resolve(const Window& window, const Packing& packing);
+
+}  // namespace jostle

@@ -1,0 +1,189 @@
+#pragma once
+
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "engine/bed/container.hpp"
+#include "engine/bed/vec3.hpp"
+#include "engine/monte_carlo/kernel/large_pages.hpp"
+
+// The arithmetic of engine/bed/geometry.hpp for the trial loop: x and y side by side in one
+// register and no branches. It gives the same numbers, bit for bit (a zero may differ in its sign);
+// the trial loop is tested against the plain functions.
+namespace jostle {
+
+/// Two lateral coordinates, in one SSE2 register.
+using Pair = double __attribute__((vector_size(16), may_alias));
+
+/// Four numbers in single precision, in one SSE register.
+using Lanes = float __attribute__((vector_size(16), may_alias));
+
+/// A centre ready for the loop: aligned, half a cache line.
+struct alignas(32) PackedCentre {
+  Pair xy;
+  double z, unused;
+};
+
+using PackedCentres = std::vector<PackedCentre, LargePageAllocator<PackedCentre>>;
+
+inline PackedCentre packed(Vec3 r) {
+  return {Pair{r.x, r.y}, r.z, 0};
+}
+inline Vec3 unpacked(const PackedCentre& r) {
+  return {r.xy[0], r.xy[1], r.z};
+}
+
+namespace packed_geometry {
+
+/// `values` where the mask is set, else zero.
+template <class Mask>
+inline Pair where(Mask mask, Pair values) {
+  using Bits = std::int64_t __attribute__((vector_size(16)));
+  return (Pair)((Bits)mask & (Bits)values);
+}
+
+inline Pair wrap(Pair r, Pair width) {
+  r += where(r < 0, width);
+  return r - where(r >= width, width);
+}
+
+inline Pair nearest_image(Pair d, Pair width) {
+  const Pair half = 0.5 * width;
+  return d - (where(d > half, width) - where(d < -half, width));
+}
+
+inline bool both(Pair low, Pair high) {
+  const auto inside = low <= high;
+  return (inside[0] & inside[1]) != 0;
+}
+
+// Added to every room to floor and sides in single precision, so that it is never too small for
+// steps below 10 diameters.
+inline constexpr float room_margin = 2e-6f;
+
+inline float room(double exact) {
+  return static_cast<float>(std::max(exact, 0.0)) + room_margin;
+}
+inline float room_below(const PackedCentre& r) {
+  return room(r.z - sphere_radius);
+}
+
+/// Room to the nearer of two walls, negative if that is the lower one.
+inline float room_between(double low, double at, double high) {
+  return at - low < high - at ? -room(at - low) : room(high - at);
+}
+
+}  // namespace packed_geometry
+
+/// A container with its constants laid out for the loop. `room` is what a step of the sphere has to
+/// floor and sides, in a form that `leaves` understands: true if a step certainly ends outside.
+template <class Box>
+struct PackedBox;
+
+/// Sides that are no obstacle, over a floor.
+struct PackedFloor {
+  static Lanes room(const PackedCentre& r) {
+    return Lanes{0, 0, packed_geometry::room_below(r), 0};
+  }
+  static bool leaves(const Lanes& room, float, float, float dz) { return dz < -room[2]; }
+};
+
+/// Free lateral space: what walled boxes and cylinders share.
+struct PackedOpenBox {
+  static PackedCentre wrapped(PackedCentre r) { return r; }
+  static Pair lateral(Pair d) { return d; }
+  static double vertical(double d) { return d; }
+};
+
+template <>
+struct PackedBox<PeriodicBox> : PackedFloor {
+  Pair width;
+  explicit PackedBox(const PeriodicBox& box) : width{box.width_x, box.width_y} {}
+  PackedCentre wrapped(PackedCentre r) const {
+    return {packed_geometry::wrap(r.xy, width), r.z, 0};
+  }
+  Pair lateral(Pair d) const { return packed_geometry::nearest_image(d, width); }
+  static double vertical(double d) { return d; }
+  static bool clear_of_boundaries(const PackedCentre& r) { return r.z >= sphere_radius; }
+};
+
+template <>
+struct PackedBox<WalledBox> : PackedOpenBox {
+  Pair low = {sphere_radius, sphere_radius}, high;
+  explicit PackedBox(const WalledBox& box)
+      : high{box.width_x - sphere_radius, box.width_y - sphere_radius} {}
+  bool clear_of_boundaries(const PackedCentre& r) const {
+    return r.z >= sphere_radius && packed_geometry::both(low, r.xy) &&
+           packed_geometry::both(r.xy, high);
+  }
+  Lanes room(const PackedCentre& r) const {
+    return Lanes{packed_geometry::room_between(low[0], r.xy[0], high[0]),
+                 packed_geometry::room_between(low[1], r.xy[1], high[1]),
+                 -packed_geometry::room_below(r), 1};
+  }
+  static bool leaves(const Lanes& room, float dx, float dy, float dz) {
+    using Bits = std::int32_t __attribute__((vector_size(16)));
+    const Bits side = (Bits)room & std::int32_t(0x80000000);
+    const Lanes towards = (Lanes)((Bits)Lanes{dx, dy, dz, 0} ^ side);
+    return _mm_movemask_ps((__m128)(towards > (Lanes)((Bits)room ^ side))) != 0;
+  }
+};
+
+template <>
+struct PackedBox<Cylinder> : PackedOpenBox {
+  Pair axis;
+  double reach;
+  explicit PackedBox(const Cylinder& tube)
+      : axis{0.5 * tube.diameter, 0.5 * tube.diameter},
+        reach(0.5 * tube.diameter - sphere_radius) {}
+  bool clear_of_boundaries(const PackedCentre& r) const {
+    const Pair d = r.xy - axis;
+    return r.z >= sphere_radius && d[0] * d[0] + d[1] * d[1] <= reach * reach;
+  }
+  // The outward normal, the room below and the room along the normal.
+  Lanes room(const PackedCentre& r) const {
+    const Pair d = r.xy - axis;
+    const double radius = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+    const Pair normal = radius > 0 ? d / radius : Pair{0, 0};
+    return Lanes{static_cast<float>(normal[0]), static_cast<float>(normal[1]),
+                 packed_geometry::room_below(r), packed_geometry::room(reach - radius)};
+  }
+  static bool leaves(const Lanes& room, float dx, float dy, float dz) {
+    return (room[0] * dx + room[1] * dy > room[3]) | (dz < -room[2]);
+  }
+};
+
+template <>
+struct PackedBox<FullyPeriodicBox> {
+  Pair width;
+  double height;
+  explicit PackedBox(const FullyPeriodicBox& box)
+      : width{box.width_x, box.width_y}, height(box.height) {}
+  PackedCentre wrapped(PackedCentre r) const {
+    return {packed_geometry::wrap(r.xy, width),
+            packed_geometry::wrap(Pair{r.z, 0}, Pair{height, 1})[0], 0};
+  }
+  Pair lateral(Pair d) const { return packed_geometry::nearest_image(d, width); }
+  double vertical(double d) const {
+    return packed_geometry::nearest_image(Pair{d, 0}, Pair{height, 1})[0];
+  }
+  static bool clear_of_boundaries(const PackedCentre&) { return true; }
+  static Lanes room(const PackedCentre&) { return Lanes{}; }
+  static bool leaves(const Lanes&, float, float, float) { return false; }
+};
+
+/// Squared distance of two centres, to the nearest image.
+template <class Box>
+inline double distance_squared(const PackedBox<Box>& box, const PackedCentre& a,
+                               const PackedCentre& b) {
+  const Pair d = box.lateral(a.xy - b.xy);
+  const double dz = box.vertical(a.z - b.z);
+  const Pair squares = d * d;
+  return squares[0] + squares[1] + dz * dz;
+}
+
+}  // namespace jostle

@@ -1,0 +1,64 @@
+#include "engine/monte_carlo/plain_loop.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/bed/elementary.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/monte_carlo/theta_table.hpp"
+
+namespace jostle {
+
+PlainLoop::PlainLoop(Packing packing, const Move& move, StreamKey key)
+    : packing_(std::move(packing)),
+      move_(move),
+      key_(key),
+      step_(std::visit([](const auto& chosen) { return chosen.max_step; }, move)) {
+  if (const auto* polar = std::get_if<PolarMove>(&move_)) theta_table_ = make_theta_table(*polar);
+}
+
+void PlainLoop::run(std::uint64_t n_trials) {
+  const bool polar = std::holds_alternative<PolarMove>(move_);
+  const ProposalKernels kernels = baseline::proposal_kernels();
+  for (const std::uint64_t end = next_trial_ + n_trials; next_trial_ < end; ++next_trial_) {
+    const std::uint64_t t = next_trial_ % ProposalBatch::size;
+    if (t == 0) {
+      const BatchOrigin origin{static_cast<std::uint64_t>(key_), next_trial_,
+                               static_cast<std::uint32_t>(packing_.centres.size())};
+      if (polar) {
+        kernels.polar(origin, theta_table_.data(), step_, *batch_);
+      } else {
+        kernels.metropolis(origin, *batch_);
+      }
+    }
+    const Vec3 step{batch_->dx[t], batch_->dy[t], batch_->dz[t]};
+    accepted_ += passes(batch_->sphere[t], polar ? step : step_ * step);
+  }
+}
+
+bool PlainLoop::passes(std::uint32_t sphere, Vec3 step) {
+  return std::visit(
+      [&](const auto& box) {
+        const Vec3 target = wrapped(box, packing_.centres[sphere] + step);
+        if (!clear_of_boundaries(box, target)) return false;
+        for (std::size_t j = 0; j < packing_.centres.size(); ++j) {
+          if (j != sphere && overlaps(box, target, packing_.centres[j])) return false;
+        }
+        const auto* metropolis = std::get_if<MetropolisMove>(&move_);
+        if (metropolis && has_gravity(packing_.container) && !rise_passes(*metropolis, step.z)) {
+          return false;
+        }
+        packing_.centres[sphere] = target;
+        return true;
+      },
+      packing_.container);
+}
+
+bool PlainLoop::rise_passes(const MetropolisMove& move, double dz) const {
+  if (dz <= 0) return true;
+  if (std::isinf(move.beta)) return false;
+  const double u = (philox_block(key_, next_trial_, 1)[0] + 0.5) * 0x1p-32;
+  return u < exponential(-(move.beta * dz));
+}
+
+}  // namespace jostle

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/bed/slab.hpp"
+#include "engine/monte_carlo/stops.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+
+namespace jostle {
+
+enum class RelaxationStatus : std::uint32_t { running = 0, settled = 1, capped = 2 };
+
+/// Everything a relaxation must remember to go on bit for bit after a checkpoint.
+struct RelaxationProgress {
+  RelaxationStatus status = RelaxationStatus::running;
+  std::uint64_t trials = 0;    // since the tap
+  std::uint64_t accepted = 0;  // of them
+  bool measured = false;       // whether last_value holds a measurement
+  double last_value = 0;       // of <Z> or the bulk fraction
+  std::uint32_t passes = 0;    // times in a row the rule was met
+  bool operator==(const RelaxationProgress&) const = default;
+};
+
+/// Runs trials until the stop rule is met, the cap is reached or about `budget` trials are done;
+/// returns at a sweep boundary. `window` is the resolved window of a BulkFractionStop, else unused.
+void relax(TrialLoop& loop, const Stop& stop, HeightWindow window, RelaxationProgress& progress,
+           std::uint64_t budget);
+
+}  // namespace jostle

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/monte_carlo/moves.hpp"
+#include "engine/monte_carlo/stops.hpp"
+
+namespace jostle {
+
+/// Where the trials of a realization stand; with the positions, all that the next trial depends on.
+struct MoveState {
+  std::uint64_t next_trial = 0;     // number of the next trial of the realization: Philox's counter
+  double step = 0;                  // Metropolis: the current largest displacement, diameters
+  std::uint64_t window_trials = 0;  // trials counted since the last adaptation of the step
+  std::uint64_t window_base = 0;    // of them, those the share is taken of
+  std::uint64_t window_accepted = 0;  // of these, the accepted ones
+  bool operator==(const MoveState&) const = default;
+};
+
+/// How a loop finds the trials that move a sphere. The law of the trajectory is the same.
+enum class Sampler {
+  exhaustive,  // looks at every trial
+  skipping,    // advances over trials that are certainly refused, once few are accepted
+};
+
+/// What the skipping sampler must remember besides MoveState; unused by the exhaustive one.
+struct SamplerState {
+  bool skipping = false;              // else every trial is looked at, as after each tap
+  std::uint64_t window_trials = 0;    // looked at since the last decision whether to skip
+  std::uint64_t window_accepted = 0;  // of them
+  std::uint64_t candidate = 0;        // number of the next candidate of the realization
+  std::uint64_t pending = 0;          // number of the trial that it is
+  double reference_step = 0;          // Metropolis: the step for which the bounds are, diameters
+  bool operator==(const SamplerState&) const = default;
+};
+
+/// Counts since the loop was made; they steer nothing that is stored.
+struct TrialTally {
+  std::uint64_t trials = 0;
+  std::uint64_t accepted = 0;
+  std::uint64_t distance_tests = 0;
+  std::uint64_t list_builds = 0;    // of all neighbour lists at once
+  std::uint64_t list_renewals = 0;  // of one sphere's list
+  std::uint64_t candidates = 0;     // skipping: trials looked at while skipping
+  std::uint64_t bound_rows = 0;     // skipping: makings of a sphere's bounds
+};
+
+enum class InstructionSet { baseline, avx2, avx512 };
+
+std::string_view name(InstructionSet set);
+/// The widest instruction set of this machine, or what the environment variable
+/// JOSTLE_INSTRUCTION_SET (baseline, avx2, avx512) asks for. All give the same bits.
+InstructionSet best_instruction_set();
+
+/// Trial moves of hard spheres: proposes, tests for overlap, accepts or refuses. The container and
+/// the move are chosen once, here; the loop inside is compiled for that pair.
+class TrialLoop {
+ public:
+  virtual ~TrialLoop() = default;
+
+  /// Takes over the centres of a packing in the loop's container.
+  virtual void load(const Packing& packing) = 0;
+  /// Writes the centres back: packing.centres, [n_spheres], in the order they were loaded.
+  virtual void store(Packing& packing) const = 0;
+  /// Makes `n_trials` trials. The trajectory does not depend on how trials are split over calls.
+  virtual void run(std::uint64_t n_trials) = 0;
+  /// Begins the relaxation of a tap: resets the Metropolis step where the move asks for it.
+  virtual void begin_tap() = 0;
+
+  /// <Z> of the spheres as they stand, diameters, summed in the order they were loaded.
+  virtual double mean_height() const = 0;
+  /// Solids fraction between two heights (engine/bed/slab.hpp).
+  virtual double solids_fraction(HeightWindow window) const = 0;
+  virtual std::uint32_t n_spheres() const = 0;
+  virtual const MoveState& state() const = 0;
+  virtual SamplerState sampler_state() const { return {}; }
+  /// Goes on, with the centres loaded before, from where another loop stood.
+  virtual void restore(const MoveState& state, const SamplerState& sampler = {}) = 0;
+  virtual const TrialTally& tally() const = 0;
+  /// Bytes held, positions and neighbour lists included.
+  virtual std::size_t bytes() const = 0;
+};
+
+/// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials.
+/// Throws std::invalid_argument for a polar move without gravity (FullyPeriodicBox), and for the
+/// skipping sampler unless trials never rise: it needs gravity, and of the Metropolis move
+/// beta = infinity and an adaptation that counts all trials.
+std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
+                                           StreamKey key,
+                                           InstructionSet set = best_instruction_set(),
+                                           Sampler sampler = Sampler::exhaustive);
+
+}  // namespace jostle

@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "engine/bed/geometry.hpp"
+#include "engine/starts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+// One direction of a lattice: `count` sites, `spacing` apart.
+struct Rows {
+  long count;
+  double spacing;
+};
+
+// Rows `spacing` apart, their number a multiple of `multiple`, that fit into a period.
+struct RowFit {
+  Rows rows;
+  bool whole;              // whether they fill the period
+  double smaller, larger;  // the periods nearest below and above that they would fill
+};
+
+// Rounding of a width in its last digits is allowed for; a width that is too small by more would
+// make the rows overlap, one that is too large by at most 1e-9 spaces them out invisibly.
+RowFit fit_rows(double period, double spacing, long multiple) {
+  constexpr double short_of = 5e-13, beyond = 1e-9;  // relative
+  const double unit = spacing * static_cast<double>(multiple);
+  const double units = std::floor(period / unit * (1 + short_of));
+  const long count = multiple * static_cast<long>(units);
+  const double filled = static_cast<double>(count) * spacing;
+  const bool whole = count > 0 && std::abs(period - filled) <= beyond * period;
+  return {{count, whole && std::abs(period - filled) <= 4e-16 * period
+                      ? spacing
+                      : period / static_cast<double>(std::max(count, 1L))},
+          whole,
+          filled,
+          whole ? filled : filled + unit};
+}
+
+// Layers parallel to the floor, two kinds in turn: the second is shifted sideways.
+struct CrystalPlan {
+  Rows across, rows;  // along x; along y
+  double row_shift;   // along x, of every second row
+  double layer_shift_x, layer_shift_y;
+  double layer_spacing;
+};
+
+// Spacings of the close-packed lattices.
+const double hcp_row = std::sqrt(3.0) / 2, hcp_layer = std::sqrt(2.0 / 3);
+const double fcc_layer = std::sqrt(0.5);
+
+double row_spacing(Lattice lattice) {
+  return lattice == Lattice::hcp ? hcp_row : 1;
+}
+const char* name(Lattice lattice) {
+  return lattice == Lattice::hcp ? "hcp crystal" : "fcc crystal";
+}
+
+// Where rows are spaced out the next layer lies at the point equidistant from three (hcp) or four
+// (fcc) spheres, and sinks until it touches them or the layer two below.
+CrystalPlan plan_layers(Lattice lattice, Rows across, Rows rows) {
+  const double a = across.spacing, b = rows.spacing;
+  if (lattice == Lattice::hcp) {
+    const double y = (b * b - 0.25 * a * a) / (2 * b), radius = b - y;
+    const bool close_packed = a == 1 && b == hcp_row;
+    const double sunk = std::sqrt(std::max(0.25, 1 - radius * radius));
+    return {across, rows, 0.5 * a, 0.5 * a, y, close_packed ? hcp_layer : sunk};
+  }
+  const bool close_packed = a == 1 && b == 1;
+  const double sunk = std::sqrt(std::max(0.25, 1 - 0.25 * (a * a + b * b)));
+  return {across, rows, 0, 0.5 * a, 0.5 * b, close_packed ? fcc_layer : sunk};
+}
+
+std::string number(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+std::string footprint(double x, double y) {
+  return number(x) + " x " + number(y);
+}
+
+[[noreturn]] void refuse_footprint(const Crystal& crystal, double x, double y, const RowFit& across,
+                                   const RowFit& rows) {
+  const bool smaller_is_legal =
+      across.smaller > least_periodic_width && rows.smaller > least_periodic_width;
+  throw StartError(std::string(name(crystal.lattice)) + ": whole rows do not fill the footprint " +
+                   footprint(x, y) + "; the nearest that they fill are " +
+                   (smaller_is_legal ? footprint(across.smaller, rows.smaller) + " and " : "") +
+                   footprint(across.larger, rows.larger) +
+                   " diameters: take one of them, or stretch the rows");
+}
+
+CrystalPlan plan_periodic(const Crystal& crystal, const Container& container) {
+  const double x = width_x(container), y = width_y(container);
+  const RowFit across = fit_rows(x, 1, 1);
+  const RowFit rows =
+      fit_rows(y, row_spacing(crystal.lattice), crystal.lattice == Lattice::hcp ? 2 : 1);
+  if (!crystal.stretch && !(across.whole && rows.whole)) {
+    refuse_footprint(crystal, x, y, across, rows);
+  }
+  return plan_layers(crystal.lattice, across.rows, rows.rows);
+}
+
+// Between walls the lattice is the perfect one, with a row along the walls x = 0 and y = 0, or with
+// a site on the axis of a tube; sites too near a wall are left out.
+CrystalPlan plan_between_walls(const Crystal& crystal, const Container& container) {
+  if (crystal.stretch) {
+    throw StartError(std::string(name(crystal.lattice)) +
+                     ": stretch spaces rows out to a period, and there is none between walls; "
+                     "leave it out or use periodic sides");
+  }
+  const Rows across = {static_cast<long>(width_x(container)) + 2, 1};
+  const Rows rows = {static_cast<long>(width_y(container) / row_spacing(crystal.lattice)) + 2,
+                     row_spacing(crystal.lattice)};
+  return plan_layers(crystal.lattice, across, rows);
+}
+
+// The sites of layer 0 or 1, row by row, at height 0.
+std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Container& container, bool shifted) {
+  const bool walled = std::holds_alternative<WalledBox>(container);
+  const bool tube = std::holds_alternative<Cylinder>(container);
+  const double corner = walled ? sphere_radius : tube ? 0.5 * width_x(container) : 0;
+  const long first_row = tube ? -plan.rows.count : 0, first = tube ? -plan.across.count : 0;
+  std::vector<Vec3> sites;
+  for (long j = first_row; j < plan.rows.count; ++j) {
+    for (long i = first; i < plan.across.count; ++i) {
+      const double x = static_cast<double>(i) * plan.across.spacing +
+                       (j % 2 != 0 ? plan.row_shift : 0) + (shifted ? plan.layer_shift_x : 0);
+      const double y =
+          static_cast<double>(j) * plan.rows.spacing + (shifted ? plan.layer_shift_y : 0);
+      const Vec3 site = {corner + x, corner + y, sphere_radius};
+      std::visit(
+          [&](const auto& box) {
+            const Vec3 inside = wrapped(box, site);
+            if (clear_of_boundaries(box, inside)) sites.push_back(inside);
+          },
+          container);
+    }
+  }
+  return sites;
+}
+
+// How many layers a fully periodic box holds.
+long fit_layers(const Crystal& crystal, CrystalPlan& plan, const FullyPeriodicBox& box) {
+  const RowFit layers = fit_rows(box.height, plan.layer_spacing, 2);
+  if (layers.rows.count == 0 || !(layers.whole || crystal.stretch)) {
+    throw StartError(
+        std::string(name(crystal.lattice)) + ": whole layers do not fill the height " +
+        number(box.height) + "; the nearest that they fill are " +
+        (layers.smaller > least_periodic_width ? number(layers.smaller) + " and " : "") +
+        number(layers.larger) + " diameters: take one of them, or stretch the layers");
+  }
+  plan.layer_spacing = layers.rows.spacing;
+  return layers.rows.count;
+}
+
+}  // namespace
+
+std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
+                                std::uint32_t n_spheres) {
+  const auto* fluid = std::get_if<FullyPeriodicBox>(&container);
+  const bool periodic = fluid != nullptr || std::holds_alternative<PeriodicBox>(container);
+  CrystalPlan plan =
+      periodic ? plan_periodic(crystal, container) : plan_between_walls(crystal, container);
+  const std::vector<Vec3> kinds[2] = {layer_sites(plan, container, false),
+                                      layer_sites(plan, container, true)};
+  if (kinds[0].empty() || kinds[1].empty()) {
+    throw StartError(std::string(name(crystal.lattice)) +
+                     ": the container is too narrow for one of the two kinds of layers to have a "
+                     "site; widen it, or pour the spheres");
+  }
+  if (fluid != nullptr) {
+    const long layers = fit_layers(crystal, plan, *fluid);
+    const auto capacity = static_cast<std::size_t>(layers) * kinds[0].size();
+    if (n_spheres > capacity) {
+      throw StartError(std::string(name(crystal.lattice)) + ": the box has " +
+                       std::to_string(capacity) + " sites for " + std::to_string(n_spheres) +
+                       " spheres; enlarge it or take fewer spheres");
+    }
+  }
+  std::vector<Vec3> centres;
+  centres.reserve(n_spheres);
+  for (long layer = 0; centres.size() < n_spheres; ++layer) {
+    const double z = sphere_radius + static_cast<double>(layer) * plan.layer_spacing;
+    for (const Vec3& site : kinds[layer % 2]) {
+      if (centres.size() == n_spheres) break;
+      Vec3 r = {site.x, site.y, z};
+      if (fluid != nullptr) r = wrapped(*fluid, r);
+      centres.push_back(r);
+    }
+  }
+  return centres;
+}
+
+}  // namespace jostle

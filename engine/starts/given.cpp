@@ -1,0 +1,80 @@
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "engine/bed/geometry.hpp"
+#include "engine/starts/parts.hpp"
+
+namespace jostle {
+
+namespace {
+
+// A coordinate any number of periods away, brought into [0, width).
+double into_period(double x, double width) {
+  if (x >= 0 && x < width) return x;
+  return wrap_coordinate(x - std::floor(x / width) * width, width);
+}
+
+Vec3 into_box(const Container& container, Vec3 r) {
+  const auto* fluid = std::get_if<FullyPeriodicBox>(&container);
+  if (fluid != nullptr) r.z = into_period(r.z, fluid->height);
+  if (fluid != nullptr || std::holds_alternative<PeriodicBox>(container)) {
+    r.x = into_period(r.x, width_x(container));
+    r.y = into_period(r.y, width_y(container));
+  }
+  return r;
+}
+
+std::string in_diameters(double depth) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g", depth);
+  return std::string(text) + " diameters";
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw StartError("given packing: " + why);
+}
+
+void check_overlaps(const Packing& packing) {
+  const Overlap worst = deepest_overlap(packing);
+  if (worst.depth <= overlap_bound(packing)) return;
+  const std::string with = worst.second < 0 ? "the floor or a side of the container"
+                                            : "sphere " + std::to_string(worst.second);
+  refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
+         in_diameters(worst.depth) +
+         ", the deepest overlap of the packing; check that its lengths are in diameters and that "
+         "it was made in this container, and that no digits were dropped when it was written");
+}
+
+}  // namespace
+
+std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
+                              std::uint32_t n_spheres) {
+  if (given.centres == nullptr) refuse("it holds no centres; read them from a file first");
+  if (given.centres->size() != n_spheres) {
+    refuse("it holds " + std::to_string(given.centres->size()) + " spheres where " +
+           std::to_string(n_spheres) + " are asked for; ask for as many as it holds");
+  }
+  // Far outside the container a coordinate is no rounding: refused here, before any neighbours are
+  // sought.
+  constexpr double far_outside = 1;
+  Packing packing{container, {}};
+  packing.centres.reserve(n_spheres);
+  for (const Vec3& centre : *given.centres) {
+    const std::string name = "sphere " + std::to_string(packing.centres.size());
+    if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
+      refuse(name + " has a coordinate that is not a finite number; mend the file");
+    }
+    const Vec3 r = into_box(container, centre);
+    if (r.z < -far_outside || r.x < -far_outside || r.y < -far_outside ||
+        r.x > width_x(container) + far_outside || r.y > width_y(container) + far_outside) {
+      refuse(name + " lies outside the container; check that its lengths are in diameters and " +
+             "that it was made in this container");
+    }
+    packing.centres.push_back(r);
+  }
+  check_overlaps(packing);
+  return packing.centres;
+}
+
+}  // namespace jostle

@@ -1,0 +1,214 @@
+#include "engine/starts/pour_path.hpp"
+
+#include <limits>
+
+namespace jostle {
+
+namespace {
+
+constexpr Vec3 vertical = {0, 0, 1};
+
+Vec3 unit(Vec3 v) {
+  return (1 / std::sqrt(norm_squared(v))) * v;
+}
+
+RollingArc directed(RollingArc arc, Vec3 p) {
+  const Vec3 out = (1 / arc.radius) * (p - arc.centre);
+  if (dot(out, arc.sideways) < 0) arc.sideways = -1.0 * arc.sideways;
+  arc.start = std::min(1.0, dot(out, arc.up));
+  return arc;
+}
+
+double sine(double cosine) {
+  return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
+}
+
+// Along the arc the (squared) gap to a sphere or flat wall is constant - (sideways s + up h).
+struct GapOnArc {
+  double constant, sideways, up;
+};
+
+GapOnArc gap_on(const RollingArc& arc, const Obstacle& obstacle) {
+  if (obstacle.kind == Obstacle::Kind::wall) {
+    return {gap(obstacle, arc.centre), -arc.radius * dot(obstacle.at, arc.sideways),
+            -arc.radius * dot(obstacle.at, arc.up)};
+  }
+  const Vec3 away = obstacle.at - arc.centre;
+  return {arc.radius * arc.radius + norm_squared(away) - 1,
+          2 * arc.radius * dot(away, arc.sideways), 2 * arc.radius * dot(away, arc.up)};
+}
+
+// The point (s, h) of the whole circle where it enters the obstacle; nothing if it never does.
+struct OnCircle {
+  double s, h;
+};
+
+std::optional<OnCircle> entry(const RollingArc& arc, const Obstacle& obstacle) {
+  const auto [k, a, b] = gap_on(arc, obstacle);
+  const double squared = a * a + b * b;
+  if (!(squared > k * k)) return std::nullopt;
+  const double half_chord = std::sqrt(squared - k * k);
+  return OnCircle{(k * a - b * half_chord) / squared, (k * b + a * half_chord) / squared};
+}
+
+bool contains(std::span<const Obstacle> set, const Obstacle& obstacle) {
+  return std::find(set.begin(), set.end(), obstacle) != set.end();
+}
+
+// Half-angle parameter of a quarter circle: (sine, cosine) = (2 t, 1 - t^2) / (1 + t^2).
+double half_angle(double s, double h) {
+  return s / (1 + h);
+}
+OnCircle on_quarter(double t) {
+  return {2 * t / (1 + t * t), (1 - t * t) / (1 + t * t)};
+}
+
+// Where the arc leaves the tube before it reaches the height `end` (a cosine).
+std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& tube, double end) {
+  if (gap(tube, arc.centre) > arc.radius) return std::nullopt;
+  const auto found = first_contact(
+      half_angle(sine(arc.start), arc.start), half_angle(sine(end), end),
+      [&](double t) {
+        const OnCircle on = on_quarter(t);
+        return gap(tube, arc.at(on.s, on.h));
+      },
+      [&](double t, double length) {
+        return std::min(t + length / (2 * arc.radius), half_angle(sine(end), end));
+      });
+  if (!found) return std::nullopt;
+  return on_quarter(*found);
+}
+
+}  // namespace
+
+RollingArc arc_on(Vec3 sphere, Vec3 p) {
+  const Vec3 across = {p.x - sphere.x, p.y - sphere.y, 0};
+  return directed({sphere, unit(across), vertical, 1, 1, 0}, p);
+}
+
+RollingArc arc_on(Vec3 sphere, Vec3 other, Vec3 p) {
+  const Vec3 apart = other - sphere;
+  const double squared = norm_squared(apart), length = std::sqrt(squared);
+  const Vec3 axis = (1 / length) * apart;
+  const Vec3 up = unit(vertical - axis.z * axis);
+  const double radius = std::sqrt(1 - 0.25 * squared);
+  // The share of the weight on the upper sphere vanishes where h up.z / radius = 2 |axis.z| /
+  // length.
+  const double end = std::min(1.0, 2 * radius * std::abs(axis.z) / (length * up.z));
+  return directed({0.5 * (sphere + other), unit(cross(axis, vertical)), up, radius, 1, end}, p);
+}
+
+RollingArc arc_along_wall(Vec3 sphere, const Obstacle& wall, Vec3 p) {
+  const double distance = gap(wall, sphere);
+  const Vec3 centre = sphere - distance * wall.at;
+  const double radius = std::sqrt((1 - distance) * (1 + distance));
+  return directed({centre, cross(wall.at, vertical), vertical, radius, 1, 0}, p);
+}
+
+Vec3 follow(const RollingArc& arc, Vec3 p, std::span<const Obstacle> obstacles,
+            std::span<const Obstacle> supports) {
+  constexpr double rounding = 1e-12, touching = 1e-10, beside = 1e-6;
+  OnCircle first = {sine(arc.end), arc.end};
+  bool met = false;
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.kind == Obstacle::Kind::tube || contains(supports, obstacle)) continue;
+    const auto on = entry(arc, obstacle);
+    if (!on || on->s < 0 || on->h <= first.h || on->h > arc.start + rounding) continue;
+    // What is touched already and not in the way is being left.
+    const bool left =
+        gap(obstacle, p) < touching && norm_squared(arc.at(on->s, on->h) - p) < beside * beside;
+    if (left) continue;
+    first = *on;
+    met = true;
+  }
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.kind != Obstacle::Kind::tube || contains(supports, obstacle)) continue;
+    if (const auto on = entry_into_tube(arc, obstacle, first.h)) {
+      first = *on;
+      met = true;
+    }
+  }
+  Vec3 end = arc.at(first.s, first.h);
+  if (!met && arc.end == 0) end.z = arc.centre.z;
+  return end;
+}
+
+namespace {
+
+// On the tube's surface around its axis: the direction is turned away from the sphere's own by the
+// parameter x in [0, 2], a quarter turn for each unit, at most 2 radians a unit.
+class TubePath {
+ public:
+  TubePath(Vec3 sphere, const Obstacle& tube, Vec3 p) : sphere_(sphere), tube_(tube) {
+    const double ox = sphere.x - tube.at.x, oy = sphere.y - tube.at.y;
+    offset_ = std::sqrt(ox * ox + oy * oy);
+    toward_ = {ox / offset_, oy / offset_, 0};
+    aside_ = {-toward_.y, toward_.x, 0};
+    const Vec3 out = (1 / tube.reach) * (p - tube.at);
+    if (dot(out, aside_) < 0) aside_ = -1.0 * aside_;
+    start_ = parameter(std::clamp(dot(out, toward_), -1.0, 1.0));
+    const double level =
+        (tube.reach * tube.reach + offset_ * offset_ - 1) / (2 * tube.reach * offset_);
+    reaches_bottom_ = !(level > -1);
+    end_ = reaches_bottom_ ? 2 : parameter(std::min(level, 1.0));
+  }
+
+  double start() const { return start_; }
+  double end() const { return end_; }
+  bool reaches_bottom() const { return reaches_bottom_; }
+
+  Vec3 at(double x) const {
+    const OnCircle on = x <= 1 ? on_quarter(x) : turned(on_quarter(x - 1));
+    Vec3 p = tube_.at + tube_.reach * (on.h * toward_ + on.s * aside_);
+    const double dx = p.x - sphere_.x, dy = p.y - sphere_.y;
+    p.z = sphere_.z + std::sqrt(std::max(0.0, 1 - dx * dx - dy * dy));
+    return p;
+  }
+
+  // A parameter after x within the given length of path.
+  double advance(double x, double length) const {
+    const double height = at(x).z;
+    for (double step = length / (4 * tube_.reach);; step *= 0.5) {
+      const double next = std::min(end_, x + step);
+      if (height - at(next).z <= 0.5 * length || step < 1e-13) return next;
+    }
+  }
+
+ private:
+  static OnCircle turned(OnCircle on) { return {on.h, -on.s}; }
+  static double parameter(double cosine) {
+    return cosine >= 0 ? half_angle(sine(cosine), cosine) : 1 + half_angle(-cosine, sine(cosine));
+  }
+
+  Vec3 sphere_;
+  Obstacle tube_;
+  Vec3 toward_, aside_;
+  double offset_ = 0, start_ = 0, end_ = 2;
+  bool reaches_bottom_ = false;
+};
+
+}  // namespace
+
+TubePathEnd follow_tube(Vec3 sphere, const Obstacle& tube, Vec3 p,
+                        std::span<const Obstacle> obstacles) {
+  constexpr double touching = 1e-10;
+  const TubePath path(sphere, tube, p);
+  const auto free_distance = [&](double x) {
+    const Vec3 here = path.at(x);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Obstacle& obstacle : obstacles) {
+      if (obstacle.kind != Obstacle::Kind::sphere || obstacle.at == sphere) continue;
+      least = std::min(least, gap(obstacle, here));
+    }
+    // What is touched at the start is being left: rounding may show it as touched a little more.
+    return x == path.start() && least > -touching ? std::max(least, 0.0) : least;
+  };
+  const auto met = first_contact(path.start(), path.end(), free_distance,
+                                 [&](double x, double length) { return path.advance(x, length); });
+  if (met) return {path.at(*met), false};
+  TubePathEnd end = {path.at(path.end()), path.reaches_bottom()};
+  if (!end.at_bottom) end.p.z = sphere.z;
+  return end;
+}
+
+}  // namespace jostle

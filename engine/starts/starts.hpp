@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/monte_carlo/stops.hpp"
+
+// How the packing begins, tap 0. Lengths in diameters.
+namespace jostle {
+
+/// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
+/// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the
+/// container, whatever its sides.
+struct SteepestDescentPour {
+  bool operator==(const SteepestDescentPour&) const = default;
+};
+
+/// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
+/// sides, fitted between walls. How, the paper does not say. Here the spheres that overlap a wall
+/// are taken out and poured again by the same steepest descent, between the walls and onto the
+/// others, in the order in which they were poured: so what lay low comes to lie low again. No other
+/// sphere moves, to the bit, not even one that has lost a support. Spheres that touched through a
+/// seam no longer meet. Other containers and widths of 2 diameters or less are an error.
+struct FittedPour {
+  bool operator==(const FittedPour&) const = default;
+};
+
+/// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap
+/// (the scene's own). Rosato et al. 2010, sec. II.
+struct RandomSettle {
+  double dilute_fraction = 0.1;  // at most 0.25
+  bool operator==(const RandomSettle&) const = default;
+};
+
+enum class Lattice { hcp, fcc };
+
+/// A close-packed crystal on the floor, filled layer by layer and row by row from below. hcp:
+/// layers parallel to the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even.
+/// fcc: (100) layers at z = 1/2 + k / sqrt(2), footprint n x m. Any other footprint (too large by
+/// more than 1e-9 of it, or too small by more than rounding) is an error that names the two
+/// nearest, unless `stretch`, which spaces the rows out to the footprint; the layers then sink
+/// until they touch. In a fully periodic box the height must be a whole even number of layers as
+/// well. Between walls and in a tube the perfect lattice loses the sites that do not fit: no
+/// footprint is refused, and `stretch` is an error. Rosato et al. 2010, sec. II.
+struct Crystal {
+  Lattice lattice = Lattice::hcp;
+  bool stretch = false;
+  bool operator==(const Crystal&) const = default;
+};
+
+/// Random points whose diameters grow by Monte Carlo until the spheres of diameter 1 fill the fully
+/// periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly and may leave a residue
+/// after `max_sweeps`, an error.
+struct Grow {
+  std::uint64_t max_sweeps = 1'000'000;
+  bool operator==(const Grow&) const = default;
+};
+
+/// A packing read from a file: [n_spheres] centres, brought into the box where it is periodic.
+/// Overlaps beyond overlap_bound, with each other or the container, are an error.
+struct GivenPacking {
+  std::shared_ptr<const std::vector<Vec3>> centres;
+  bool operator==(const GivenPacking&) const = default;
+};
+
+using Start =
+    std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
+
+/// A start that cannot fit; what() says what, why and what to do.
+class StartError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A start that was stopped under way: what there was of it is lost.
+class StartStopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "the start was stopped"; }
+};
+
+/// Whether a start under way is to stop; empty: never.
+using StopAsked = std::function<bool()>;
+
+/// Builds the starting packing, before any relaxation. Throws StartError where the start does not
+/// suit the container or the spheres do not fit, and StartStopped soon after `stop` says so, within
+/// a sweep or the pour of a sphere; never hangs. A fitted pour leaves in `before_fitting`, where
+/// given, what was poured with periodic sides.
+Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
+                   RandomStream& random, const StopAsked& stop = {},
+                   Packing* before_fitting = nullptr);
+
+}  // namespace jostle

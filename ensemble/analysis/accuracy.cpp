@@ -1,0 +1,131 @@
+#include "ensemble/analysis/accuracy.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/jackknife.hpp"
+#include "fitting/intervals/distributions.hpp"
+
+namespace jostle {
+
+namespace {
+
+double variance(const Moments& moments) {
+  const double error = moments.standard_error();
+  return error * error * static_cast<double>(moments.count());
+}
+
+// Of steps that go on to shrink alike; NaN where they do not shrink.
+double rest_of_steps(double step, double step_before) {
+  constexpr double slowest = 0.9;
+  const double ratio = step / step_before;
+  return ratio > 0 && ratio < slowest ? step * ratio / (1 - ratio)
+                                      : std::numeric_limits<double>::quiet_NaN();
+}
+
+double largest_bias(const Setting& setting) {
+  return std::abs(setting.bias) + setting.bias_error;
+}
+
+}  // namespace
+
+PairedBias paired_bias(std::span<const double> values, std::span<const double> reference) {
+  assert(values.size() == reference.size());
+  Moments difference, own, others;
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    if (std::isnan(values[r]) || std::isnan(reference[r])) continue;
+    difference.add(values[r] - reference[r]);
+    own.add(values[r]);
+    others.add(reference[r]);
+  }
+  return {.pairs = difference.count(),
+          .bias = difference.mean(),
+          .error = difference.standard_error(),
+          .variance_reduction = (variance(own) + variance(others)) / variance(difference)};
+}
+
+Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
+                   std::span<const double> values, std::span<const double> reference) {
+  constexpr double level = 0.95;
+  assert(values_before.size() == values.size() && reference_before.size() == values.size());
+  std::vector<double> gained(values.size()), of_reference(values.size());
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    gained[r] = values[r] - values_before[r];
+    of_reference[r] = reference[r] - reference_before[r];
+  }
+  Growth growth{.change = paired_bias(gained, of_reference)};
+  const double dof = static_cast<double>(growth.change.pairs) - 1;
+  if (!(dof > 0)) {
+    growth.tails = growth.least_seen = std::numeric_limits<double>::quiet_NaN();
+    return growth;
+  }
+  const PairedBias& change = growth.change;
+  growth.tails = change.error > 0 ? student_tails(change.bias / change.error, dof)
+                                  : (change.bias == 0 ? 1.0 : 0.0);
+  growth.least_seen = student_two_sided(level, dof) * change.error;
+  return growth;
+}
+
+bool is_seen(const PairedBias& bias) {
+  return std::abs(bias.bias) > 2 * bias.error;
+}
+
+Remainder remainder(std::span<const double> two_before, std::span<const double> before,
+                    std::span<const double> last) {
+  std::vector<double> steps, steps_before;  // of realizations that all three have
+  for (std::size_t r = 0; r < last.size(); ++r) {
+    const double step = last[r] - before[r], step_before = before[r] - two_before[r];
+    if (std::isnan(step) || std::isnan(step_before)) continue;
+    steps.push_back(step);
+    steps_before.push_back(step_before);
+  }
+  const std::size_t n = steps.size();
+  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0),
+               sum_before = std::accumulate(steps_before.begin(), steps_before.end(), 0.0);
+  std::vector<double> left_out;
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto others = static_cast<double>(n - 1);
+    left_out.push_back(
+        rest_of_steps((sum - steps[r]) / others, (sum_before - steps_before[r]) / others));
+  }
+  const auto all = static_cast<double>(n);
+  return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
+}
+
+double total_error(const Setting& setting, std::uint64_t realizations) {
+  const double statistical = setting.sigma / std::sqrt(static_cast<double>(realizations));
+  return std::hypot(largest_bias(setting), statistical);
+}
+
+std::optional<Choice> cheapest(std::span<const Setting> settings, double target) {
+  std::optional<Choice> best;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const double bias = largest_bias(settings[i]);
+    if (!(bias < target)) continue;
+    const double left = target * target - bias * bias;
+    const double realizations =
+        std::max(2.0, std::ceil(settings[i].sigma * settings[i].sigma / left));
+    const double seconds = realizations * settings[i].realization_seconds;
+    if (!(realizations < 1e9) || (best && best->core_seconds <= seconds)) continue;
+    best = {i, static_cast<std::uint64_t>(realizations), seconds};
+  }
+  return best;
+}
+
+std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings) {
+  std::vector<std::uint64_t> front;
+  for (const Setting& one : settings) {
+    const bool beaten = std::ranges::any_of(settings, [&](const Setting& other) {
+      return largest_bias(other) < largest_bias(one) &&
+             other.realization_seconds < one.realization_seconds;
+    });
+    front.push_back(!beaten && !std::isnan(largest_bias(one)));
+  }
+  return front;
+}
+
+}  // namespace jostle

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "ensemble/analysis/ageing/log_curves.hpp"
+#include "ensemble/statistics/log_estimate.hpp"
+
+// Eq. 6 of Philippe & Bideau 2001, A(t) = A_inf (1 - 1/(1 + B ln(1 + t/tau))), by least squares of
+// ln A, all lags alike, for one or several curves with one B. Lags of a path are not independent:
+// what is said of errors rests on realizations alone.
+namespace jostle {
+
+/// ln(1 - 1/(1 + B ln(1 + t/tau))).
+double ln_eq_6(double lag, double ln_b, double ln_tau);
+
+/// The least squares over B from 0.001 to 1000 and tau from a hundredth of the first lag to ten
+/// thousand times the last, found on a grid and then between its places: no start is needed and
+/// nothing runs away. A point is [n_parameters]: ln A_inf and ln tau of every curve, then ln B.
+class AgeingLeastSquares {
+ public:
+  /// Each curve has more than three points, of at least two realizations.
+  explicit AgeingLeastSquares(LogCurves curves, std::optional<double> held_ln_b = {});
+
+  static std::size_t a_inf(std::size_t curve) { return 2 * curve; }
+  static std::size_t tau(std::size_t curve) { return 2 * curve + 1; }
+  std::size_t b() const { return 2 * curves_.size(); }
+
+  const LogCurves& curves() const { return curves_; }
+  const Eigen::VectorXd& best() const { return best_; }
+  bool b_is_held() const { return ln_b_.size() == 1; }
+
+  /// The interval of a parameter that is not held reaches to the values that are refuted: with the
+  /// parameter there and all others fitted anew, the slope of the squares along it is compared with
+  /// its jackknife error by Student's t. Ends beyond the search are infinite, or 0.
+  LogEstimate estimate(std::size_t parameter) const;
+
+  /// d ln A / d parameter: [n_points, n_parameters], 0 for a B that is held.
+  Eigen::MatrixXd slopes(const Eigen::VectorXd& at) const;
+  /// ln A less the law's.
+  Eigen::VectorXd residuals(const Eigen::VectorXd& at) const;
+
+ private:
+  /// The shape of eq. 6 at one place of the grid against one curve.
+  struct Cell {
+    double mean, squares;  // of ln A less the shape; squares about the mean, summed
+  };
+  const Cell& cell(std::size_t curve, std::size_t b, std::size_t tau) const;
+  void fill_cells();
+  /// The best place of the grid, with one parameter held (or none).
+  Eigen::VectorXd on_grid(std::optional<std::size_t> held, double value) const;
+  Eigen::VectorXd refined(Eigen::VectorXd at, std::optional<std::size_t> held) const;
+  /// Of the points in the slope of the squares along a parameter, the others fitted.
+  Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& at) const;
+  /// Student's t of a value of a parameter.
+  double t_of(std::size_t parameter, double value) const;
+
+  LogCurves curves_;
+  std::vector<double> ln_b_, ln_tau_;               // the grid
+  std::vector<Cell> cells_;                         // [n_curves, n_b, n_tau]
+  std::vector<std::vector<std::size_t>> best_tau_;  // [n_curves][n_b]
+  Eigen::VectorXd best_;
+};
+
+/// Of the values that a column takes beyond what the other columns make up for: residuals of its
+/// least squares on them.
+Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others);
+
+}  // namespace jostle

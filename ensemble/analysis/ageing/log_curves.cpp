@@ -1,0 +1,74 @@
+#include "ensemble/analysis/ageing/log_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace jostle {
+
+namespace {
+constexpr std::size_t fewest_lags = 4;  // one more than the law has parameters
+}
+
+LogCurves LogCurves::one(std::size_t curve) const {
+  const auto from = static_cast<std::ptrdiff_t>(first[curve]);
+  const auto to = static_cast<std::ptrdiff_t>(first[curve + 1]);
+  return {{waiting_times[curve]},
+          {0, first[curve + 1] - first[curve]},
+          {lag_indices.begin() + from, lag_indices.begin() + to},
+          {lags.begin() + from, lags.begin() + to},
+          ln_a.segment(from, to - from),
+          influences.middleRows(from, to - from)};
+}
+
+ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights) {
+  const auto m = static_cast<double>(curves.influences.cols());
+  const Eigen::RowVectorXd sums = weights.transpose() * curves.influences;
+  return {std::sqrt(sums.squaredNorm() / (m * (m - 1))), m - 1};
+}
+
+LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
+                     const std::vector<std::uint32_t>& realizations) {
+  LogCurves curves;
+  curves.first = {0};
+  const std::size_t m = realizations.size();
+  std::vector<double> ln_a, influences;
+  for (std::size_t k = 0; k < grid.waiting_times.size(); ++k) {
+    const std::span<const double> early = rows.row(grid.waiting_times[k]);
+    for (std::size_t j = 0; j < grid.lags.size(); ++j) {
+      const std::span<const double> late = rows.row(grid.waiting_times[k] + grid.lags[j]);
+      if (early.empty() || late.empty()) continue;
+      std::vector<double> squares;
+      double sum = 0;
+      for (const std::uint32_t r : realizations) {
+        squares.push_back((late[r] - early[r]) * (late[r] - early[r]));
+        sum += squares.back();
+      }
+      if (std::ranges::count_if(squares, [](double x) { return x > 0; }) < 2) continue;
+      curves.lag_indices.push_back(j);
+      curves.lags.push_back(static_cast<double>(grid.lags[j]));
+      ln_a.push_back(std::log(sum / static_cast<double>(m)));
+      const std::vector<double> without = ln_means_without_one(squares);
+      double mean = 0;
+      for (const double x : without) mean += x / static_cast<double>(m);
+      for (const double x : without) influences.push_back(static_cast<double>(m - 1) * (mean - x));
+    }
+    const std::size_t first = curves.first.back();
+    if (curves.lags.size() - first >= fewest_lags) {
+      curves.waiting_times.push_back(k);
+      curves.first.push_back(curves.lags.size());
+    } else {
+      curves.lags.resize(first);
+      curves.lag_indices.resize(first);
+      ln_a.resize(first);
+      influences.resize(first * m);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(ln_a.size());
+  curves.ln_a = Eigen::Map<const Eigen::VectorXd>(ln_a.data(), n);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  curves.influences = Eigen::Map<const Rows>(influences.data(), n, static_cast<Eigen::Index>(m));
+  return curves;
+}
+
+}  // namespace jostle

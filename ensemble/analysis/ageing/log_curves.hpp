@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "ensemble/analysis/ageing/ageing.hpp"
+#include "ensemble/statistics/student_tests.hpp"
+
+namespace jostle {
+
+/// ln A of some waiting times at their lags, one curve after another.
+struct LogCurves {
+  std::vector<std::size_t> waiting_times;  // [n_curves], indices into a grid's
+  std::vector<std::size_t> first;          // [n_curves + 1], of the points of each curve
+  std::vector<std::size_t> lag_indices;    // [n_points], into a grid's
+  std::vector<double> lags;                // [n_points], taps, ascending in each curve
+  Eigen::VectorXd ln_a;                    // [n_points]
+  /// [n_points, n_realizations]: jackknife pseudo-values of ln A less their mean.
+  Eigen::MatrixXd influences;
+
+  std::size_t size() const { return waiting_times.size(); }
+  LogCurves one(std::size_t curve) const;
+};
+
+/// Of some realizations without a gap: the waiting times with enough lags for a law, without the
+/// lags over which fewer than two realizations change.
+LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
+                     const std::vector<std::uint32_t>& realizations);
+
+/// Standard error of the sum over points of weights times ln A, by the jackknife over realizations.
+ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights);
+
+}  // namespace jostle

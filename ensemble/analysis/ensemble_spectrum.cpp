@@ -1,0 +1,167 @@
+#include "ensemble/analysis/ensemble_spectrum.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/moments.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+struct Points {
+  std::vector<double> x, y;
+};
+
+Points in_band(std::span<const double> frequency, std::span<const double> log_density,
+               const Band& band) {
+  Points points;
+  for (std::size_t i = 0; i < frequency.size(); ++i) {
+    const bool inside = frequency[i] >= band.lowest && frequency[i] <= band.highest;
+    if (!inside || frequency[i] <= 0 || !std::isfinite(log_density[i])) continue;
+    points.x.push_back(std::log(frequency[i]));
+    points.y.push_back(log_density[i]);
+  }
+  return points;
+}
+
+LogLogSlope straight_line(const Points& points) {
+  const std::size_t n = points.x.size();
+  if (n < 3) return {not_a_number, not_a_number, 0, n};
+  Moments x, y;
+  for (std::size_t i = 0; i < n; ++i) x.add(points.x[i]), y.add(points.y[i]);
+  double xx = 0, xy = 0, squares = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    xx += (points.x[i] - x.mean()) * (points.x[i] - x.mean());
+    xy += (points.x[i] - x.mean()) * (points.y[i] - y.mean());
+  }
+  const double slope = xy / xx;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double residual = points.y[i] - y.mean() - slope * (points.x[i] - x.mean());
+    squares += residual * residual;
+  }
+  return {slope, std::sqrt(squares / static_cast<double>(n - 2) / xx), static_cast<double>(n - 2),
+          n};
+}
+
+std::vector<double> bin_means(const Spectrum& spectrum, const FrequencyBins& bins) {
+  std::vector<double> means;
+  for (std::size_t b = 0; b < bins.n_bins(); ++b) {
+    double sum = 0;
+    for (std::size_t k = bins.first[b]; k < bins.first[b + 1]; ++k) sum += spectrum.density[k];
+    means.push_back(sum / static_cast<double>(bins.n_lines(b)));
+  }
+  return means;
+}
+
+constexpr std::size_t none_left_out = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade) {
+  assert(first_line >= 1 && per_decade > 0);
+  FrequencyBins bins;
+  const std::size_t end = segment / 2 + 1;
+  const double ratio = std::pow(10.0, 1 / per_decade);
+  for (std::size_t first = first_line; first < end;) {
+    const auto wide = static_cast<std::size_t>(std::lround(static_cast<double>(first) * ratio));
+    const std::size_t next = std::min(end, std::max(first + 1, wide));
+    double logarithms = 0;
+    for (std::size_t k = first; k < next; ++k) {
+      logarithms += std::log(static_cast<double>(k) / static_cast<double>(segment));
+    }
+    bins.first.push_back(first);
+    bins.frequency.push_back(std::exp(logarithms / static_cast<double>(next - first)));
+    first = next;
+  }
+  bins.first.push_back(std::max(first_line, end));
+  return bins;
+}
+
+LogLogSlope log_log_slope(std::span<const double> frequency, std::span<const double> density,
+                          const Band& band) {
+  assert(frequency.size() == density.size());
+  std::vector<double> logarithms;
+  for (const double value : density) logarithms.push_back(std::log(value));
+  return straight_line(in_band(frequency, logarithms, band));
+}
+
+SpectrumAverage::SpectrumAverage(std::size_t n_taps, const SpectrumOptions& options,
+                                 double bins_per_decade)
+    : n_taps_(n_taps),
+      options_(options),
+      bins_(logarithmic_bins(options.segment, first_sound_line(options), bins_per_decade)) {
+  assert(options.segment > 0 && n_segments(n_taps, options) > 0);
+  std::vector<std::size_t> lines;
+  for (std::size_t b = 0; b < bins_.n_bins(); ++b) lines.push_back(bins_.n_lines(b));
+  relative_errors_ = relative_errors(options, n_segments(n_taps, options), lines);
+}
+
+void SpectrumAverage::add(std::span<const double> series) {
+  assert(series.size() == n_taps_);
+  densities_.push_back(bin_means(welch(series, options_), bins_));
+}
+
+EnsembleSpectrum SpectrumAverage::result() const {
+  assert(!densities_.empty());
+  EnsembleSpectrum spectrum{.bins = bins_,
+                            .density = {},
+                            .error = {},
+                            .realizations = densities_.size(),
+                            .segments = n_segments(n_taps_, options_)};
+  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+    Moments moments;
+    for (const auto& density : densities_) moments.add(density[b]);
+    spectrum.density.push_back(moments.mean());
+    spectrum.error.push_back(densities_.size() > 1 ? moments.standard_error()
+                                                   : moments.mean() * relative_errors_[b]);
+  }
+  return spectrum;
+}
+
+std::vector<double> SpectrumAverage::sound_log_density(std::size_t left_out) const {
+  std::vector<double> logarithms;
+  const double n = static_cast<double>(densities_.size()) - (left_out == none_left_out ? 0 : 1);
+  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+    double sum = 0;
+    for (std::size_t r = 0; r < densities_.size(); ++r) {
+      if (r != left_out) sum += densities_[r][b];
+    }
+    const double inverse = relative_errors_[b] * relative_errors_[b] / n;  // 1 / k
+    logarithms.push_back(std::log(sum / n) + inverse / 2 + inverse * inverse / 12);
+  }
+  return logarithms;
+}
+
+LogLogSlope SpectrumAverage::slope(const Band& band) const {
+  const auto without = [&](std::size_t left_out) {
+    return straight_line(in_band(bins_.frequency, sound_log_density(left_out), band));
+  };
+  LogLogSlope slope = without(none_left_out);
+  if (densities_.size() < 3) return slope;
+  Moments slopes;
+  for (std::size_t r = 0; r < densities_.size(); ++r) slopes.add(without(r).slope);
+  // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
+  slope.dof = static_cast<double>(densities_.size() - 1);
+  slope.error = slopes.sigma() * std::sqrt(slope.dof);
+  return slope;
+}
+
+double SpectrumAverage::autoregressive_slope(double time, const Band& band) const {
+  const double rho = (2 * time - 1) / (2 * time + 1);
+  const std::vector<double> lines = expected_welch(
+      options_, [rho](std::size_t lag) { return std::pow(rho, static_cast<double>(lag)); });
+  std::vector<double> means;
+  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+    Moments bin;
+    for (std::size_t k = bins_.first[b]; k < bins_.first[b + 1]; ++k) bin.add(lines[k]);
+    means.push_back(bin.mean());
+  }
+  return log_log_slope(bins_.frequency, means, band).slope;
+}
+
+}  // namespace jostle

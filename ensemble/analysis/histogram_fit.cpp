@@ -1,0 +1,145 @@
+#include "ensemble/analysis/histogram_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/statistics/jackknife.hpp"
+#include "fitting/intervals/distributions.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_expected = 5;    // of a bin, for chi2
+constexpr double least_scatter = 0.01;  // of counts, in Poisson's: less is none of counts
+constexpr double doubted = 0.01;        // p below which the law is called wrong
+
+struct Groups {
+  std::vector<double> expected;  // over all realizations, [n_groups]
+  std::vector<double> counts;    // [n_groups, n_realizations]
+};
+
+// Neighbouring bins joined until enough is expected in each; what is left over at the end joins
+// the last.
+Groups groups_of(const Histogram& histogram, const std::vector<double>& expected) {
+  const std::uint32_t m = histogram.realizations;
+  Groups groups;
+  bool open = false;
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    if (!open && (k == 0 || groups.expected.back() >= least_expected)) {
+      groups.expected.push_back(0);
+      groups.counts.resize(groups.counts.size() + m, 0.0);
+    }
+    groups.expected.back() += m * expected[k];
+    double* const into = groups.counts.data() + groups.counts.size() - m;
+    for (std::uint32_t r = 0; r < m; ++r) into[r] += histogram.counts[k * m + r];
+    open = groups.expected.back() < least_expected;
+  }
+  if (groups.expected.size() > 1 && groups.expected.back() < least_expected) {
+    groups.expected[groups.expected.size() - 2] += groups.expected.back();
+    groups.expected.pop_back();
+    const std::size_t last = groups.counts.size() - m;
+    for (std::uint32_t r = 0; r < m; ++r) groups.counts[last - m + r] += groups.counts[last + r];
+    groups.counts.resize(last);
+  }
+  return groups;
+}
+
+struct Goodness {
+  double p = nan;
+  std::size_t bins = 0;
+};
+
+Goodness goodness(const Histogram& histogram, const std::vector<double>& expected,
+                  std::size_t n_parameters) {
+  const Groups groups = groups_of(histogram, expected);
+  const std::size_t n = groups.expected.size();
+  const std::uint32_t m = histogram.realizations;
+  if (n <= n_parameters) return {};
+  std::vector<double> totals(m, 0.0);
+  double all = 0;
+  for (std::size_t g = 0; g < n; ++g) {
+    for (std::uint32_t r = 0; r < m; ++r) totals[r] += groups.counts[g * m + r];
+  }
+  for (const double total : totals) all += total;
+  double between = 0, within = 0;
+  for (std::size_t g = 0; g < n; ++g) {
+    const double* const counts = groups.counts.data() + g * m;
+    double sum = 0;
+    for (std::uint32_t r = 0; r < m; ++r) sum += counts[r];
+    between += (sum - groups.expected[g]) * (sum - groups.expected[g]) / groups.expected[g];
+    // Shares: how much a realization counts in all says nothing of the law.
+    for (std::uint32_t r = 0; r < m; ++r) {
+      const double share = totals[r] / all, off = counts[r] - share * sum;
+      within += off * off / (groups.expected[g] * share);
+    }
+  }
+  const auto dof = static_cast<double>(n - n_parameters);
+  if (m < 2) return {chi_squared_tail(between, dof), n};
+  const double others = static_cast<double>(n - 1) * (m - 1);
+  const double scatter = std::max(within / others, least_scatter);
+  return {fisher_tail(between / dof / scatter, dof, others), n};
+}
+
+std::string verdict(const Goodness& found, std::uint32_t realizations) {
+  if (std::isnan(found.p)) return "fitted; too few counts to tell whether the law holds";
+  const std::string test = fmt::format("{} test over {} bins, p = {:.2g}",
+                                       realizations > 1 ? "F" : "chi2", found.bins, found.p);
+  return (found.p < doubted ? "the law does not hold: " : "the law is not refuted: ") + test;
+}
+
+// The mean over realizations, all or all but one.
+std::vector<double> mean_counts(const Histogram& histogram, std::uint32_t left_out) {
+  const std::uint32_t m = histogram.realizations;
+  std::vector<double> mean;
+  for (std::size_t k = 0; k < histogram.bins.size(); ++k) {
+    double sum = 0;
+    for (std::uint32_t r = 0; r < m; ++r) sum += r == left_out ? 0 : histogram.counts[k * m + r];
+    mean.push_back(sum / (left_out < m ? m - 1 : m));
+  }
+  return mean;
+}
+
+// Jackknife errors, where every fit without a realization settles.
+void add_errors(const Model& law, const Histogram& histogram, HistogramFit& found) {
+  const std::uint32_t m = histogram.realizations;
+  std::vector<std::vector<double>> left_out(found.values.size());
+  for (std::uint32_t r = 0; r < m; ++r) {
+    const CountsFit without =
+        fit_counts(law, histogram.bins, mean_counts(histogram, r), found.values);
+    if (!without.fault.empty()) {
+      found.status += "; no errors: without one of the realizations " + without.fault;
+      return;
+    }
+    for (std::size_t j = 0; j < left_out.size(); ++j) left_out[j].push_back(without.values[j]);
+  }
+  for (std::size_t j = 0; j < left_out.size(); ++j) found.errors[j] = jackknife_error(left_out[j]);
+}
+
+}  // namespace
+
+HistogramFit fit_histogram(const Model& law, const Histogram& histogram) {
+  const std::uint32_t m = histogram.realizations;
+  const std::size_t n = law.parameters().size();
+  HistogramFit found{std::vector(n, nan), std::vector(n, nan), nan, ""};
+  if (m == 0) return found.status = "no packing", found;
+  const std::vector<double> counts = mean_counts(histogram, m);
+  const auto filled = std::ranges::count_if(counts, [](double count) { return count != 0; });
+  if (static_cast<std::size_t>(filled) <= n) {
+    return found.status = "too few places that hold anything", found;
+  }
+  CountsFit best = fit_counts(law, histogram.bins, counts);
+  if (!best.fault.empty()) return found.status = best.fault, found;
+  found.values = std::move(best.values);
+  const Goodness good = goodness(histogram, best.expected, n);
+  found.p = good.p;
+  found.status = verdict(good, m);
+  if (m >= 2) add_errors(law, histogram, found);
+  return found;
+}
+
+}  // namespace jostle

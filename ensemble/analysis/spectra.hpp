@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+// Power spectra of one evenly spaced series, in the conventions of scipy.signal: densities,
+// one-sided, the window periodic. Frequencies are in 1/taps.
+namespace jostle {
+
+enum class Taper { boxcar, hann };  // the window: engine/monte_carlo/stops.hpp has another Window
+enum class Detrending { none, mean, linear };  // of every segment, before the window
+
+struct SpectrumOptions {
+  Taper window = Taper::hann;
+  Detrending detrending = Detrending::mean;
+  std::size_t segment = 0;  // taps of one, at least 2; 0: the whole series in one
+  std::size_t overlap = 0;  // taps shared by neighbouring segments, below `segment`
+};
+
+/// Lines k = 0 .. n/2 of segments of n taps.
+struct Spectrum {
+  std::vector<double> frequency;  // k / n
+  std::vector<double> density;    // taps times the square of the series' units
+
+  std::size_t n_lines() const { return frequency.size(); }
+};
+
+/// |FFT(w (x - trend))|^2 / sum w^2, doubled but for the lines 0 and n/2: the sum of the lines
+/// times 1/n is the variance of a series that boxcar and mean leave as it is. Cost grows with the
+/// largest prime factor of the length.
+Spectrum periodogram(std::span<const double> series, Taper window, Detrending detrending);
+
+/// The mean of the periodograms of overlapping segments (Welch 1967, doi:10.1109/TAU.1967.1161901);
+/// taps at the end that fill no segment are left out. The series holds at least one segment.
+Spectrum welch(std::span<const double> series, const SpectrumOptions& options);
+
+/// Segments that welch() averages in a series of n taps.
+std::size_t n_segments(std::size_t n_taps, const SpectrumOptions& options);
+
+/// The first line of a spectrum that neither the detrending nor the window's main lobe around the
+/// removed trend spoils: 3 for Hann, 1 for boxcar, one more with linear detrending.
+std::size_t first_sound_line(const SpectrumOptions& options);
+
+/// Standard errors of means of `lines` neighbouring lines of a Welch estimate, relative to them,
+/// for Gaussian noise with a spectrum that is smooth over them: 1 for one line of one segment.
+/// Counts what overlapping segments and neighbouring lines share through the window (Welch 1967).
+/// `options.segment` > 0; every element of `lines` in 1 .. n/2 + 1.
+std::vector<double> relative_errors(const SpectrumOptions& options, std::size_t segments,
+                                    std::span<const std::size_t> lines);
+
+/// Means of the lines of welch(), up to a common factor, for a stationary process with this
+/// covariance at lags 0 .. segment - 1; what detrending takes from the first sound line on is
+/// left out. [segment / 2 + 1].
+std::vector<double> expected_welch(const SpectrumOptions& options,
+                                   const std::function<double(std::size_t)>& covariance);
+
+/// The largest length of at most n that has no prime factor above 5, so that its transform is
+/// fast. n >= 1.
+std::size_t fast_length(std::size_t n);
+
+}  // namespace jostle

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/analysis/analyses.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr const char* welch_1967 = "Welch 1967, doi:10.1109/TAU.1967.1161901";
+
+const char* name_of(Taper window) {
+  return window == Taper::hann ? "hann" : "boxcar";
+}
+
+const char* name_of(Detrending detrending) {
+  switch (detrending) {
+    case Detrending::none:
+      return "none";
+    case Detrending::mean:
+      return "mean";
+    case Detrending::linear:
+      return "linear";
+  }
+  return "";
+}
+
+SpectrumOptions prepared(const AnalysedSeries& series, const SpectrumSettings& settings) {
+  assert(series.n_taps() >= fewest_spectrum_taps);
+  return spectrum_options(settings, series.n_taps());
+}
+
+std::string drift_verdict(const Trend& trend, Detrending detrending) {
+  if (!trend.drifts()) return trend.statement();
+  const std::string drift =
+      fmt::format("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);
+  if (detrending == Detrending::linear) return drift + "; its straight part was removed";
+  return drift + "; it adds a slope of -2 at low frequencies: use linear detrending or later taps";
+}
+
+/// The slope that memory alone gives.
+struct AutoregressiveSlope {
+  double slope = 0;
+  ErrorOf error{};  // from that of the time
+  double p = 1;     // of the measured slope being this one
+};
+
+AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
+                                   const AutocorrelationTime& memory, const Band& band) {
+  const auto at = [&](double time) {
+    return average.autoregressive_slope(std::max(time, 0.5), band);
+  };
+  AutoregressiveSlope found{.slope = at(memory.time)};
+  found.error = {0.5 * std::abs(at(memory.time + memory.error) - at(memory.time - memory.error)),
+                 std::numeric_limits<double>::infinity()};
+  found.p =
+      p_value(measured.slope - found.slope, combined({measured.error, measured.dof}, found.error));
+  return found;
+}
+
+std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& memory,
+                          const AutocorrelationTime& time) {
+  if (std::isnan(slope.slope)) return "no slope: fewer than three points in the band";
+  const std::string alone =
+      fmt::format("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
+                  time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
+  if (std::isnan(memory.p)) return alone + "; no test";
+  if (memory.p >= 0.05) {
+    return fmt::format("{}: the slope tells no more than that memory (p = {:.2g})", alone,
+                       memory.p);
+  }
+  return fmt::format("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
+}
+
+}  // namespace
+
+SpectrumOptions spectrum_options(const SpectrumSettings& settings, std::uint64_t n_taps) {
+  assert(n_taps >= fewest_spectrum_taps);
+  const std::size_t segment = settings.segment.value_or(
+      fast_length(std::max<std::size_t>(n_taps / 4, fewest_spectrum_taps / 2)));
+  return {.window = settings.window,
+          .detrending = settings.detrending,
+          .segment = segment,
+          .overlap = settings.window == Taper::hann ? segment / 2 : 0};
+}
+
+SpectrumAnalysis::SpectrumAnalysis(const AnalysedSeries& series, const SpectrumSettings& settings)
+    : series_(series),
+      settings_(settings),
+      options_(prepared(series, settings)),
+      average_(series.n_taps(), options_) {}
+
+void SpectrumAnalysis::add(std::span<const double> values) {
+  average_.add(values);
+  trend_.add(values);
+}
+
+Table SpectrumAnalysis::table() const {
+  const EnsembleSpectrum spectrum = average_.result();
+  const Trend trend = trend_.result();
+  const Band band =
+      settings_.band.value_or(Band{.lowest = static_cast<double>(spectrum.bins.first.front()) /
+                                             static_cast<double>(options_.segment),
+                                   .highest = 0.5});
+  const LogLogSlope slope = average_.slope(band);
+  const AutoregressiveSlope memory = autoregressive(average_, slope, trend.memory, band);
+  const double dof = spectrum.realizations > 1 ? static_cast<double>(spectrum.realizations - 1)
+                                               : std::numeric_limits<double>::infinity();
+  std::vector<std::uint64_t> lines;
+  for (std::size_t b = 0; b < spectrum.bins.n_bins(); ++b)
+    lines.push_back(spectrum.bins.n_lines(b));
+  const std::string density_units =
+      series_.units == "1" ? "taps" : fmt::format("{}^2 taps", series_.units);
+  const std::vector<std::string> along = {"frequency"};
+  Table table{.name = "spectrum/" + series_.observable, .axes = {}, .quantities = {}, .notes = {}};
+  table.axes = {{"frequency", along, spectrum.bins.frequency, "1/taps",
+                 "geometric mean of the lines of a bin", ""}};
+  table.quantities = {{"density", along, spectrum.density, density_units,
+                       "one-sided power spectral density", welch_1967},
+                      {"density_error", along, spectrum.error, density_units,
+                       spectrum.realizations > 1 ? "standard error over realizations"
+                                                 : "standard error for Gaussian noise",
+                       ""},
+                      {"lines", along, lines, "1", "lines of a bin", ""}};
+  const auto add = [&](const char* name, double value, const std::string& units,
+                       const char* meaning, const char* source = "") {
+    table.quantities.push_back({name, {}, std::vector{value}, units, meaning, source});
+  };
+  add("density_dof", dof, "1", "degrees of freedom of density_error");
+  add("slope", slope.slope, "1", "log-log slope in the band",
+      "Philippe & Bideau 2001, fig. 3: -1 to -1.5");
+  add("slope_error", slope.error, "1",
+      spectrum.realizations > 2 ? "jackknife over realizations"
+                                : "from the scatter about the line");
+  add("slope_dof", slope.dof, "1", "degrees of freedom of slope_error");
+  add("ar1_slope", memory.slope, "1",
+      "in the same band, of an AR(1) process of the same autocorrelation time");
+  add("ar1_slope_error", memory.error.error, "1", "standard error, from that of the time");
+  add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
+  add("drift", trend.line.value, series_.units,
+      "change of the mean over the taps, by a straight line");
+  add("drift_error", error_or_nan(trend.line.error()), series_.units, "standard error");
+  add("drift_dof", trend.line.error().dof, "1", "degrees of freedom of drift_error");
+  add("drift_p", trend.tests > 0 ? trend.p : std::nan(""), "1", "of no drift");
+  add("drift_share", trend.share, "1", "of the variance in time");
+  table.notes = {{"observable", series_.observable},
+                 {"taps", fmt::format("{} to {}", series_.first_tap, series_.last_tap)},
+                 {"realizations", fmt::to_string(spectrum.realizations)},
+                 {"window", name_of(options_.window)},
+                 {"detrending", name_of(options_.detrending)},
+                 {"segments", fmt::format("{} of {} taps, {} shared with the next",
+                                          spectrum.segments, options_.segment, options_.overlap)},
+                 {"band", fmt::format("{:.4g} to {:.4g} per tap, {} points", band.lowest,
+                                      band.highest, slope.n_points)},
+                 {"drift", drift_verdict(trend, options_.detrending)},
+                 {"verdict", slope_verdict(slope, memory, trend.memory)}};
+  return table;
+}
+
+}  // namespace jostle

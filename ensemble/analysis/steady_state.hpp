@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/autocorrelation.hpp"
+#include "ensemble/statistics/blocking.hpp"
+#include "ensemble/statistics/trend.hpp"
+
+namespace jostle {
+
+/// Whether the state is steady. "Cannot decide" where no drift was found, but the taps and the
+/// realizations would not have shown one that matters.
+enum class Verdict { reached, not_reached, cannot_decide };
+
+/// What the last taps of a run say of the state they may have reached.
+struct SteadyState {
+  std::size_t n_taps = 0, realizations = 0;
+  double value = 0;  // mean over taps and realizations
+  ErrorOf error{};   // over realizations where there are two or more, else by blocking
+  double sigma = 0;  // deviation of single taps about the steady value of their realization
+  double sigma_error = 0, sigma_dof = 0;  // over realizations; of one, Bartlett's, dof infinite
+  double realization_sigma = 0;  // deviation of realizations' means, 1/(M - 1); NaN for one
+  BlockingResult blocking;
+  AutocorrelationTime autocorrelation;
+  Trend trend;
+
+  /// Smallest change over the taps that would have been found, in deviations of single taps.
+  double detectable() const;
+  Verdict verdict() const;
+  /// The verdict with its test, and what would have refuted it.
+  std::string statement() const;
+};
+
+/// Takes the last taps of one realization after another, all of one length, at least 32. The steady
+/// state is "not reached" where the mean drifts (TrendTest). It is "reached" where no drift is
+/// found, one as large as the deviation of single taps would have been found with 80 % probability,
+/// and the taps are at least 20 autocorrelation times and, of a single realization, enough for a
+/// plateau of the blocking error. Else they cannot decide.
+class SteadyStateTest {
+ public:
+  static constexpr std::size_t fewest_taps = 32;
+  static constexpr double fewest_times = 20;
+  static constexpr double largest_unseen = 1;  // change over the taps, in deviations of single taps
+
+  void add(std::span<const double> series);
+  /// After at least one series.
+  SteadyState result() const;
+
+ private:
+  std::size_t n_taps_ = 0;
+  Moments means_, variances_;
+  Blocking blocking_;
+  Autocorrelation autocorrelation_;
+  TrendTest trend_;
+};
+
+}  // namespace jostle

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ensemble/analysis/analyses.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr const char* flyvbjerg_petersen = "Flyvbjerg & Petersen 1989, doi:10.1063/1.457480";
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* wolff = "Wolff 2004, doi:10.1016/S0010-4655(03)00467-3";
+
+Quantity one(std::string name, double value, std::string units, std::string long_name,
+             std::string source = "") {
+  return {std::move(name),  {}, std::vector{value}, std::move(units), std::move(long_name),
+          std::move(source)};
+}
+
+/// Over realizations, where that is known, and within series.
+void add_errors(Table& table, const std::string& name, const Change& change,
+                const std::string& units) {
+  const char* const over =
+      change.over.known() ? "standard error over realizations" : "standard error within the series";
+  for (const Quantity& quantity :
+       {one(name + "_error", error_or_nan(change.error()), units, over),
+        one(name + "_dof", change.error().dof, "1", "its degrees of freedom"),
+        one(name + "_within_error", error_or_nan(change.within), units,
+            "standard error from the memory of each series about its line"),
+        one(name + "_within_dof", change.within.dof, "1", "its degrees of freedom")}) {
+    table.quantities.push_back(quantity);
+  }
+}
+
+void add_blocking(Table& table, const AnalysedSeries& series, const BlockingResult& blocking) {
+  std::vector<std::uint64_t> lengths, counts;
+  std::vector<double> errors, errors_of_errors;
+  for (const BlockingLevel& level : blocking.levels) {
+    lengths.push_back(level.block_length);
+    counts.push_back(level.n_blocks);
+    errors.push_back(level.error);
+    errors_of_errors.push_back(level.error_error);
+  }
+  const std::vector<std::string> along = {"block_length"};
+  table.axes = {{"block_length", along, lengths, "taps", "taps of a block", flyvbjerg_petersen}};
+  table.quantities.insert(
+      table.quantities.end(),
+      {{"blocks", along, counts, "1", "blocks of all realizations", ""},
+       {"block_error", along, errors, series.units, "error of the mean if blocks are independent",
+        flyvbjerg_petersen},
+       {"block_error_error", along, errors_of_errors, series.units, "its own standard error", ""}});
+}
+
+}  // namespace
+
+Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
+  const bool single = state.realizations == 1;
+  const AutocorrelationTime& time = state.autocorrelation;
+  Table table{.name = "steady/" + series.observable, .axes = {}, .quantities = {}, .notes = {}};
+  table.quantities = {
+      one("value", state.value, series.units, "mean over taps and realizations"),
+      one("value_error", state.error.error, series.units,
+          single ? "standard error by blocking" : "standard error over realizations"),
+      one("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
+      one("blocked_error", state.blocking.error(), series.units,
+          state.blocking.plateau ? "standard error by blocking, realizations pooled"
+                                 : "lower bound of the error: blocking found no plateau",
+          flyvbjerg_petersen),
+      one("sigma", state.sigma, series.units,
+          "deviation of single taps about the steady value of their realization",
+          "Philippe & Bideau 2001, fig. 3"),
+      one("sigma_error", state.sigma_error, series.units, "standard error"),
+      one("sigma_dof", state.sigma_dof, "1", "degrees of freedom of sigma_error"),
+      one("realization_sigma", state.realization_sigma, series.units,
+          "deviation of the realizations' means, 1/(M - 1)"),
+      one("autocorrelation_time", time.time, "taps",
+          time.found() ? "integrated, 1/2 for independent taps"
+                       : "lower bound: longer than the taps can tell",
+          wolff),
+      one("autocorrelation_time_error", time.error, "taps", "standard error", wolff),
+      one("drift", state.trend.line.value, series.units,
+          "change of the mean over the taps, by a straight line")};
+  add_errors(table, "drift", state.trend.line, series.units);
+  table.quantities.push_back(one("halves_difference", state.trend.halves.value, series.units,
+                                 "second half of the taps less the first"));
+  add_errors(table, "halves_difference", state.trend.halves, series.units);
+  table.quantities.push_back(
+      one("drift_p", state.trend.tests > 0 ? state.trend.p : not_a_number, "1",
+          "of no drift, the tests of line and halves together (Bonferroni)"));
+  table.quantities.push_back(
+      one("drift_detectable", state.trend.detectable, series.units,
+          "smallest change over the taps that would have been found with probability 0.8"));
+  add_blocking(table, series, state.blocking);
+  const std::string plateau =
+      state.blocking.plateau
+          ? fmt::format("from blocks of {} taps",
+                        state.blocking.levels[*state.blocking.plateau].block_length)
+          : "none: the taps are too few for the memory of the series";
+  table.notes = {{"observable", series.observable},
+                 {"taps", fmt::format("{} to {}", series.first_tap, series.last_tap)},
+                 {"realizations", fmt::to_string(state.realizations)},
+                 {"plateau", plateau},
+                 {"verdict", state.statement()}};
+  return table;
+}
+
+}  // namespace jostle

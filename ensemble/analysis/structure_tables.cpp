@@ -1,0 +1,177 @@
+#include "ensemble/analysis/structure_tables.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "ensemble/analysis/structure_fits.hpp"
+#include "ensemble/moments.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The longest list of each kind of places.
+std::map<std::string_view, Places> longest_places(const PartPackings& part) {
+  std::map<std::string_view, Places> longest;
+  for (const auto& realizations : part) {
+    for (const Measurement* measurement : realizations) {
+      if (measurement == nullptr) continue;
+      for (const Places& places : measurement->places) {
+        Places& known = longest[places.name];
+        if (known.size() < places.size()) known = places;
+      }
+    }
+  }
+  return longest;
+}
+
+struct MeansAndErrors {
+  std::vector<double> means, errors;
+};
+
+/// Over realizations, [n_taps, n_places]; of the changes since the first tap where `change`.
+MeansAndErrors averages(const PartPackings& part, std::string_view name, std::size_t n_places,
+                        bool change) {
+  MeansAndErrors out;
+  for (const auto& realizations : part) {
+    for (std::size_t place = 0; place < n_places; ++place) {
+      Moments moments;
+      for (std::size_t r = 0; r < realizations.size(); ++r) {
+        const auto* quantity = realizations[r] ? realizations[r]->find(name) : nullptr;
+        if (quantity == nullptr) continue;
+        double value = quantity->at(place);
+        if (change) {
+          const auto* start = part[0][r] ? part[0][r]->find(name) : nullptr;
+          value -= start != nullptr ? start->at(place) : nan;
+        }
+        moments.add(value);
+      }
+      out.means.push_back(moments.mean());
+      out.errors.push_back(moments.standard_error());
+    }
+  }
+  return out;
+}
+
+/// `since`: the tap that changes are counted from; absent: the values themselves.
+void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, std::size_t n_places,
+                  std::optional<std::uint64_t> since, Table& table) {
+  std::vector<std::string> axes = {"tap"};
+  if (!quantity.places.empty()) axes.emplace_back(quantity.places);
+  MeansAndErrors found = averages(part, quantity.name, n_places, since.has_value());
+  std::string name(quantity.name), long_name(quantity.long_name);
+  const std::string units(quantity.units);
+  if (since) {
+    name.append("_change");
+    long_name.append(", change since tap ").append(std::to_string(*since));
+  }
+  table.quantities.push_back(
+      {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
+  if (!quantity.with_error) return;
+  name.append("_error");
+  table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
+                              "standard error over realizations", ""});
+}
+
+Quantity number_of_packings(const PartPackings& part) {
+  std::vector<std::uint64_t> counts;
+  for (const auto& realizations : part) {
+    counts.push_back(realizations.size() -
+                     static_cast<std::uint64_t>(std::ranges::count(realizations, nullptr)));
+  }
+  return {"realizations", {"tap"}, std::move(counts), "1", "packings averaged over", ""};
+}
+
+/// The first packing's of each kind.
+void add_notes(const Measurement& measurement, Table& table) {
+  for (const auto& note : measurement.notes) {
+    const bool known = std::ranges::any_of(
+        table.notes, [&](const auto& other) { return other.first == note.first; });
+    if (!known) table.notes.push_back(note);
+  }
+}
+
+/// The packings' quantities in the order of the first that has each.
+std::vector<const MeasuredQuantity*> quantities_of(const PartPackings& part) {
+  std::vector<const MeasuredQuantity*> all;
+  for (const auto& realizations : part) {
+    for (const Measurement* measurement : realizations) {
+      if (measurement == nullptr) continue;
+      for (const MeasuredQuantity& quantity : measurement->quantities) {
+        const bool known = std::ranges::any_of(
+            all, [&](const auto* other) { return other->name == quantity.name; });
+        if (!known) all.push_back(&quantity);
+      }
+    }
+  }
+  return all;
+}
+
+/// The part of every packing, those that refuse it left out.
+PartPackings part_of(const EnsembleStructure& structure, std::size_t index, Table& table) {
+  PartPackings part;
+  std::string refusal;
+  bool any = false;
+  for (const auto& realizations : structure.packings) {
+    auto& row = part.emplace_back();
+    for (const auto& parts : realizations) {
+      const Measurement* measurement = parts.empty() ? nullptr : &parts[index];
+      if (measurement != nullptr && !measurement->refused.empty()) {
+        if (refusal.empty()) refusal = measurement->refused;
+        measurement = nullptr;
+      }
+      if (measurement != nullptr) add_notes(*measurement, table);
+      any = any || measurement != nullptr;
+      row.push_back(measurement);
+    }
+  }
+  if (!refusal.empty()) table.notes.emplace_back(any ? "refused_by_some" : "refused", refusal);
+  return part;
+}
+
+}  // namespace
+
+std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStructure& structure,
+                                    const StructureSettings& settings) {
+  const std::vector<Measurement>* example = nullptr;
+  for (const auto& realizations : structure.packings) {
+    for (const auto& parts : realizations) {
+      if (example == nullptr && !parts.empty()) example = &parts;
+    }
+  }
+  std::vector<Table> tables;
+  for (std::size_t k = 0; example != nullptr && k < example->size(); ++k) {
+    Table table{.name = prefix + std::string((*example)[k].part)};
+    const PartPackings part = part_of(structure, k, table);
+    const std::vector<const MeasuredQuantity*> quantities = quantities_of(part);
+    if (!quantities.empty()) {
+      const auto places = longest_places(part);
+      table.axes.push_back(
+          {"tap", {"tap"}, structure.taps, "taps", "taps made before; of a file, the frame", ""});
+      for (const auto& [name, list] : places) {
+        const std::string axis_name(name);
+        Quantity axis{
+            axis_name, {axis_name}, {}, std::string(list.units), std::string(list.long_name), ""};
+        std::visit([&](const auto& values) { axis.values = values; }, list.values);
+        table.axes.push_back(std::move(axis));
+      }
+      table.quantities.push_back(number_of_packings(part));
+      for (const MeasuredQuantity* quantity : quantities) {
+        const std::size_t n = quantity->places.empty() ? 1 : places.at(quantity->places).size();
+        add_averages(part, *quantity, n, std::nullopt, table);
+        if (quantity->with_change) {
+          add_averages(part, *quantity, n, structure.taps.front(), table);
+        }
+      }
+      add_fits((*example)[k].part, part, settings, table);
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace jostle

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/analysis/table.hpp"
+#include "ensemble/plan.hpp"
+#include "ensemble/statistics/student_tests.hpp"
+#include "structure/observables.hpp"
+
+// A steady-state quantity, or a parameter of a fit, against the swept value.
+namespace jostle {
+
+/// y(x) with errors; where y is a mean over realizations, with their values, from which errors of
+/// all that is read off the curve then come. Points are in the order of x; those whose y is NaN are
+/// dropped.
+class SweepCurve {
+ public:
+  /// Below so many realizations a point's own scatter says too little: variances are then pooled
+  /// over points.
+  static constexpr std::uint64_t enough_for_own = 10;
+
+  /// Any values with their standard errors, each [n_points]; a dof of 0 is an error that is
+  /// unknown, an infinite one an error that is known.
+  SweepCurve(std::vector<double> x, std::vector<double> y, std::vector<ErrorOf> error);
+  /// Means over realizations, [n_points][any number of realizations], NaN where there is none. With
+  /// matched streams realization r of all points is one packing's fate.
+  SweepCurve(std::vector<double> x, std::vector<std::vector<double>> realizations, Streams streams);
+
+  const std::vector<double>& x() const { return x_; }
+  const std::vector<double>& y() const { return y_; }
+  /// Of each point by itself: over its realizations, or as given.
+  const std::vector<ErrorOf>& error() const { return error_; }
+  /// Realizations of each point; 0 where they are not known.
+  const std::vector<std::uint64_t>& count() const { return count_; }
+  std::size_t n_points() const { return x_.size(); }
+  bool has_realizations() const { return !realizations_.empty(); }
+  Streams streams() const { return streams_; }
+  const std::vector<std::vector<double>>& realizations() const { return realizations_; }
+
+  /// What lines and maxima are fitted to, [n_points]: y; of matched streams the mean over those
+  /// realizations that all points have, where there are any.
+  const std::vector<double>& fitted_y() const { return fitted_y_; }
+  /// How points count in a fit, [n_points]: 1/error where errors are known or of `enough_for_own`
+  /// realizations, else by their number of realizations, never by their scatter.
+  std::vector<double> weights() const;
+  /// The error of sum_i c_i fitted_y_i, c: [n_points]. Independent points: their own variances
+  /// where all have `enough_for_own` realizations, else one variance, pooled over points. Matched
+  /// streams: the scatter of the sums over realizations where there are `enough_for_own`; else
+  /// realizations shift all points alike, and what is left has one variance, pooled over points
+  /// (a two-way layout without interaction).
+  ErrorOf error_of(std::span<const double> coefficients) const;
+  /// Whether error_of() pools variances over points.
+  bool pools() const;
+  /// Of one realization (of one value where they are not known), pooled over points: about the mean
+  /// of its point, and with matched streams about its own level too. None where no point has two.
+  ErrorOf pooled() const { return pooled_; }
+
+ private:
+  void sort_and_drop();
+  void pool_independent();
+  void pool_matched();
+  ErrorOf own_error_of(std::span<const double> coefficients) const;
+  ErrorOf matched_error_of(std::span<const double> coefficients) const;
+
+  std::vector<double> x_, y_, fitted_y_;
+  std::vector<ErrorOf> error_;
+  std::vector<std::uint64_t> count_;
+  std::vector<std::vector<double>> realizations_;
+  Streams streams_ = Streams::independent;
+  bool own_errors_ = false;  // serve by themselves
+  ErrorOf pooled_;
+  ErrorOf level_;                    // matched: of the mean over points of one realization
+  std::vector<std::size_t> common_;  // matched: realizations that all points have
+};
+
+/// The highest point of a parabola through the points about the largest y.
+struct SweepMaximum {
+  double x = 0, y = 0;           // NaN without one inside the points used
+  ErrorOf x_error{}, y_error{};  // to first order
+  double x_low = 0,
+         x_high = 0;  // 95 % interval of x (Fieller 1954); NaN where it has no end inside
+  /// Probability that chance makes a curve without a maximum inside look like this: straight lines
+  /// through the points used rise up to the largest and fall from it (Simonsohn 2018,
+  /// doi:10.1177/2515245918805755: the larger of two one-sided p-values), times the number of
+  /// points that could have been the largest. It does not rest on the parabola, which overshoots
+  /// where a curve only levels off. NaN without errors.
+  double p = 1;
+  std::size_t points = 0;  // used
+  std::string verdict;     // "found", "cannot decide" or "none", and why
+
+  static constexpr double level = 0.05;
+  bool found() const { return p < level; }
+};
+
+/// A parabola through `points` (3 or more; all of a smaller curve) neighbours of the largest y.
+SweepMaximum maximum(const SweepCurve& curve, std::size_t points = 5);
+
+/// y = intercept + slope x by least squares.
+struct StraightLine {
+  double intercept, slope;  // NaN below two different x
+  /// From the curve's errors; without them from the scatter about the line.
+  ErrorOf intercept_error, slope_error;
+  double reduced_chi2;  // squares about the line over what the errors make of them; NaN without
+  double p;             // of a straight line leaving as much, F-test (Box 1954)
+};
+StraightLine straight_line(const SweepCurve& curve);
+
+/// Of two points of a curve of means over realizations.
+struct SweepDifference {
+  std::size_t from = 0, to = 0;  // points
+  double value = 0;              // of `to` less that of `from`
+  ErrorOf error{};
+  std::uint64_t pairs = 0;      // realizations that both have; 0 for independent streams
+  double p = 1, corrected = 1;  // by itself, and for the number of differences (Holm 1979)
+};
+
+/// Of all points to one, `reference`, or of neighbours. With matched streams realization by
+/// realization, Student's t of M - 1 degrees of freedom; else Welch's test.
+std::vector<SweepDifference> differences(const SweepCurve& curve,
+                                         std::optional<std::size_t> reference);
+
+/// What is swept: "sqrt_epsilon", its units, and a line for people.
+struct SweptValue {
+  std::string name, units, long_name;
+};
+
+/// The curve with errors, its maximum, its straight line and, where realizations are known, the
+/// differences between its points.
+Table sweep_table(std::string name, const SweptValue& swept, const ObservableLabel& quantity,
+                  const SweepCurve& curve, std::optional<std::size_t> reference = std::nullopt);
+
+}  // namespace jostle

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include "ensemble/analysis/sweep_curve.hpp"
+
+namespace jostle {
+
+namespace {
+
+void add_value(const std::string& name, double value, const std::string& units,
+               const std::string& meaning, Table& table, const char* source = "") {
+  table.quantities.push_back({name, {}, std::vector{value}, units, meaning, source});
+}
+
+/// A value, its standard error and the error's degrees of freedom.
+void add_with_error(const std::string& name, double value, const ErrorOf& error,
+                    const std::string& units, const std::string& meaning, Table& table) {
+  add_value(name, value, units, meaning, table);
+  add_value(name + "_error", error_or_nan(error), units, "standard error of " + name, table);
+  add_value(name + "_dof", error.dof, "1", "degrees of freedom of " + name + "_error", table);
+}
+
+void add_maximum(const SweepMaximum& top, const SweptValue& swept, const ObservableLabel& quantity,
+                 Table& table) {
+  add_with_error("maximum_at", top.x, top.x_error, swept.units,
+                 swept.long_name + " of the maximum, from a parabola", table);
+  add_value("maximum_at_low", top.x_low, swept.units, "lower end of the 95 % interval", table,
+            "Fieller 1954, J. R. Stat. Soc. B 16, 175");
+  add_value("maximum_at_high", top.x_high, swept.units, "upper end of the 95 % interval", table,
+            "Fieller 1954, J. R. Stat. Soc. B 16, 175");
+  add_with_error("maximum", top.y, top.y_error, quantity.units,
+                 quantity.long_name + " at the maximum", table);
+  add_value("maximum_p", top.p, "1", "of no maximum inside the sweep", table,
+            "two lines: Simonsohn 2018, doi:10.1177/2515245918805755");
+  table.quantities.push_back({"maximum_points",
+                              {},
+                              std::vector{std::uint64_t{top.points}},
+                              "1",
+                              "points of the parabola",
+                              ""});
+  table.notes.emplace_back("maximum", top.verdict);
+}
+
+void add_line(const StraightLine& line, const std::string& slope_units,
+              const ObservableLabel& quantity, Table& table) {
+  add_with_error("line_intercept", line.intercept, line.intercept_error, quantity.units,
+                 "of a straight line", table);
+  add_with_error("line_slope", line.slope, line.slope_error, slope_units, "of a straight line",
+                 table);
+  add_value("line_reduced_chi2", line.reduced_chi2, "1", "chi2 per degree of freedom of the line",
+            table);
+  add_value("line_p", line.p, "1", "of points on a straight line scattering as much", table,
+            "F-test, Box 1954, doi:10.1214/aoms/1177728786");
+}
+
+void add_differences(const SweepCurve& curve, std::optional<std::size_t> reference,
+                     const SweptValue& swept, const ObservableLabel& quantity, Table& table) {
+  const std::vector<SweepDifference> all = differences(curve, reference);
+  if (all.empty()) return;
+  std::vector<std::uint64_t> index;
+  std::vector<double> from, to, value, error, dof, p, corrected;
+  for (const SweepDifference& one : all) {
+    index.push_back(index.size());
+    from.push_back(curve.x()[one.from]);
+    to.push_back(curve.x()[one.to]);
+    value.push_back(one.value);
+    error.push_back(error_or_nan(one.error));
+    dof.push_back(one.error.dof);
+    p.push_back(one.p);
+    corrected.push_back(one.corrected);
+  }
+  table.axes.push_back({"pair", {"pair"}, std::move(index), "1", "pair of points", ""});
+  const auto add = [&](const char* name, std::vector<double> values, const std::string& units,
+                       const char* meaning, const char* source = "") {
+    table.quantities.push_back({name, {"pair"}, std::move(values), units, meaning, source});
+  };
+  const bool paired = curve.streams() == Streams::matched;
+  add("from", std::move(from), swept.units, "point that the other is compared with");
+  add("to", std::move(to), swept.units, "the other point");
+  add("difference", std::move(value), quantity.units, "value at `to` less that at `from`");
+  add("difference_error", std::move(error), quantity.units,
+      paired ? "standard error over realizations of their differences"
+             : "standard error of two independent means");
+  add("difference_dof", std::move(dof), "1", "degrees of freedom of difference_error",
+      paired ? "" : "Welch 1947, doi:10.1093/biomet/34.1-2.28");
+  add("difference_p", std::move(p), "1", "of no difference, this pair alone, Student's t");
+  add("difference_p_corrected", std::move(corrected), "1", "the same for all pairs together",
+      "Holm 1979, Scand. J. Statist. 6, 65");
+  table.notes.emplace_back("differences",
+                           paired ? "realization by realization: the streams are matched"
+                                  : "of independent means (Welch): the streams are not matched");
+}
+
+}  // namespace
+
+Table sweep_table(std::string name, const SweptValue& swept, const ObservableLabel& quantity,
+                  const SweepCurve& curve, std::optional<std::size_t> reference) {
+  Table table{.name = std::move(name)};
+  table.axes = {{swept.name, {swept.name}, curve.x(), swept.units, swept.long_name, ""}};
+  table.notes = {{"observable", quantity.name}, {"against", swept.name}};
+  const auto add = [&](const std::string& suffix, auto values, const std::string& units,
+                       const std::string& meaning) {
+    table.quantities.push_back(
+        {quantity.name + suffix, {swept.name}, std::move(values), units, meaning, quantity.source});
+  };
+  std::vector<double> errors, dof;
+  for (const ErrorOf& error : curve.error()) {
+    errors.push_back(error_or_nan(error));
+    dof.push_back(error.dof);
+  }
+  add("", curve.y(), quantity.units, quantity.long_name);
+  add("_error", std::move(errors), quantity.units, "standard error");
+  add("_dof", std::move(dof), "1", "degrees of freedom of the error");
+  if (curve.has_realizations()) add("_count", curve.count(), "1", "realizations of the point");
+  add_value("pooled_sigma", error_or_nan(curve.pooled()), quantity.units,
+            curve.has_realizations() ? "deviation of one realization, pooled over points"
+                                     : "standard error of a point, pooled over points",
+            table);
+  add_value("pooled_sigma_dof", curve.pooled().dof, "1", "its degrees of freedom", table);
+  add_maximum(maximum(curve), swept, quantity, table);
+  const std::string slope_units =
+      swept.units == "1" ? quantity.units : quantity.units + " / " + swept.units;
+  add_line(straight_line(curve), slope_units, quantity, table);
+  add_differences(curve, reference, swept, quantity, table);
+  return table;
+}
+
+}  // namespace jostle

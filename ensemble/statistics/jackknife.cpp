@@ -1,0 +1,30 @@
+#include "ensemble/statistics/jackknife.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "ensemble/moments.hpp"
+#include "fitting/intervals/distributions.hpp"
+
+namespace jostle {
+
+namespace {
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+}
+
+double jackknife_error(std::span<const double> left_out) {
+  Moments moments;
+  for (const double estimate : left_out) {
+    if (std::isnan(estimate)) return not_a_number;
+    moments.add(estimate);
+  }
+  if (moments.count() < 2) return not_a_number;
+  return moments.sigma() * std::sqrt(static_cast<double>(moments.count() - 1));
+}
+
+double student_half_width(double error, std::size_t realizations, double level) {
+  if (realizations < 2) return not_a_number;
+  return error * student_two_sided(level, static_cast<double>(realizations - 1));
+}
+
+}  // namespace jostle

@@ -1,0 +1,53 @@
+#include "ensemble/statistics/log_estimate.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
+
+namespace jostle {
+
+namespace {
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+}
+
+LogEstimate no_estimate() {
+  return {nan, nan, nan, nan, nan, nan};
+}
+
+LogEstimate log_estimate(double value, const ErrorOf& of_logarithm) {
+  LogEstimate estimate = no_estimate();
+  estimate.value = value;
+  if (!of_logarithm.known() || !std::isfinite(of_logarithm.error)) return estimate;
+  estimate.error = value * of_logarithm.error;
+  const auto factor = [&](double level) {
+    return std::exp(student_two_sided(level, of_logarithm.dof) * of_logarithm.error);
+  };
+  const double by_68 = factor(interval_levels[0]), by_95 = factor(interval_levels[1]);
+  estimate.low_68 = value / by_68;
+  estimate.high_68 = value * by_68;
+  estimate.low_95 = value / by_95;
+  estimate.high_95 = value * by_95;
+  return estimate;
+}
+
+bool is_limited(const LogEstimate& estimate) {
+  return estimate.low_95 > 0 && std::isfinite(estimate.high_95);
+}
+
+std::vector<double> ln_means_without_one(std::span<const double> values) {
+  const std::size_t n = values.size();
+  if (n < 2) return {};
+  std::vector<double> before = {0}, after = {0}, logarithms;  // sums of the first, of the last
+  for (std::size_t i = 0; i < n; ++i) {
+    before.push_back(before.back() + values[i]);
+    after.push_back(after.back() + values[n - 1 - i]);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    logarithms.push_back(std::log((before[i] + after[n - 1 - i]) / static_cast<double>(n - 1)));
+  }
+  return logarithms;
+}
+
+}  // namespace jostle

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ensemble/statistics/student_tests.hpp"
+
+namespace jostle {
+
+/// A positive estimate whose logarithm is about normal: means of few squares, and what is fitted to
+/// them, are too skewed for value +- error. NaN where there is none.
+struct LogEstimate {
+  double value, error;     // error: value times the standard error of ln value
+  double low_68, high_68;  // value exp(-+ t error / value), Student's t
+  double low_95, high_95;
+};
+
+/// Without errors where `of_logarithm` is not finite.
+LogEstimate log_estimate(double value, const ErrorOf& of_logarithm);
+
+/// Where there is no estimate at all.
+LogEstimate no_estimate();
+
+/// Whether its 95 % interval has both ends: what has not is neither stored nor printed.
+bool is_limited(const LogEstimate& estimate);
+
+/// ln of the mean of values, none negative, with each left out in turn: for the jackknife. Empty
+/// below two values, minus infinity where only the one left out is above 0.
+std::vector<double> ln_means_without_one(std::span<const double> values);
+
+}  // namespace jostle

@@ -1,0 +1,134 @@
+#include "ensemble/statistics/resampled_fit.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "engine/bed/random.hpp"
+#include "ensemble/parallel.hpp"
+
+namespace jostle {
+
+namespace {
+
+// How often each realization counts in resample number `index`, [n_realizations].
+std::vector<double> multiplicities(const RealizationCurves& curves, std::uint32_t index,
+                                   const ResamplingOptions& options) {
+  if (options.kind == Resampling::jackknife) {
+    std::vector<double> weights(curves.realizations, 1.0);
+    weights[index] = 0;
+    return weights;
+  }
+  std::vector<double> weights(curves.realizations, 0.0);
+  RandomStream random(stream_key(options.seed, 0, index, Purpose::resampling));
+  for (std::uint32_t i = 0; i < curves.realizations; ++i) {
+    weights[random.below(curves.realizations)] += 1;
+  }
+  return weights;
+}
+
+// Differences from the first realization keep the digits of small fluctuations.
+std::vector<double> weighted_means(const RealizationCurves& curves,
+                                   const std::vector<double>& weights) {
+  double total = 0;
+  for (double weight : weights) total += weight;
+  std::vector<double> means;
+  means.reserve(curves.t.size());
+  for (std::size_t i = 0; i < curves.t.size(); ++i) {
+    const double* row = curves.values.data() + i * curves.realizations;
+    double sum = 0;
+    for (std::uint32_t r = 0; r < curves.realizations; ++r) sum += weights[r] * (row[r] - row[0]);
+    means.push_back(row[0] + sum / total);
+  }
+  return means;
+}
+
+FitOptions refit_options(const Fit& fit) {
+  FitOptions options;
+  options.start = fit.values();
+  options.multi_start = false;
+  options.profiles = false;
+  options.memory = false;
+  for (const Estimate& estimate : fit.estimates) {
+    if (estimate.identifiability == Identifiability::fixed) {
+      options.fixed[estimate.parameter.name] = estimate.value;
+    }
+  }
+  // Far below the errors sought.
+  options.solver.cost_tolerance = 1e-10;
+  options.solver.polish = false;
+  return options;
+}
+
+double standard_deviation(const std::vector<double>& values, double divisor) {
+  double mean = 0, sum = 0;
+  for (double value : values) mean += value / static_cast<double>(values.size());
+  for (double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / divisor);
+}
+
+// Linear between order statistics.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double rank = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(rank);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (rank - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+Interval central_interval(const std::vector<double>& sorted, double level) {
+  return {quantile(sorted, 0.5 * (1 - level)), quantile(sorted, 0.5 * (1 + level))};
+}
+
+void add_parameter(std::vector<double> values, Resampling kind, ResampledErrors& errors) {
+  const auto n = static_cast<double>(values.size());
+  if (values.size() < 2) {
+    errors.errors.push_back(std::numeric_limits<double>::infinity());
+    return;
+  }
+  // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
+  const double divisor = kind == Resampling::jackknife ? n / (n - 1) : n - 1;
+  errors.errors.push_back(standard_deviation(values, divisor));
+  if (kind != Resampling::bootstrap) return;
+  std::sort(values.begin(), values.end());
+  errors.middle.push_back(central_interval(values, interval_levels[0]));
+  errors.central.push_back(central_interval(values, interval_levels[1]));
+}
+
+}  // namespace
+
+Curve mean_curve(const RealizationCurves& curves) {
+  return {curves.t, weighted_means(curves, std::vector<double>(curves.realizations, 1.0)),
+          curves.sigma};
+}
+
+ResampledErrors resample(const Model& model, const RealizationCurves& curves, const Fit& fit,
+                         const ResamplingOptions& options) {
+  assert(curves.realizations >= 2 && curves.values.size() == curves.t.size() * curves.realizations);
+  ResampledErrors result;
+  result.resamples = options.kind == Resampling::jackknife ? curves.realizations : options.count;
+  const FitOptions refit = refit_options(fit);
+  std::vector<std::optional<ParameterValues>> found(result.resamples);
+  std::atomic<std::uint32_t> next{0};
+  on_threads(options.threads, [&] {
+    for (std::uint32_t i = next++; i < result.resamples; i = next++) {
+      const Curve curve{curves.t, weighted_means(curves, multiplicities(curves, i, options)),
+                        curves.sigma};
+      const auto refitted = jostle::fit(model, curve, refit);
+      const Fit* good = std::get_if<Fit>(&refitted);
+      if (good && is_minimum(good->reason)) found[i] = good->values();
+    }
+  });
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    std::vector<double> values;
+    for (const auto& parameters : found) {
+      if (parameters) values.push_back((*parameters)[j]);
+    }
+    result.failed = result.resamples - static_cast<std::uint32_t>(values.size());
+    add_parameter(std::move(values), options.kind, result);
+  }
+  return result;
+}
+
+}  // namespace jostle

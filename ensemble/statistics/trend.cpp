@@ -1,0 +1,153 @@
+#include "ensemble/statistics/trend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace jostle {
+
+namespace {
+
+constexpr double times_of_a_block = 5;    // autocorrelation times
+constexpr double rounding = 1e-12;        // what is left of a change is no memory
+constexpr std::size_t fewest_blocks = 4;  // of a series
+
+// Sum of (i - center)^2.
+double leverage(double n) {
+  return n * (n * n - 1) / 12;
+}
+
+// Of block means about their line, [n_blocks] in `means`.
+double squares_about_line(const std::vector<double>& means) {
+  const Line line = fit_line(means);
+  double squares = 0;
+  for (std::size_t b = 0; b < means.size(); ++b) {
+    const double residual =
+        means[b] - line.middle - line.slope * (static_cast<double>(b) - line.center);
+    squares += residual * residual;
+  }
+  return squares;
+}
+
+std::vector<double> block_means(std::span<const double> series, std::size_t length) {
+  std::vector<double> means(series.size() / length);
+  for (std::size_t b = 0; b < means.size(); ++b) {
+    Moments block;
+    for (const double value : series.subspan(b * length, length)) block.add(value);
+    means[b] = block.mean();
+  }
+  return means;
+}
+
+}  // namespace
+
+void TrendTest::add(std::span<const double> series) {
+  assert((n_ == 0 || series.size() == n_) && series.size() >= 32);
+  if (n_ == 0) {
+    n_ = series.size();
+    // 1, 2, 3, 4, 6, 8, 12, ... taps
+    for (std::size_t length = 1; fewest_blocks * length <= n_; length *= 2) {
+      levels_.push_back({length, n_ / length, 0});
+      const std::size_t between = length / 2 * 3;
+      if (length >= 2 && fewest_blocks * between <= n_)
+        levels_.push_back({between, n_ / between, 0});
+    }
+  }
+  ++n_series_;
+  Moments all, first, second;
+  for (const double value : series) all.add(value);
+  for (const double value : series.first(n_ / 2)) first.add(value);
+  for (const double value : series.last(n_ / 2)) second.add(value);
+  slopes_.add(fit_line(series).slope);
+  halves_.add(second.mean() - first.mean());
+  variance_ += all.sigma() * all.sigma();
+  about_lines_.add(series);
+  for (Level& level : levels_)
+    level.squares += squares_about_line(block_means(series, level.length));
+}
+
+// Of the mean slope. Block means are independent but for about T / length of their variance, T the
+// autocorrelation time, which their neighbours have.
+ErrorOf TrendTest::slope_within(const AutocorrelationTime& memory) const {
+  const auto n_values = static_cast<double>(n_series_ * (n_ - 2));
+  const double of_line = rounding * slopes_.mean() * static_cast<double>(n_);
+  if (memory.variance <= of_line * of_line) return {0, n_values};
+  if (!memory.found()) return {};
+  for (const Level& level : levels_) {
+    const auto length = static_cast<double>(level.length);
+    if (length < times_of_a_block * (memory.time + memory.error) &&
+        !(level.length == 1 && memory.time <= 0.5))
+      continue;
+    const auto n_blocks = static_cast<double>(level.n_blocks),
+               n_series = static_cast<double>(n_series_);
+    const double dof = n_series * (n_blocks - 2);
+    const double shared = 1 - std::max(0.0, memory.time - 0.5) / length;
+    const double variance = level.squares / dof / shared;
+    return {std::sqrt(variance / leverage(n_blocks) / n_series) / length, dof};
+  }
+  return {};
+}
+
+Trend TrendTest::result() const {
+  const auto n = static_cast<double>(n_), n_series = static_cast<double>(n_series_);
+  Trend trend;
+  trend.line.value = slopes_.mean() * n;
+  trend.halves.value = halves_.mean();
+  if (n_series_ > 1) {
+    trend.line.over = {slopes_.standard_error() * n, n_series - 1};
+    trend.halves.over = {halves_.standard_error(), n_series - 1};
+  }
+  trend.memory = about_lines_.result();
+  trend.sigma = std::sqrt(trend.memory.variance);
+  trend.line.within = slope_within(trend.memory);
+  trend.line.within.error *= n;
+  // With a spectrum that is flat at low frequencies, variances of 12 and 4 times that of the mean.
+  trend.halves.within = {trend.line.within.error / std::sqrt(3.0), trend.line.within.dof};
+  const double variance = variance_ / n_series;
+  if (variance > 0) {
+    trend.share =
+        std::min(1.0, trend.line.value * trend.line.value * (n * n - 1) / (12 * n * n) / variance);
+  }
+  const struct {
+    const Change& change;
+    const ErrorOf& error;
+    const char* name;
+  } tests[] = {{trend.line, trend.line.over, "slope over realizations"},
+               {trend.line, trend.line.within, "slope within series"},
+               {trend.halves, trend.halves.over, "halves over realizations"},
+               {trend.halves, trend.halves.within, "halves within series"}};
+  double smallest = 2;
+  for (const auto& test : tests) {
+    if (!test.error.known()) continue;
+    ++trend.tests;
+    const double p = p_value(test.change.value, test.error);
+    if (p >= smallest) continue;
+    smallest = p;
+    trend.decisive = test.name;
+    trend.decisive_dof = test.error.dof;
+  }
+  if (trend.tests > 0) trend.p = std::min(1.0, smallest * static_cast<double>(trend.tests));
+  trend.detectable = std::numeric_limits<double>::infinity();
+  for (const ErrorOf& error : {trend.line.over, trend.line.within}) {
+    if (!error.known()) continue;
+    const double level = Trend::level / static_cast<double>(trend.tests);
+    trend.detectable =
+        std::min(trend.detectable, error.error * smallest_effect_found(level, error.dof));
+  }
+  return trend;
+}
+
+std::string Trend::statement() const {
+  if (tests == 0) return "no test of a drift is possible";
+  const std::string test =
+      fmt::format("p = {:.2g} of {} test{}, least by the {}, {:.3g} degrees of freedom", p, tests,
+                  tests == 1 ? "" : "s", decisive, decisive_dof);
+  if (!drifts()) return fmt::format("no drift found ({})", test);
+  return fmt::format("it drifts: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",
+                     line.value, halves.value, test);
+}
+
+}  // namespace jostle

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/autocorrelation.hpp"
+#include "ensemble/statistics/line.hpp"
+#include "ensemble/statistics/student_tests.hpp"
+
+// Slow drift of series that should be steady. It fakes long correlations, and a spectrum's slope
+// of -2 at low frequencies.
+namespace jostle {
+
+/// A mean over realizations that is 0 in a steady state, with two independent errors.
+struct Change {
+  double value = 0;
+  ErrorOf over;    // from the scatter over realizations; none of one
+  ErrorOf within;  // from the memory of each series about its own line; none where blocks of five
+                   // autocorrelation times are fewer than four a series
+  /// Over realizations where that is known, else within.
+  const ErrorOf& error() const { return over.known() ? over : within; }
+};
+
+/// Whether the last taps drift: Student's tests of the slope of a straight line and of the
+/// difference between the halves, each with both errors where they are known. The smallest p-value
+/// counts, times the number of tests (Bonferroni).
+struct Trend {
+  Change line;                 // change of a straight line over the taps: slope times their number
+  Change halves;               // mean of the second half of the taps less that of the first
+  double share = 0;            // of the total variance in time that the line explains, 0 .. 1
+  double sigma = 0;            // deviation of single taps about the line of their realization
+  AutocorrelationTime memory;  // about these lines
+  std::size_t tests = 0;       // made; 0: one series, too short for its memory
+  double p = 1;                // of all tests together
+  std::string decisive;        // the test with the smallest p-value: "slope over realizations"
+  double decisive_dof = 0;
+  /// The smallest true change of the line that one of the tests would have found with probability
+  /// 0.8, by the errors as they are estimated. Infinite without a test.
+  double detectable = 0;
+
+  static constexpr double level = 0.01;  // false alarms, all tests together
+  bool drifts() const { return p < level; }
+  /// "it drifts: +0.02 over the taps (p = 0.0003, slope, within series, 35 degrees of freedom)", or
+  /// "no drift found (p = 0.4, ...)".
+  std::string statement() const;
+};
+
+/// One series after another, all of one length, at least 32.
+class TrendTest {
+ public:
+  void add(std::span<const double> series);
+  /// After at least one series.
+  Trend result() const;
+
+ private:
+  /// Means of blocks of one length about their own line, pooled over series.
+  struct Level {
+    std::size_t length = 0, n_blocks = 0;  // taps; blocks of a series
+    double squares = 0;
+  };
+  ErrorOf slope_within(const AutocorrelationTime& memory) const;
+
+  std::size_t n_ = 0, n_series_ = 0;
+  Moments slopes_, halves_;
+  double variance_ = 0;  // in time, summed over series
+  Autocorrelation about_lines_{Removed::line};
+  std::vector<Level> levels_;
+};
+
+}  // namespace jostle

@@ -1,0 +1,82 @@
+#include "fitting/intervals/dependence.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace jostle {
+
+namespace {
+
+constexpr double least_inflation =
+    1e-12;  // realizations that agree in a variable, but for rounding
+
+// What least squares makes of residuals: an orthonormal basis Q of the Jacobian's columns, and for
+// every variable the combination of Q^T r that is its change.
+struct Influence {
+  Eigen::MatrixXd basis;    // [n_points, n_variables]
+  Eigen::MatrixXd changes;  // [n_variables, n_variables], a variable a column
+};
+
+Influence influence(const Eigen::MatrixXd& jacobian) {
+  const Eigen::Index n = jacobian.cols();
+  Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
+  for (double& norm : norms) norm = norm > 0 ? norm : 1;
+  const Eigen::MatrixXd scaled = jacobian * norms.cwiseInverse().asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).template triangularView<Eigen::Upper>();
+  // A direction that the Jacobian does not see is as uncertain as rounding allows.
+  const double least = 1e-17 * triangle.diagonal().cwiseAbs().maxCoeff();
+  for (double& diagonal : triangle.diagonal()) {
+    if (std::abs(diagonal) <= least) diagonal = std::max(least, 1e-300);
+  }
+  Influence found;
+  found.basis = qr.householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), n);
+  found.changes = triangle.transpose().template triangularView<Eigen::Lower>().solve(
+      Eigen::MatrixXd::Identity(n, n) * norms.cwiseInverse().asDiagonal());
+  return found;
+}
+
+// From the covariance of Q^T r in units of what independent points give.
+DependentErrors errors_of(const Influence& found, const Eigen::MatrixXd& scatter, double variance,
+                          double dof) {
+  DependentErrors errors;
+  errors.covariance = found.changes.transpose() * (variance * scatter) * found.changes;
+  errors.inflation.resize(found.changes.cols());
+  for (Eigen::Index j = 0; j < errors.inflation.size(); ++j) {
+    const Eigen::VectorXd direction = found.changes.col(j).normalized();
+    errors.inflation[j] = std::max(direction.dot(scatter * direction), least_inflation);
+  }
+  errors.dof = dof;
+  return errors;
+}
+
+}  // namespace
+
+DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
+                                 const Eigen::MatrixXd& deviations) {
+  const Influence found = influence(jacobian);
+  const Eigen::MatrixXd projected = found.basis.transpose() * deviations;
+  const auto m = static_cast<double>(deviations.cols());
+  return errors_of(found, projected * projected.transpose() / (m * (m - 1)), 1, m - 1);
+}
+
+MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
+                           const Eigen::VectorXd& residuals, bool sigma_given) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const Influence found = influence(jacobian);
+  const auto independent = static_cast<double>(residuals.size() - jacobian.cols());
+  const double unit = sigma_given ? 1 : residuals.squaredNorm() / independent;
+  Memory memory = residual_memory(t, residuals, found.basis);
+  // Residuals below the errors given show no noise, and so no memory of it.
+  const double share = std::min(memory.variance / unit, sigma_given ? 1.0 : infinite);
+  Eigen::MatrixXd scatter = share * found.basis.transpose() * correlated(t, memory, found.basis);
+  const double dof = memory.effective_size - static_cast<double>(jacobian.cols());
+  if (sigma_given && !(scatter.diagonal().maxCoeff() > 1)) {
+    scatter.setIdentity();
+    memory = {.variance = memory.variance, .effective_size = static_cast<double>(t.size())};
+    return {errors_of(found, scatter, 1, infinite), memory};
+  }
+  return {errors_of(found, scatter, unit, dof), memory};
+}
+
+}  // namespace jostle

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "fitting/intervals/memory.hpp"
+
+// Errors of a fit whose points are not independent: realizations have memories, and keep to values
+// of their own.
+namespace jostle {
+
+/// Errors of least squares that count the dependence of its points.
+struct DependentErrors {
+  Eigen::MatrixXd covariance;  // [n_variables, n_variables]
+  /// [n_variables], > 0: the variance of each variable over what independent points of unit
+  /// variance would give it. A profile's threshold grows by its root.
+  Eigen::VectorXd inflation;
+  /// Of Student's t; infinite where the errors are known.
+  double dof = std::numeric_limits<double>::infinity();
+};
+
+/// Realizations as clusters (the sandwich of White 1980, doi:10.2307/1912934, over clusters; Liang
+/// & Zeger 1986, doi:10.1093/biomet/73.1.13): to first order the estimate is the mean of one
+/// estimate a realization, which are independent whatever the memory within each, so Student's t of
+/// n_realizations - 1 degrees of freedom is exact for linear laws and normal noise. jacobian:
+/// [n_points, n_variables], weighted; deviations: [n_points, n_realizations] of the realizations
+/// from their mean, with the same weights, n_realizations >= 2.
+DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
+                                 const Eigen::MatrixXd& deviations);
+
+/// Of one curve alone, whose residuals have a memory; Student's t of effective_size - n_variables
+/// degrees of freedom, which may be negative where the memory is as long as the curve. t:
+/// [n_points], ascending; jacobian, residuals: [n_points], weighted alike. `sigma_given`: the
+/// variance of a residual is 1, and only their correlation is taken from them, where they are no
+/// smaller.
+struct MemoryErrors : DependentErrors {
+  Memory memory;
+};
+MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
+                           const Eigen::VectorXd& residuals, bool sigma_given);
+
+}  // namespace jostle

@@ -1,0 +1,126 @@
+#include "fitting/intervals/fit_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/solver/curve_residuals.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double least_error_dof = 10;  // of a curve alone
+
+// Of every realization from the mean, in errors of the mean: [n_points, n_realizations].
+Eigen::MatrixXd deviations(const Curve& curve) {
+  const std::size_t m = curve.n_realizations;
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(curve.x.size()), static_cast<Eigen::Index>(m));
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    for (std::size_t r = 0; r < m; ++r) {
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(r)) =
+          (curve.values[i * m + r] - curve.x[i]) / curve.sigma[i];
+    }
+  }
+  return matrix;
+}
+
+std::vector<Eigen::Index> in_order_of_t(const std::vector<double>& t) {
+  std::vector<Eigen::Index> order(t.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return t[static_cast<std::size_t>(a)] < t[static_cast<std::size_t>(b)];
+  });
+  return order;
+}
+
+DependentErrors of_memory(const Curve& curve, const LinearProblem& problem, Fit& fit) {
+  const auto order = in_order_of_t(curve.t);
+  std::vector<double> t(curve.t);
+  std::sort(t.begin(), t.end());
+  const Eigen::MatrixXd jacobian = problem.jacobian(order, Eigen::all);
+  const Eigen::VectorXd residuals = problem.residuals(order);
+  MemoryErrors errors = memory_errors(t, jacobian, residuals, fit.sigma_given);
+  fit.memory = errors.memory;
+  fit.effective_size = std::clamp(errors.memory.effective_size, 1.0, 1.0 * t.size());
+  count_effective_points(fit);
+  return errors;
+}
+
+DependentErrors of_independent_points(const LinearProblem& problem, const Fit& fit) {
+  const Eigen::Index n = problem.jacobian.cols();
+  DependentErrors errors;
+  errors.covariance =
+      inverse_normal(problem.jacobian).matrix * (fit.sigma_given ? 1 : fit.reduced_chi2);
+  errors.inflation = Eigen::VectorXd::Ones(n);
+  errors.dof = fit.sigma_given ? infinite : static_cast<double>(fit.dof);
+  return errors;
+}
+
+}  // namespace
+
+LinearProblem linear_problem(const Model& model, const Curve& curve, const ParameterValues& values,
+                             const std::vector<bool>& free) {
+  const CurveResiduals residuals(model, curve, values, free);
+  const Eigen::VectorXd u = residuals.to_variables(values);
+  LinearProblem problem;
+  problem.residuals.resize(residuals.n_residuals());
+  problem.jacobian.resize(residuals.n_residuals(), residuals.n_variables());
+  residuals.values_and_jacobian(u, problem.residuals, problem.jacobian);
+  problem.slopes = residuals.slopes(u);
+  return problem;
+}
+
+void fill_covariance(const LinearProblem& problem, const std::vector<bool>& free, Fit& fit) {
+  const auto n = static_cast<Eigen::Index>(free.size());
+  fit.covariance = Eigen::MatrixXd::Zero(n, n);
+  fit.correlation = Eigen::MatrixXd::Zero(n, n);
+  if (fit.n_free == 0) return;
+  const InverseNormal inverse = inverse_normal(problem.jacobian);
+  fit.condition = inverse.condition;
+  const Eigen::VectorXd& slopes = problem.slopes;
+  const double variance = fit.sigma_given ? 1 : fit.reduced_chi2;
+  Eigen::Index a = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!free[static_cast<std::size_t>(i)]) continue;
+    Eigen::Index b = 0;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (!free[static_cast<std::size_t>(j)]) continue;
+      const double entry = inverse.matrix(a, b);
+      const double scale = std::sqrt(inverse.matrix(a, a)) * std::sqrt(inverse.matrix(b, b));
+      const double sign = slopes[a] * slopes[b] < 0 ? -1 : 1;
+      fit.covariance(i, j) = entry * slopes[a] * slopes[b] * variance;
+      if (std::isnan(fit.covariance(i, j))) fit.covariance(i, j) = 0;  // 0 times infinity
+      fit.correlation(i, j) = i == j ? 1 : std::clamp(sign * entry / scale, -1.0, 1.0);
+      ++b;
+    }
+    ++a;
+  }
+}
+
+DependentErrors dependent_errors(const Curve& curve, const LinearProblem& problem, bool memory,
+                                 Fit& fit) {
+  const bool scattered = curve.n_realizations > 0 && !curve.sigma.empty();
+  fit.n_realizations = scattered ? curve.n_realizations : 0;
+  DependentErrors errors;
+  if (fit.n_free == 0) {
+    errors = {Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), infinite};
+  } else if (scattered) {
+    errors = clustered_errors(problem.jacobian, deviations(curve));
+  } else if (memory && fit.dof > 0 && fit.residual_sum > 0 && fit.reason != EndReason::exact) {
+    errors = of_memory(curve, problem, fit);
+  } else {
+    errors = of_independent_points(problem, fit);
+  }
+  fit.error_dof = errors.dof;
+  if (too_short_for_errors(fit)) errors.covariance.setConstant(infinite);
+  return errors;
+}
+
+bool too_short_for_errors(const Fit& fit) {
+  return fit.memory.time > 0 && fit.error_dof < least_error_dof;
+}
+
+}  // namespace jostle

@@ -1,0 +1,126 @@
+#include "fitting/intervals/fit_statistics.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace jostle {
+
+namespace {
+
+constexpr double two_pi = 6.283185307179586;
+
+std::vector<double> in_order_of_t(const Curve& curve, const Eigen::VectorXd& weighted) {
+  std::vector<std::size_t> order(curve.t.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return curve.t[a] < curve.t[b]; });
+  std::vector<double> sorted;
+  for (std::size_t i : order) sorted.push_back(weighted[static_cast<Eigen::Index>(i)]);
+  return sorted;
+}
+
+// Sum of squares about the weighted mean, of X or ln X.
+double total_sum(const Curve& curve, bool logarithmic) {
+  double weights = 0, mean = 0;
+  const auto weight = [&](std::size_t i) {
+    const double inverse =
+        curve.sigma.empty() ? 1 : (logarithmic ? curve.x[i] : 1) / curve.sigma[i];
+    return inverse * inverse;
+  };
+  const auto target = [&](std::size_t i) {
+    return logarithmic ? std::log(curve.x[i]) : curve.x[i];
+  };
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    weights += weight(i);
+    mean += weight(i) / weights * (target(i) - mean);
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    sum += weight(i) * (target(i) - mean) * (target(i) - mean);
+  }
+  return sum;
+}
+
+// -2 ln L of independent normal residuals; where their variance is unknown it takes its most likely
+// value.
+double deviance(const Curve& curve, const Fit& fit, bool logarithmic) {
+  const auto n = static_cast<double>(fit.n_points);
+  if (!fit.sigma_given) return n * (std::log(two_pi * fit.residual_sum / n) + 1);
+  double sum = fit.residual_sum;
+  for (std::size_t i = 0; i < fit.n_points; ++i) {
+    const double sigma = logarithmic ? curve.sigma[i] / curve.x[i] : curve.sigma[i];
+    sum += std::log(two_pi) + 2 * std::log(sigma);
+  }
+  return sum;
+}
+
+// Weights are 1 over squared errors, of X or ln X. Points that have none weigh alike.
+double weighted_size(const Curve& curve, bool logarithmic) {
+  if (curve.sigma.empty()) return static_cast<double>(curve.t.size());
+  const auto weight = [&](std::size_t i) {
+    const double inverse = (logarithmic ? curve.x[i] : 1) / curve.sigma[i];
+    return inverse * inverse;
+  };
+  double largest = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < curve.t.size(); ++i) largest = std::max(largest, weight(i));
+  for (std::size_t i = 0; i < curve.t.size(); ++i) {
+    const double share = weight(i) / largest;
+    sum += share;
+    squares += share * share;
+  }
+  return sum * sum / squares;
+}
+
+// Parameters, and the variance of a residual where it is estimated.
+std::size_t n_estimated(const Fit& fit) {
+  return fit.n_free + (fit.sigma_given ? 0 : 1);
+}
+
+}  // namespace
+
+InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian) {
+  const Eigen::Index n = jacobian.cols();
+  Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
+  for (double& norm : norms) norm = norm > 0 ? norm : 1;
+  const Eigen::MatrixXd scaled = jacobian * norms.cwiseInverse().asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(n, n);
+  const Eigen::Index rows = std::min(n, scaled.rows());
+  triangle.topRows(rows) = qr.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  const double largest = svd.singularValues()[0] > 0 ? svd.singularValues()[0] : 1;
+  const Eigen::VectorXd singular = svd.singularValues().cwiseMax(1e-17 * largest);
+  const Eigen::MatrixXd root =
+      norms.cwiseInverse().asDiagonal() * svd.matrixV() * singular.cwiseInverse().asDiagonal();
+  return {root * root.transpose(), std::pow(largest / singular[n - 1], 2)};
+}
+
+void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& fit) {
+  const bool logarithmic = fit.logarithmic;
+  fit.residual_sum = weighted.squaredNorm();
+  fit.reduced_chi2 = fit.dof > 0 ? fit.residual_sum / static_cast<double>(fit.dof)
+                                 : std::numeric_limits<double>::infinity();
+  fit.r2 = 1 - fit.residual_sum / total_sum(curve, logarithmic);
+  const std::vector<double> sorted = in_order_of_t(curve, weighted);
+  fit.runs = runs_test(sorted);
+  fit.effective_size = effective_sample_size(sorted);
+  fit.weighted_size = weighted_size(curve, logarithmic);
+  const double likelihood = deviance(curve, fit, logarithmic);
+  const auto k = static_cast<double>(n_estimated(fit));
+  fit.aic = likelihood + 2 * k;
+  fit.bic = likelihood + k * std::log(static_cast<double>(fit.n_points));
+  count_effective_points(fit);
+}
+
+void count_effective_points(Fit& fit) {
+  const auto n = static_cast<double>(fit.n_points);
+  const auto k = static_cast<double>(n_estimated(fit));
+  fit.error_factor = std::sqrt(n / fit.effective_size);
+  const double effective = (fit.aic - 2 * k) * fit.effective_size / n;
+  fit.aic_effective = effective + 2 * k;
+  fit.bic_effective = effective + k * std::log(fit.effective_size);
+}
+
+}  // namespace jostle

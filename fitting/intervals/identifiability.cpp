@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "fitting/intervals/distributions.hpp"
+#include "fitting/intervals/fit_errors.hpp"
+#include "fitting/intervals/fit_statistics.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double few_points_share = 0.1;
+constexpr double chi2_level = 0.001;
+constexpr double wide_factor = 2;     // of a positive parameter
+constexpr double wide_share = 0.125;  // of the curve, for a place or a level
+
+// Where the curvature of the least squares is rounding and a minimum lies absurdly far from all
+// that was measured, whatever closed its interval was not the data.
+constexpr double singular_condition = 4.5e15;  // 1 / epsilon
+constexpr double absurd = 100;
+
+double span(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+bool is_wide(const Estimate& estimate, const Curve& curve) {
+  const Interval& interval = estimate.intervals[1];
+  const double width = interval.upper - interval.lower;
+  const ParameterUnit unit = estimate.parameter.unit;
+  if (unit == ParameterUnit::value) return width > wide_share * span(curve.x);
+  if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
+  return unit == ParameterUnit::time && width > wide_share * span(curve.t);
+}
+
+Identifiability verdict(const Estimate& estimate, const Curve& curve) {
+  const Interval& interval = estimate.intervals[1];
+  const bool above = std::isfinite(interval.lower), below = std::isfinite(interval.upper);
+  if (!above && !below) return Identifiability::not_identifiable;
+  if (!below) return Identifiability::bounded_below;
+  if (!above) return Identifiability::bounded_above;
+  return is_wide(estimate, curve) ? Identifiability::wide : Identifiability::identified;
+}
+
+std::string statement(const Estimate& estimate) {
+  const Interval& interval = estimate.intervals[1];
+  const std::string& name = estimate.parameter.name;
+  std::ostringstream text;
+  text.precision(4);
+  switch (estimate.identifiability) {
+    case Identifiability::fixed:
+      text << name << " is fixed at " << estimate.value;
+      break;
+    case Identifiability::not_examined:
+      text << name << " was not examined";
+      break;
+    case Identifiability::identified:
+      text << name << " is identified: " << interval.lower << " to " << interval.upper << " (95 %)";
+      break;
+    case Identifiability::wide:
+      text << name << " is wide: " << interval.lower << " to " << interval.upper
+           << " fit the curve as well (95 %)";
+      break;
+    case Identifiability::bounded_below:
+      text << name << " is not identifiable: the data say only " << name << " > " << interval.lower
+           << " (95 %)";
+      break;
+    case Identifiability::bounded_above:
+      text << name << " is not identifiable: the data say only " << name << " < " << interval.upper
+           << " (95 %)";
+      break;
+    case Identifiability::not_identifiable:
+      text << name << " is not identifiable: the data set no limit on either side";
+      break;
+  }
+  return text.str();
+}
+
+bool is_absurd(const Estimate& estimate, const Curve& curve) {
+  const double size = std::abs(estimate.value);
+  if (!(estimate.standard_error > absurd * size)) return false;
+  if (estimate.parameter.unit != ParameterUnit::value) return estimate.parameter.lower == 0;
+  const auto [low, high] = std::minmax_element(curve.x.begin(), curve.x.end());
+  return size > absurd * std::max(std::abs(*low), std::abs(*high));
+}
+
+bool is_loose(const Estimate& estimate) {
+  return estimate.identifiability == Identifiability::wide ||
+         estimate.identifiability == Identifiability::bounded_below ||
+         estimate.identifiability == Identifiability::bounded_above ||
+         estimate.identifiability == Identifiability::not_identifiable;
+}
+
+// Those that can make up for each other: loose, and tied to another free one.
+void remark_on_exchange(Fit& fit) {
+  std::vector<std::string> names;
+  for (const Estimate& estimate : fit.estimates) {
+    if (is_loose(estimate)) names.push_back(estimate.parameter.name);
+  }
+  if (names.empty()) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "The parameters are not unique: ";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text << (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") << names[i];
+  }
+  text << (names.size() > 1 ? " can make up for each other" : " can make up for the others")
+       << " over the range of t fitted (condition number " << fit.condition
+       << "); quote intervals, not standard errors, and compare only fits over the same range.";
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_memory(Fit& fit) {
+  if (!(fit.memory.time > 0)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "One curve alone: its residuals remember for about " << fit.memory.time
+       << " in t, so its " << fit.n_points << " points are worth " << fit.effective_size
+       << " independent ones";
+  if (too_short_for_errors(fit)) {
+    text << ", too few for errors and intervals, and none are given. Fit several realizations.";
+  } else {
+    text << "; errors and intervals count that.";
+  }
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_weights(Fit& fit) {
+  if (fit.weighted_size > few_points_share * static_cast<double>(fit.n_points)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "Few points dominate: by their errors the " << fit.n_points << " points weigh as "
+       << fit.weighted_size << " equal ones. Unless these errors are known that well, fit without "
+       << "them.";
+  fit.remarks.push_back(text.str());
+}
+
+// By chi2 of as many degrees of freedom as independent points leave; approximately normal in its
+// cube root (Wilson & Hilferty 1931).
+void remark_on_chi2(Fit& fit) {
+  const double dof = fit.effective_size - static_cast<double>(fit.n_free);
+  if (!fit.sigma_given || !(dof >= 1) || fit.reason == EndReason::exact) return;
+  const double z = (std::cbrt(fit.reduced_chi2) - 1 + 2 / (9 * dof)) / std::sqrt(2 / (9 * dof));
+  if (normal_tails(z) > chi2_level) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "Reduced chi2 is " << fit.reduced_chi2 << ", far from 1 (p < 0.001 for "
+       << fit.effective_size << " independent points): ";
+  if (z > 0) {
+    text << "the law misses the curve, or its errors are too small.";
+  } else if (fit.n_realizations > 0) {
+    text << "realizations keep to values of their own, so their mean scatters less than they do. "
+            "Errors and intervals count that.";
+  } else {
+    text << "the errors given are larger than the scatter of the points.";
+  }
+  fit.remarks.push_back(text.str());
+}
+
+void remark_on_residuals(Fit& fit) {
+  if (fit.reason == EndReason::exact || !(fit.runs.z < 0 && fit.runs.p < 0.01)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "The residuals are correlated (" << fit.runs.runs << " runs of one sign, "
+       << fit.runs.expected
+       << " expected): the law misses the curve, or points are not independent.";
+  fit.remarks.push_back(text.str());
+}
+
+}  // namespace
+
+bool Interval::closed() const {
+  return std::isfinite(lower) && std::isfinite(upper);
+}
+
+bool Estimate::has_value() const {
+  if (identifiability == Identifiability::fixed) return true;
+  if (identifiability == Identifiability::not_examined) {
+    return !(standard_error > absurd * std::abs(value)) || !std::isfinite(standard_error);
+  }
+  return identifiability != Identifiability::not_identifiable && intervals[0].closed();
+}
+
+double Estimate::half_width() const {
+  if (identifiability == Identifiability::fixed) return 0;
+  return intervals[0].closed() ? 0.5 * (intervals[0].upper - intervals[0].lower)
+                               : std::numeric_limits<double>::infinity();
+}
+
+void judge_combinations(const Curve& curve, Fit& fit) {
+  for (Estimate& estimate : fit.combinations) {
+    estimate.identifiability = verdict(estimate, curve);
+    estimate.statement = statement(estimate);
+  }
+}
+
+void judge(const Curve& curve, Fit& fit) {
+  for (Estimate& estimate : fit.estimates) {
+    const bool examined = estimate.identifiability == Identifiability::identified;
+    if (examined && fit.condition > singular_condition && is_absurd(estimate, curve)) {
+      const double infinite = std::numeric_limits<double>::infinity();
+      for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
+    }
+    if (examined) estimate.identifiability = verdict(estimate, curve);
+    estimate.statement = statement(estimate);
+  }
+  remark_on_memory(fit);
+  remark_on_exchange(fit);
+  remark_on_weights(fit);
+  remark_on_chi2(fit);
+  remark_on_residuals(fit);
+}
+
+}  // namespace jostle

@@ -1,0 +1,172 @@
+#include "fitting/intervals/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/intervals/held_fits.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double reach_of_logarithm = 13.8;  // a factor 10^6
+constexpr double reach_of_errors = 1e4;
+
+// z as a function of the distance on one side. An end of an interval is closed by a settled fit
+// alone, and where z rises to it without a jump.
+class Side {
+ public:
+  Side(const ProfileProblem& problem, std::size_t index, double direction)
+      : problem_(problem), index_(index), fits_(problem, index, direction) {}
+
+  /// Fills the ends of the intervals on this side; infinite where nothing closes one. `step`: about
+  /// one standard error in the coordinate.
+  void find_ends(double step, double ends[2]);
+  const std::optional<ParameterValues>& better() const { return fits_.better(); }
+
+ private:
+  double reach(double& step) const;
+  std::vector<HeldFit> march(double step);
+  void revise(std::vector<HeldFit>& points, const HeldFit& found);
+  double crossing(HeldFit low, HeldFit high, double threshold);
+
+  const ProfileProblem& problem_;
+  std::size_t index_;
+  HeldFits fits_;
+};
+
+// Illinois variant of false position: z is close to linear in u.
+double Side::crossing(HeldFit low, HeldFit high, double threshold) {
+  double distance = high.distance;
+  double f_low = low.z - threshold, f_high = high.z - threshold;
+  for (int i = 0; i < 60; ++i) {
+    const double width = high.distance - low.distance;
+    distance = low.distance - f_low * width / (f_high - f_low);
+    distance = std::clamp(distance, low.distance + 1e-3 * width, high.distance - 1e-3 * width);
+    if (width <= 1e-7 * high.distance) break;
+    const HeldFit point = fits_.at(distance, low, &high);
+    const double f = point.z - threshold;
+    if (fits_.better() || (point.settled && std::abs(f) <= 1e-6 * threshold)) return distance;
+    if (f < 0) {
+      low = point;
+      f_low = f;
+      f_high *= 0.5;
+    } else if (point.settled) {
+      high = point;
+      f_high = f;
+      f_low *= 0.5;
+    } else {
+      return infinite;
+    }
+  }
+  // A jump is no end: one of its sides is not the least cost.
+  return high.z - low.z < 0.1 * threshold ? distance : infinite;
+}
+
+// How far a side is explored.
+double Side::reach(double& step) const {
+  if (fits_.coordinate().is_logarithmic()) {
+    step = std::min(step, 1.0);
+    if (!fits_.coordinate().is_far()) return reach_of_logarithm;
+    const double end = fits_.coordinate().to_variable(fits_.largest());
+    return std::max(fits_.direction() * fits_.centre() > 0 ? end - std::abs(fits_.centre())
+                                                           : end + std::abs(fits_.centre()),
+                    0.0);
+  }
+  const Parameter& parameter = problem_.model.parameters()[index_];
+  if (parameter.unit != ParameterUnit::value) {
+    return reach_of_errors * std::max(step, std::abs(fits_.centre()));
+  }
+  // A standard error can be anything where the problem is degenerate; the curve's range cannot.
+  const auto [low, high] = std::minmax_element(problem_.curve.x.begin(), problem_.curve.x.end());
+  step = std::min(step, *high - *low);
+  return reach_of_errors * std::max(*high - *low, std::abs(fits_.centre()));
+}
+
+// Where a search met a lower branch of z, the points before it may belong to the higher one.
+void Side::revise(std::vector<HeldFit>& points, const HeldFit& found) {
+  const HeldFit* from = &found;
+  for (std::size_t i = points.size() - 1; i > 0 && !fits_.better(); --i) {
+    if (!fits_.improve(points[i], fits_.beside(points[i].distance, *from))) {
+      return;
+    }
+    from = &points[i];
+  }
+}
+
+// Outwards until z has passed both thresholds, or as far as it is of interest.
+std::vector<HeldFit> Side::march(double step) {
+  const double end = reach(step);
+  const double last_threshold = problem_.thresholds[1];
+  std::vector<HeldFit> points = {{0, 0, true, problem_.minimum}};
+  int retries = 0;
+  while (points.back().distance < end && !fits_.better()) {
+    const HeldFit& last = points.back();
+    HeldFit next = fits_.at(std::min(last.distance + step, end), last);
+    const bool outside = next.z >= last_threshold;
+    // Too far to be a neighbour of the last: its fit may have gone astray.
+    if ((next.z > last.z + 2 * last_threshold || (outside && !next.settled)) && retries < 20) {
+      step *= 0.3;
+      ++retries;
+      continue;
+    }
+    if (outside && !fits_.better()) {
+      const HeldFit unsearched = next;
+      fits_.search(next);
+      if (next.z < unsearched.z - fits_.noticeable()) revise(points, next);
+    }
+    if (next.z - points.back().z < 0.5 * problem_.thresholds[0]) step *= 2;
+    if (fits_.coordinate().is_logarithmic()) step = std::min(step, 2.0);
+    const bool passed = next.z >= last_threshold;
+    points.push_back(std::move(next));
+    if (passed) break;
+  }
+  return points;
+}
+
+void Side::find_ends(double step, double ends[2]) {
+  const std::vector<HeldFit> points = march(step);
+  for (int level = 0; level < 2 && !fits_.better(); ++level) {
+    const double threshold = problem_.thresholds[level];
+    const auto inside = std::find_if(points.rbegin(), points.rend(),
+                                     [&](const HeldFit& point) { return point.z < threshold; });
+    const auto above = std::find_if(inside.base(), points.end(),
+                                    [](const HeldFit& point) { return point.settled; });
+    ends[level] = fits_.direction() * infinite;
+    if (above == points.end()) continue;
+    const double distance = crossing(*inside, *above, threshold);
+    if (std::isfinite(distance)) ends[level] = fits_.parameter(distance);
+  }
+}
+
+}  // namespace
+
+ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error) {
+  ParameterProfile result;
+  const Coordinate coordinate(problem, index);
+  const double slope = std::abs(coordinate.slope(coordinate.to_variable(problem.minimum[index])));
+  const double step = std::clamp(error / slope, std::numeric_limits<double>::min(), 1e300);
+  for (double direction : {-1.0, 1.0}) {
+    double ends[2] = {-infinite, infinite};
+    // Below a bound from above, u and p run against each other.
+    const bool reversed = coordinate.slope(0) < 0;
+    Side side(problem, index, reversed ? -direction : direction);
+    side.find_ends(step, ends);
+    for (int level = 0; level < 2; ++level) {
+      if (!std::isfinite(ends[level])) ends[level] = direction * infinite;
+      (direction < 0 ? result.intervals[level].lower : result.intervals[level].upper) = ends[level];
+    }
+    if (side.better()) {
+      result.better = side.better();
+      break;
+    }
+  }
+  // Where fits in between did not settle, 68 % may be open; what 95 % allow includes it.
+  Interval& wide = result.intervals[1];
+  wide.lower = std::min(wide.lower, result.intervals[0].lower);
+  wide.upper = std::max(wide.upper, result.intervals[0].upper);
+  return result;
+}
+
+}  // namespace jostle

@@ -1,0 +1,121 @@
+#include "fitting/solver/curve_residuals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace jostle {
+
+Transform::Transform(const Parameter& parameter)
+    : lower_(parameter.lower),
+      upper_(parameter.upper),
+      lower_bound_(std::isfinite(parameter.lower)),
+      upper_bound_(std::isfinite(parameter.upper)) {}
+
+double Transform::to_variable(double p) const {
+  const double tiny = std::numeric_limits<double>::min();
+  if (lower_bound_ && upper_bound_) {
+    const double share = std::clamp((p - lower_) / (upper_ - lower_), 1e-12, 1 - 1e-12);
+    return std::log(share / (1 - share));
+  }
+  if (lower_bound_) return std::log(std::max(p - lower_, tiny));
+  if (upper_bound_) return std::log(std::max(upper_ - p, tiny));
+  return p;
+}
+
+double Transform::to_parameter(double u) const {
+  if (lower_bound_ && upper_bound_) return lower_ + (upper_ - lower_) / (1 + std::exp(-u));
+  if (lower_bound_) return lower_ + std::exp(u);
+  if (upper_bound_) return upper_ - std::exp(u);
+  return u;
+}
+
+double Transform::slope(double u) const {
+  if (lower_bound_ && upper_bound_) {
+    const double share = 1 / (1 + std::exp(-u));
+    return (upper_ - lower_) * share * (1 - share);
+  }
+  if (lower_bound_) return std::exp(u);
+  if (upper_bound_) return -std::exp(u);
+  return 1;
+}
+
+CurveResiduals::CurveResiduals(const Model& model, const Curve& curve, ParameterValues values,
+                               const std::vector<bool>& free)
+    : model_(model),
+      curve_(curve),
+      fixed_values_(std::move(values)),
+      target_(curve.x),
+      weight_(curve.x.size(), 1.0),
+      logarithmic_(model.residual_scale() == ResidualScale::logarithmic) {
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    transforms_.emplace_back(model.parameters()[j]);
+    if (free[j]) free_.push_back(j);
+  }
+  for (std::size_t i = 0; i < target_.size(); ++i) {
+    if (!curve.sigma.empty()) weight_[i] = (logarithmic_ ? curve.x[i] : 1) / curve.sigma[i];
+    if (logarithmic_) target_[i] = std::log(curve.x[i]);
+  }
+}
+
+void CurveResiduals::values(const Eigen::VectorXd& u, Eigen::VectorXd& r) const {
+  const ParameterValues p = to_parameters(u);
+  for (std::size_t i = 0; i < target_.size(); ++i) {
+    const double f = model_.value(curve_.t[i], p.data());
+    r[static_cast<Eigen::Index>(i)] = ((logarithmic_ ? std::log(f) : f) - target_[i]) * weight_[i];
+  }
+}
+
+void CurveResiduals::values_and_jacobian(const Eigen::VectorXd& u, Eigen::VectorXd& r,
+                                         Eigen::MatrixXd& jacobian) const {
+  const ParameterValues p = to_parameters(u);
+  const Eigen::VectorXd slope = slopes(u);
+  std::vector<double> gradient(p.size());
+  for (std::size_t i = 0; i < target_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double f = model_.value_and_gradient(curve_.t[i], p.data(), gradient.data());
+    r[row] = ((logarithmic_ ? std::log(f) : f) - target_[i]) * weight_[i];
+    const double factor = logarithmic_ ? weight_[i] / f : weight_[i];
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      jacobian(row, column) = factor * gradient[free_[j]] * slope[column];
+    }
+  }
+}
+
+Eigen::VectorXd CurveResiduals::to_variables(const ParameterValues& p) const {
+  Eigen::VectorXd u(n_variables());
+  for (std::size_t j = 0; j < free_.size(); ++j) {
+    u[static_cast<Eigen::Index>(j)] = transforms_[free_[j]].to_variable(p[free_[j]]);
+  }
+  return u;
+}
+
+ParameterValues CurveResiduals::to_parameters(const Eigen::VectorXd& u) const {
+  ParameterValues p = fixed_values_;
+  for (std::size_t j = 0; j < free_.size(); ++j) {
+    p[free_[j]] = transforms_[free_[j]].to_parameter(u[static_cast<Eigen::Index>(j)]);
+  }
+  return p;
+}
+
+Eigen::VectorXd CurveResiduals::slopes(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd slope(n_variables());
+  for (std::size_t j = 0; j < free_.size(); ++j) {
+    const auto k = static_cast<Eigen::Index>(j);
+    slope[k] = transforms_[free_[j]].slope(u[k]);
+  }
+  return slope;
+}
+
+double CurveResiduals::data_norm() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < target_.size(); ++i) {
+    const double term = target_[i] * weight_[i];
+    sum += term * term;
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace jostle

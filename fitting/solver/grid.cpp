@@ -1,0 +1,111 @@
+#include "fitting/solver/grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fitting/solver/projection.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double hopeless = 10;  // times the least cost on a grid, however coarse
+
+// Costs on a grid, the first axis running fastest.
+class Landscape {
+ public:
+  Landscape(const Model& model, const Curve& curve, std::span<const double> fixed,
+            const Grid& grid);
+
+  /// Whether no neighbour, diagonal ones included, is better.
+  bool is_valley(std::size_t index) const;
+
+  std::vector<double> costs;  // infinite where there is nothing
+  std::vector<ParameterValues> parameters;
+
+ private:
+  std::vector<std::size_t> lengths_, strides_;  // of axes with more than one value
+};
+
+Landscape::Landscape(const Model& model, const Curve& curve, std::span<const double> fixed,
+                     const Grid& grid) {
+  std::size_t size = 1;
+  for (const std::vector<double>& axis : grid.axes) {
+    if (axis.size() > 1) {
+      lengths_.push_back(axis.size());
+      strides_.push_back(size);
+    }
+    size *= axis.size();
+  }
+  Projection project(model, curve, fixed);
+  for (std::size_t index = 0; index < size; ++index) {
+    ParameterValues p;
+    std::size_t rest = index;
+    for (const std::vector<double>& axis : grid.axes) {
+      p.push_back(axis[rest % axis.size()]);
+      rest /= axis.size();
+    }
+    const bool placed = !grid.place || grid.place(p);
+    costs.push_back(placed ? project(p) : std::numeric_limits<double>::infinity());
+    parameters.push_back(std::move(p));
+  }
+}
+
+bool Landscape::is_valley(std::size_t index) const {
+  std::size_t neighbours = 1;
+  for (std::size_t axis = 0; axis < lengths_.size(); ++axis) neighbours *= 3;
+  for (std::size_t number = 0; number < neighbours; ++number) {
+    std::size_t other = index, rest = number;
+    bool inside = true;
+    for (std::size_t axis = 0; axis < lengths_.size(); ++axis, rest /= 3) {
+      const std::size_t digit = index / strides_[axis] % lengths_[axis];
+      if (rest % 3 == 1) {
+        inside = inside && digit > 0;
+        other -= strides_[axis];
+      } else if (rest % 3 == 2) {
+        inside = inside && digit + 1 < lengths_[axis];
+        other += strides_[axis];
+      }
+    }
+    if (!inside) continue;
+    if (costs[other] < costs[index] || (costs[other] == costs[index] && other < index)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<ParameterValues> best_of_grid(const Model& model, const Curve& curve,
+                                          std::span<const double> fixed, Grid grid, std::size_t n) {
+  for (std::size_t j = 0; j < grid.axes.size(); ++j) {
+    if (model.parameters()[j].linear) grid.axes[j] = {0};
+    if (!std::isnan(fixed[j])) grid.axes[j] = {fixed[j]};
+  }
+  Landscape landscape(model, curve, fixed, grid);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < landscape.costs.size(); ++i) {
+    if (std::isfinite(landscape.costs[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return landscape.costs[a] < landscape.costs[b];
+  });
+  std::vector<std::size_t> valleys;
+  for (std::size_t i : order) {
+    if (valleys.size() >= n || landscape.costs[i] > hopeless * landscape.costs[order[0]]) break;
+    if (landscape.is_valley(i)) valleys.push_back(i);
+  }
+  std::vector<std::size_t> chosen = valleys;
+  for (std::size_t i : order) {
+    if (chosen.size() >= n) break;
+    if (std::find(valleys.begin(), valleys.end(), i) == valleys.end()) chosen.push_back(i);
+  }
+  std::vector<ParameterValues> starts;
+  for (std::size_t i : chosen) starts.push_back(std::move(landscape.parameters[i]));
+  return starts;
+}
+
+}  // namespace jostle

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+
+#include "fitting/models/model.hpp"
+
+namespace jostle {
+
+/// Places to look for the nonlinear parameters of a law.
+struct Grid {
+  /// Values along every parameter, [n_parameters][any, at least 1], ascending; those of linear and
+  /// of fixed parameters are ignored.
+  std::vector<std::vector<double>> axes;
+  /// Turns a combination of values into parameters where the axes are something else; false where
+  /// the combination is to be left out.
+  std::function<bool(ParameterValues&)> place = {};
+};
+
+/// Starting points, at most `n`: first the combinations that are better than all their neighbours
+/// on the grid, one for every valley that it resolves, then the best of the others, each best
+/// first. Linear parameters are solved for; `fixed` [n_parameters] as for Projection.
+std::vector<ParameterValues> best_of_grid(const Model& model, const Curve& curve,
+                                          std::span<const double> fixed, Grid grid, std::size_t n);
+
+}  // namespace jostle

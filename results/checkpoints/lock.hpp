@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "results/hdf5/descriptor.hpp"
+#include "results/live_run.hpp"
+
+namespace jostle {
+
+/// NAME.lock: one process at a time works on NAME. Held by flock, so that two processes never both
+/// take over from a dead one, and by what is written in it (host, pid, start time of the process),
+/// for file systems and hosts that flock does not reach.
+class RunLock {
+ public:
+  /// Throws ResultsError naming the owner where a living process holds it, or where a process of
+  /// another host does and `force` is not set.
+  RunLock(const std::string& results_path, bool force);
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+  /// Removes the lock file.
+  ~RunLock();
+
+ private:
+  std::string path_;
+  Descriptor file_;
+};
+
+}  // namespace jostle

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "results/checkpoints/bytes.hpp"
+#include "results/checkpoints/part.hpp"
+
+// The bytes inside parts.
+namespace jostle {
+
+void put(ByteWriter& writer, const SeriesPiece& piece);
+void put(ByteWriter& writer, const PartState& part);
+/// Throw std::out_of_range where the bytes end too early.
+SeriesPiece get_piece(ByteReader& reader);
+PartState get_part_state(ByteReader& reader);
+/// Places from the beginning of the bytes.
+PiecePlaces get_piece_places(ByteReader& reader);
+PartOutline get_part_outline(ByteReader& reader);
+
+}  // namespace jostle

@@ -1,0 +1,137 @@
+#include "results/checkpoints/publish.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include "results/checkpoints/temporary_file.hpp"
+#include "results/error.hpp"
+#include "results/hdf5/descriptor.hpp"
+
+namespace jostle {
+namespace {
+
+const char* way_out(std::string_view what, int error) {
+  if (what == "open" || what == "read") return "";
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "; free some space, or write elsewhere";
+    case EFBIG:
+      return "; raise the limit on file sizes (ulimit -f)";
+    case ENOMEM:
+      return "; raise the limit on memory";
+    case ELOOP:
+      return "; it is a symbolic link, or one of a ring: remove it";
+    case EROFS:
+    case EACCES:
+    case EPERM:
+      return "; make the folder writable, or write to a file in another one";
+    case ENOENT:
+      return "; is its folder there still?";
+    default:
+      return "";
+  }
+}
+
+/// The system's rule of sticky folders (fs.protected_symlinks), for links that we follow ourselves.
+bool is_planted(const struct stat& link, const std::string& folder) {
+  struct stat status;
+  if (link.st_uid == ::geteuid() || ::stat(folder.c_str(), &status) != 0) return false;
+  const bool for_everybody = (status.st_mode & S_ISVTX) != 0 && (status.st_mode & S_IWOTH) != 0;
+  return for_everybody && link.st_uid != status.st_uid;
+}
+
+}  // namespace
+
+void fail_on_disk(const std::string& path, const char* what, int error) {
+  throw ResultsError(
+      path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(what, error)));
+}
+
+void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes) {
+  constexpr std::size_t piece = 4u << 20;
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), piece));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail_on_disk(path, "write", written < 0 ? errno : ENOSPC);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void publish(const std::string& path, std::span<const std::byte> bytes) {
+  TemporaryFile file(path);
+  file.write(bytes);
+  file.publish();
+}
+
+std::string end_of_links(const std::string& path) {
+  constexpr int most_links = 40;  // as Linux follows
+  std::filesystem::path end(path);
+  for (int links = 0; links < most_links; ++links) {
+    struct stat status;
+    if (::lstat(end.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return end;
+    if (is_planted(status, folder_of(end)))
+      throw ResultsError(end,
+                         "is a link that another user put into a folder where everybody may "
+                         "write, and is not followed; name what it leads to");
+    std::error_code error;
+    end = end.parent_path() / std::filesystem::read_symlink(end, error);
+    if (error) fail_on_disk(path, "follow", error.value());
+  }
+  fail_on_disk(path, "follow", ELOOP);
+}
+
+void require_replaceable_file(const std::string& path) {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0) return;
+  if (!S_ISREG(status.st_mode))
+    throw ResultsError(path, "is a folder, a pipe or a device, and not replaced by a file");
+  constexpr mode_t anybody = S_IWUSR | S_IWGRP | S_IWOTH;  // root may write to all: ask the mode
+  if ((status.st_mode & anybody) != 0 && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0)
+    return;
+  throw ResultsError(path, fmt::format("is write-protected (mode {:03o}), and kept; write "
+                                       "elsewhere, or allow it with chmod u+w",
+                                       status.st_mode & 0777u));
+}
+
+std::string folder_of(const std::string& path) {
+  const auto slash = path.find_last_of('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+void remove_file(const std::string& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail_on_disk(path, "remove", errno);
+}
+
+void sync_folder_of(const std::string& path) {
+  const std::string folder = folder_of(path);
+  const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor) fail_on_disk(folder, "open", errno);
+  // Some network file systems cannot fsync a folder and say EINVAL: there is nothing to be done.
+  if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail_on_disk(folder, "fsync", errno);
+}
+
+void require_free_space(const std::string& path, std::uint64_t bytes, const char* advice) {
+  const std::string folder = folder_of(path);
+  struct statvfs disk;
+  if (::statvfs(folder.c_str(), &disk) != 0) fail_on_disk(folder, "ask for free space", errno);
+  const std::uint64_t free_bytes = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  if (free_bytes >= bytes) return;
+  throw ResultsError(
+      path,
+      fmt::format("{:.1f} MB of disk may be needed, but only {:.1f} MB are free; {}",
+                  static_cast<double>(bytes) / 1e6, static_cast<double>(free_bytes) / 1e6, advice));
+}
+
+}  // namespace jostle

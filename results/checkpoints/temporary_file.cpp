@@ -1,0 +1,104 @@
+#include "results/checkpoints/temporary_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/publish.hpp"
+#include "results/error.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr std::size_t random_digits = 8;
+constexpr std::string_view ending = ".tmp";
+constexpr mode_t permissions = 0777;
+
+/// What is to be replaced, if it may be.
+std::optional<struct stat> replaced_file(const std::string& path) {
+  struct stat status;
+  if (::lstat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT) return std::nullopt;
+    fail_on_disk(path, "create", errno);
+  }
+  if (S_ISLNK(status.st_mode))
+    throw ResultsError(path, "is a link that jostle did not make: remove it");
+  require_replaceable_file(path);
+  return status;
+}
+
+/// The owner and the permissions of what will be replaced, as far as the system lets us.
+void take_over(const std::string& path, int file, const struct stat& old) {
+  struct stat own;
+  if (::fstat(file, &own) != 0) fail_on_disk(path, "create", errno);
+  mode_t mode = old.st_mode & permissions;
+  // What the old group might read, another must not.
+  const bool same_group = own.st_gid == old.st_gid || ::fchown(file, -1, old.st_gid) == 0;
+  if (!same_group) mode &= ~static_cast<mode_t>(070);
+  if (own.st_uid != old.st_uid && ::fchown(file, old.st_uid, -1) != 0 && errno != EPERM)
+    fail_on_disk(path, "create", errno);
+  if (::fchmod(file, mode) != 0) fail_on_disk(path, "create", errno);
+}
+
+/// Whether a file's name is one that a TemporaryFile gives to what goes to `target`.
+bool is_temporary(const std::string& name, const std::string& target) {
+  if (name.size() != target.size() + 1 + random_digits + ending.size()) return false;
+  if (!name.starts_with(target + ".") || !name.ends_with(ending)) return false;
+  const std::string digits = name.substr(target.size() + 1, random_digits);
+  return digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(const std::string& path) : target_(path) {
+  const auto old = replaced_file(target_);
+  const mode_t mode = old ? 0600 : 0666;
+  do {
+    name_ = fmt::format("{}.{}{}", target_, random_identity().substr(0, random_digits), ending);
+    file_ =
+        Descriptor(::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
+  } while (!file_ && errno == EEXIST);
+  if (!file_) fail_on_disk(name_, "create", errno);
+  try {
+    if (old) take_over(name_, file_.get(), *old);
+  } catch (...) {
+    ::unlink(name_.c_str());
+    throw;
+  }
+}
+
+TemporaryFile::~TemporaryFile() {
+  if (!published_) ::unlink(name_.c_str());
+}
+
+void TemporaryFile::write(std::span<const std::byte> bytes) {
+  write_all(name_, file_.get(), bytes);
+}
+
+void TemporaryFile::publish() {
+  if (::fsync(file_.get()) != 0) fail_on_disk(name_, "fsync", errno);
+  if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
+  published_ = true;
+  sync_folder_of(target_);
+}
+
+void remove_stale_temporaries(const std::string& path) {
+  const std::string target = std::filesystem::path(path).filename();
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder_of(path), error), end;
+       !error && entry != end; entry.increment(error)) {
+    struct stat status;
+    if (!is_temporary(entry->path().filename(), target)) continue;
+    if (::lstat(entry->path().c_str(), &status) == 0 && S_ISREG(status.st_mode))
+      remove_file(entry->path());
+  }
+}
+
+}  // namespace jostle

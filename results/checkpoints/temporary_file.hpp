@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "results/hdf5/descriptor.hpp"
+
+namespace jostle {
+
+/// A file on its way to its name: written as NAME.xxxxxxxx.tmp, of random digits, that nobody else
+/// has, and then given its name at one stroke. It is removed with this object unless it was
+/// published. Everything throws ResultsError.
+class TemporaryFile {
+ public:
+  /// Makes an empty file beside `path`. What is there is going to be replaced: its permissions are
+  /// taken over; what is a link, no file, or write-protected, is refused.
+  explicit TemporaryFile(const std::string& path);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+
+  const std::string& name() const { return name_; }
+  /// Where it goes.
+  const std::string& target() const { return target_; }
+  void write(std::span<const std::byte> bytes);
+  /// On disk first, then under its name, then the name on disk.
+  void publish();
+
+ private:
+  std::string target_, name_;
+  Descriptor file_;
+  bool published_ = false;
+};
+
+/// Removes what killed processes left on the way to `path`. For the owner of its lock.
+void remove_stale_temporaries(const std::string& path);
+
+}  // namespace jostle

@@ -1,0 +1,43 @@
+#include "results/export/lammps_dump.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "results/export/container_text.hpp"
+
+namespace jostle {
+namespace {
+
+std::string header(const ExportedFrame& frame) {
+  const auto [kind, widths] = container_text(frame.packing.container);
+  const double height = widths[2] > 0 ? widths[2] : top_height(frame.packing) + sphere_radius;
+  const char* bounds = kind == "fully_periodic" ? "pp pp pp"
+                       : kind == "periodic"     ? "pp pp ff"
+                                                : "ff ff ff";
+  std::string columns;
+  for (const ParticleColumn& column : frame.columns) columns.append(1, ' ').append(column.name);
+  return fmt::format(
+      "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n0 {}\n0 {}\n0 {}\n"
+      "ITEM: ATOMS id type x y z{}\n",
+      frame.tap, frame.packing.centres.size(), bounds, widths[0], widths[1], height, columns);
+}
+
+}  // namespace
+
+std::string lammps_dump_text(std::span<const ExportedFrame> frames) {
+  std::string text;
+  for (const ExportedFrame& frame : frames) {
+    text += header(frame);
+    for (std::size_t i = 0; i < frame.packing.centres.size(); ++i) {
+      const Vec3 r = frame.packing.centres[i];
+      fmt::format_to(std::back_inserter(text), "{} 1 {} {} {}", i + 1, r.x, r.y, r.z);
+      for (const ParticleColumn& column : frame.columns)
+        text.append(1, ' ').append(cell_text(column, i));
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace jostle

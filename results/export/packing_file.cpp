@@ -1,0 +1,44 @@
+#include "results/export/packing_file.hpp"
+
+#include <fmt/format.h>
+
+#include "results/error.hpp"
+#include "results/export/extended_xyz.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle {
+namespace {
+
+Packing read_snapshot(const std::string& path, const PackingSelector& selector) {
+  const ResultsFile file(path);
+  const Study& study = file.study();
+  if (selector.point >= study.points.size())
+    throw ResultsError(
+        path, fmt::format("has no sweep point {}: it has {}", selector.point, study.points.size()));
+  if (selector.realization >= study.realizations)
+    throw ResultsError(path, fmt::format("has no realization {}: it has {}", selector.realization,
+                                         study.realizations));
+  const auto records = file.snapshots({selector.point, selector.realization});
+  std::string kept;
+  for (auto record = records.rbegin(); record != records.rend(); ++record) {
+    if (record->centres.empty()) continue;
+    if (!selector.tap || *selector.tap == record->tap)
+      return {study.points[selector.point].container, record->centres};
+    kept = fmt::format("{}{}{}", record->tap, kept.empty() ? "" : ", ", kept);
+  }
+  throw ResultsError(
+      path, fmt::format("holds no positions of sweep point {}, realization {}{}; kept taps: {}",
+                        selector.point, selector.realization,
+                        selector.tap ? fmt::format(", tap {}", *selector.tap) : "",
+                        kept.empty() ? "none" : kept));
+}
+
+}  // namespace
+
+Packing read_packing(const std::string& path, const PackingSelector& selector) {
+  if (path.ends_with(".xyz") || path.ends_with(".extxyz"))
+    return read_extended_xyz(path, selector.tap);
+  return read_snapshot(path, selector);
+}
+
+}  // namespace jostle

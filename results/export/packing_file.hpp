@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+
+// Packings kept by an earlier run or made elsewhere.
+namespace jostle {
+
+/// Which snapshot of a results file; an extended XYZ file has frames (`tap` then is the frame's
+/// number from 0) and no points or realizations.
+struct PackingSelector {
+  std::uint32_t point = 0;
+  std::uint32_t realization = 0;
+  std::optional<std::uint64_t> tap{};  // the last kept snapshot if absent
+};
+
+/// Reads one packing: from our HDF5, or from extended XYZ (name ends in .xyz or .extxyz) with
+/// `Lattice`, `Properties=...:pos:R:3...` and lengths in diameters. The container of an XYZ file is
+/// its `container` key if it has one, else told by `pbc`: "T T F" periodic, "T T T" fully periodic,
+/// "F F F" walls. Throws ResultsError if there is no such packing or it is malformed; overlaps are
+/// not looked for.
+Packing read_packing(const std::string& path, const PackingSelector& selector = {});
+
+/// Writes one frame of extended XYZ that reads back to the same bits.
+void write_extended_xyz(const std::string& path, const Packing& packing);
+
+}  // namespace jostle

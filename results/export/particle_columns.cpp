@@ -1,0 +1,66 @@
+#include "results/export/particle_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "engine/bed/geometry.hpp"
+#include "structure/order/bond_order.hpp"
+#include "structure/order/crystal_order.hpp"
+#include "structure/snapshot_statistics.hpp"
+#include "structure/voids/voronoi.hpp"
+
+namespace jostle {
+namespace {
+
+std::uint32_t type_number(CrystalOrder order) {
+  switch (order) {
+    case CrystalOrder::disordered:
+      return 0;
+    case CrystalOrder::fcc:
+      return 1;
+    case CrystalOrder::hcp:
+      return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Packing wrapped_inside(const Packing& packing) {
+  Packing moved = packing;
+  for (std::size_t i = 0; i < moved.centres.size(); ++i) {
+    Vec3& r = moved.centres[i];
+    r = std::visit([&](const auto& box) { return wrapped(box, r); }, packing.container);
+    const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
+    const bool within = r.x >= 0 && r.x <= width_x(packing.container) && r.y >= 0 &&
+                        r.y <= width_y(packing.container) && r.z >= 0 &&
+                        (bulk == nullptr || r.z <= bulk->height);
+    if (!within) {
+      throw std::invalid_argument(
+          fmt::format("sphere {} lies outside the container, at {}, {}, {}", i, r.x, r.y, r.z));
+    }
+  }
+  return moved;
+}
+
+std::vector<ParticleColumn> particle_columns(const Packing& packing) {
+  const Packing moved = wrapped_inside(packing);
+  const NeighbourTable nearest = nearest_neighbours(moved, 12);
+  std::vector<double> q6;
+  for (const BondOrder& order : bond_order(nearest)) q6.push_back(order.q6);
+  std::vector<std::uint32_t> types;
+  for (const CrystalOrder order : crystal_order(nearest)) types.push_back(type_number(order));
+  return {{"radius", std::vector<double>(packing.centres.size(), sphere_radius)},
+          {"coordination", coordination_numbers(moved)},
+          {"voronoi_volume", voronoi_cells(moved).volumes},
+          {"q6", std::move(q6)},
+          {"structure_type", std::move(types)}};
+}
+
+std::string cell_text(const ParticleColumn& column, std::size_t i) {
+  return std::visit([&](const auto& values) { return fmt::format("{}", values[i]); },
+                    column.values);
+}
+
+}  // namespace jostle

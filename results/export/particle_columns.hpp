@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+
+namespace jostle {
+
+/// One number a sphere, under the name that viewers show.
+struct ParticleColumn {
+  std::string name;                                                      // snake_case
+  std::variant<std::vector<double>, std::vector<std::uint32_t>> values;  // [n_spheres]
+};
+
+/// A packing as it leaves for other programs.
+struct ExportedFrame {
+  std::uint64_t tap = 0;
+  Packing packing;
+  std::vector<ParticleColumn> columns;
+};
+
+/// The packing with its centres inside the container, where cells and neighbours are sought; those
+/// of another program may be a period away. Throws std::invalid_argument naming a sphere that no
+/// period brings inside.
+Packing wrapped_inside(const Packing& packing);
+
+/// Of every sphere: `radius` and `voronoi_volume` (diameters and their cubes; cells end at floor,
+/// walls, and half a diameter above the highest centre), `coordination` (centres within 1.05
+/// diameters), `q6` of the 12 nearest neighbours, and `structure_type` (0 disordered, 1 fcc, 2 hcp,
+/// as OVITO numbers them). Throws std::invalid_argument for a centre outside the container.
+std::vector<ParticleColumn> particle_columns(const Packing& packing);
+
+/// The value of sphere i: numbers in the fewest digits that read back to the same bits.
+std::string cell_text(const ParticleColumn& column, std::size_t i);
+
+}  // namespace jostle

@@ -1,0 +1,59 @@
+#include "results/export/printable.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace jostle {
+namespace {
+
+/// Bytes of the character of UTF-8 that `text` begins with; 0 where it is none, or a control.
+std::size_t character_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  if (first < 0x80) return first == '\t' || (first >= 0x20 && first != 0x7f) ? 1 : 0;
+  const std::size_t length = first >= 0xf8 ? 0 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || length == 0 || length > text.size()) return 0;
+  const auto second = static_cast<unsigned char>(text[1]);
+  if (first == 0xc2 && second < 0xa0) return 0;  // controls
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+  return std::ranges::all_of(text.substr(1, length - 1), continues) ? length : 0;
+}
+
+/// U+202A to U+202E and U+2066 to U+2069 turn the direction of what follows: a name could show
+/// another one.
+bool turns_direction(std::string_view character) {
+  if (!character.starts_with("\xe2\x80") && !character.starts_with("\xe2\x81")) return false;
+  const auto last = static_cast<unsigned char>(character[2]);
+  return character[1] == '\x80' ? last >= 0xaa && last <= 0xae : last >= 0xa6 && last <= 0xa9;
+}
+
+std::string printable_line(std::string_view line, std::size_t longest) {
+  std::string shown;
+  while (!line.empty() && shown.size() < longest) {
+    const std::size_t length = character_length(line);
+    if (length == 0 || turns_direction(line.substr(0, length))) {
+      for (const char byte : line.substr(0, std::max<std::size_t>(1, length)))
+        shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+    } else {
+      shown += line.substr(0, length);
+    }
+    line.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  if (!line.empty()) shown += "...";
+  return shown;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t longest_line) {
+  std::string shown;
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    shown += printable_line(text.substr(0, end), longest_line);
+    if (end == std::string_view::npos) return shown;
+    shown += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace jostle

@@ -1,0 +1,21 @@
+#include "results/hdf5/handle.hpp"
+
+namespace jostle {
+
+void silence_hdf5() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+std::string hdf5_reason() {
+  std::string reason;
+  const auto keep_first = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
+    auto& kept = *static_cast<std::string*>(text);
+    if (kept.empty() && error->desc) kept = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
+  H5Eclear2(H5E_DEFAULT);
+  return "HDF5: " + (reason.empty() ? "unknown failure" : reason);
+}
+
+}  // namespace jostle

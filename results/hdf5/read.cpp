@@ -1,0 +1,139 @@
+#include "results/hdf5/read.hpp"
+
+#include <fmt/format.h>
+
+#include "results/hdf5/policy.hpp"
+
+namespace jostle {
+namespace {
+
+/// Texts of any length come as pointers that HDF5 owns until they are reclaimed.
+template <class Read>
+std::vector<std::string> collect_texts(hid_t space, Read&& read) {
+  const std::size_t n = n_elements(shape_of_space(space));
+  const Hdf5Handle type = text_type();
+  std::vector<char*> pointers(n, nullptr);
+  if (n == 0) return {};
+  checked(read(type, pointers.data()));
+  std::vector<std::string> texts;
+  for (const char* text : pointers) texts.emplace_back(text ? text : "");
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
+  return texts;
+}
+
+std::string only(const std::string& name, const std::vector<std::string>& texts) {
+  if (texts.size() != 1) throw Hdf5Error(name + " is not one text");
+  return texts.front();
+}
+
+}  // namespace
+
+Hdf5Handle open_group(hid_t parent, const std::string& name) {
+  if (!exists(parent, name)) throw Hdf5Error("there is no group " + name);
+  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose};
+}
+
+Hdf5Handle open_dataset(hid_t parent, const std::string& name) {
+  if (!exists(parent, name)) throw Hdf5Error("there is no dataset " + name);
+  Hdf5Handle dataset(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose);
+  require_plain_dataset(dataset, name);
+  return dataset;
+}
+
+bool exists(hid_t parent, const std::string& path) {
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = path.find('/', end + 1);
+    const std::string ancestor = path.substr(0, end);
+    if (checked(H5Lexists(parent, ancestor.c_str(), H5P_DEFAULT)) == 0) return false;
+    require_hard_link(parent, ancestor);
+  }
+  return true;
+}
+
+Shape shape_of(hid_t dataset) {
+  return shape_of_space(Hdf5Handle(H5Dget_space(dataset), H5Sclose));
+}
+
+Shape shape_of_space(hid_t space) {
+  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {0};
+  Shape shape(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space))));
+  if (!shape.empty()) checked(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
+  require_plausible_shape(shape);
+  return shape;
+}
+
+void require_shape(hid_t parent, const std::string& name, const Shape& shape) {
+  const auto text = [](const Shape& some) {
+    std::string extents;
+    for (const hsize_t extent : some)
+      extents.append(extents.empty() ? "" : ", ").append(std::to_string(extent));
+    return extents;
+  };
+  const Shape found = shape_of(open_dataset(parent, name));
+  if (found != shape)
+    throw Hdf5Error(fmt::format("{} has the shape [{}], not [{}]", name, text(found), text(shape)));
+}
+
+void read_rows(hid_t dataset, hid_t memory_type, const Shape& shape, hsize_t first, void* values) {
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  const Hdf5Handle memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                          H5Sclose);
+  Shape offset(shape.size(), 0);
+  offset[0] = first;
+  checked(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr));
+  checked(H5Dread(dataset, memory_type, memory, space, transfer_properties(), values));
+}
+
+std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
+                               const Shape& shape) {
+  const Hdf5Handle dataset = open_dataset(parent, name);
+  std::vector<double> values(n_elements(shape));
+  if (values.empty()) return values;
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  checked(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr));
+  const Hdf5Handle memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                          H5Sclose);
+  checked(
+      H5Dread(dataset, Hdf5Number<double>::memory(), memory, space, H5P_DEFAULT, values.data()));
+  return values;
+}
+
+std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
+  const Hdf5Handle dataset = open_dataset(parent, name);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  return collect_texts(space, [&](hid_t type, char** pointers) {
+    return H5Dread(dataset, type, H5S_ALL, H5S_ALL, transfer_properties(), pointers);
+  });
+}
+
+std::string read_text(hid_t parent, const std::string& name) {
+  return only(name, read_texts(parent, name));
+}
+
+std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name) {
+  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+  return collect_texts(
+      space, [&](hid_t type, char** pointers) { return H5Aread(attribute, type, pointers); });
+}
+
+std::string read_fixed_text_attribute(hid_t object, const std::string& name) {
+  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+  constexpr std::size_t longest = 1024;
+  const bool fixed = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+  if (!fixed || H5Tget_size(type) > longest || n_elements(shape_of_space(space)) != 1)
+    throw Hdf5Error("attribute " + name + " is not one short text");
+  std::string text(H5Tget_size(type), '\0');
+  checked(H5Aread(attribute, type, text.data()));
+  return text.substr(0, text.find('\0'));
+}
+
+std::string read_text_attribute(hid_t object, const std::string& name) {
+  return only(name, read_texts_attribute(object, name));
+}
+
+}  // namespace jostle

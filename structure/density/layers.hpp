@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+
+// Close-packed layers growing upwards from the floor. Rosato et al. 2010, figs. 6 and 13: n(z)
+// (height_histogram) beside the heights of hcp layers. Lengths in diameters.
+namespace jostle {
+
+/// Height of the centres of layer k = 0, 1, .. of an hcp crystal on the floor, 1/2 + k sqrt(2/3);
+/// of layers of an fcc crystal along (111) as well.
+double hcp_layer_height(std::size_t k);
+
+/// When a layer counts as grown. Ours: the papers draw layers and do not count them.
+struct LayerRule {
+  /// Its height is within `tolerance` of the place that the layer below points to, and of the
+  /// centres between the mid-planes to the layers below and above at least `least_share` lie within
+  /// `tolerance` of that height. Centres at even heights have a share of 0.245.
+  double tolerance = 0.1;
+  double least_share = 0.6;
+  /// And they are at least this part of a full layer, 2/sqrt(3) a unit of area: of the footprint,
+  /// or between walls of the part of it that centres can reach. Keeps a partial top layer out.
+  double least_filling = 0.7;
+  bool operator==(const LayerRule&) const = default;
+};
+
+/// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are
+/// a little farther apart within them: so each is sought from the one found below it.
+struct Layer {
+  double height = 0;   // of hcp
+  double found = 0;    // mean height of the centres near the place that the layer below points to
+  double filling = 0;  // number of centres between mid-planes over that of a full layer
+  double share = 0;    // of them within the tolerance of `found`; 0 of none
+};
+
+/// All layers up to the highest centre. Throws std::invalid_argument for a fully periodic box,
+/// which has no floor.
+std::vector<Layer> layers(const Packing& packing, double tolerance = LayerRule{}.tolerance);
+
+/// The number of layers grown from the floor: those below the first that the rule refuses.
+std::size_t grown_layers(const Packing& packing, const LayerRule& rule = {});
+
+}  // namespace jostle

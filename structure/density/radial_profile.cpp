@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "structure/density/profile_parts.hpp"
+#include "structure/density/profiles.hpp"
+#include "structure/density/sphere_cuts.hpp"
+
+namespace jostle {
+
+namespace {
+
+[[noreturn]] void refuse_reach(double reach) {
+  throw std::invalid_argument("profile: walls less than twice " + std::to_string(reach) +
+                              " diameters apart leave nothing central; take a smaller reach");
+}
+
+}  // namespace
+
+Profile radial_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
+  const auto* tube = std::get_if<Cylinder>(&packing.container);
+  if (tube == nullptr) {
+    throw std::invalid_argument("profile: distances from the axis need a cylinder");
+  }
+  require_window(window);
+  const double axis = 0.5 * tube->diameter, depth = window.high - window.low;
+  Profile profile = empty_profile(edges, 0, axis, [&](double distance) {
+    return std::numbers::pi * distance * distance * depth;
+  });
+  for (const Vec3& centre : packing.centres) {
+    const double low = window.low - centre.z, high = window.high - centre.z;
+    if (low >= sphere_radius || high <= -sphere_radius) continue;
+    const double dx = centre.x - axis, dy = centre.y - axis;
+    const double offset = std::sqrt(dx * dx + dy * dy);
+    // A sphere over the axis reaches all around it, from 0.
+    share_out(profile, offset - sphere_radius, offset + sphere_radius, [&](double edge) {
+      return sphere_volume_in_tube(offset, std::max(0.0, edge), low, high);
+    });
+  }
+  divide_by_volumes(profile);
+  return profile;
+}
+
+LateralCentral lateral_and_central(const Packing& packing, HeightWindow window, double reach) {
+  if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
+    const double wall = 0.5 * tube->diameter;
+    if (!(wall > reach)) refuse_reach(reach);
+    const double edges[] = {0, wall - reach, wall};
+    const Profile profile = radial_profile(packing, edges, window);
+    return {profile.values[1], profile.values[0]};
+  }
+  if (!std::holds_alternative<WalledBox>(packing.container)) {
+    throw std::invalid_argument("profile: lateral and central fractions need walls");
+  }
+  LateralCentral mean;
+  for (const Axis axis : {Axis::x, Axis::y}) {
+    const double width = axis == Axis::x ? width_x(packing.container) : width_y(packing.container);
+    if (!(width > 2 * reach)) refuse_reach(reach);
+    const double edges[] = {0, reach, width - reach, width};
+    const Profile profile = transverse_profile(packing, axis, edges, window);
+    mean.lateral += 0.25 * (profile.values[0] + profile.values[2]);
+    mean.central += 0.5 * profile.values[1];
+  }
+  return mean;
+}
+
+}  // namespace jostle

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/bed/slab.hpp"
+#include "structure/density/profile_parts.hpp"
+#include "structure/density/profiles.hpp"
+#include "structure/density/sphere_cuts.hpp"
+
+namespace jostle {
+
+namespace {
+
+// The footprint of a box as the profile along one axis sees it.
+struct Footprint {
+  double width, depth;  // along the axis, and across it
+  bool periodic;
+};
+
+Footprint footprint(const Packing& packing, Axis axis) {
+  require_floor(packing);
+  if (std::holds_alternative<Cylinder>(packing.container)) {
+    throw std::invalid_argument(
+        "profile: a cylinder has no sides along x and y; take its radial profile");
+  }
+  const double x = width_x(packing.container), y = width_y(packing.container);
+  return {axis == Axis::x ? x : y, axis == Axis::x ? y : x,
+          std::holds_alternative<PeriodicBox>(packing.container)};
+}
+
+const WalledBox& walls_of(const Packing& packing) {
+  const auto* box = std::get_if<WalledBox>(&packing.container);
+  if (box == nullptr) {
+    throw std::invalid_argument(
+        "profile: distances to the nearest of four walls need a walled box");
+  }
+  return *box;
+}
+
+// Calls act(place) for the sphere along the axis and, where it reaches through a seam, its image.
+template <class Act>
+void for_each_image(double place, const Footprint& box, Act&& act) {
+  act(place);
+  if (!box.periodic) return;
+  if (place < sphere_radius) act(place + box.width);
+  if (place > box.width - sphere_radius) act(place - box.width);
+}
+
+double along(Vec3 centre, Axis axis) {
+  return axis == Axis::x ? centre.x : centre.y;
+}
+
+}  // namespace
+
+Profile transverse_profile(const Packing& packing, Axis axis, std::span<const double> edges,
+                           HeightWindow window) {
+  const Footprint box = footprint(packing, axis);
+  require_window(window);
+  const double section = box.depth * (window.high - window.low);
+  Profile profile =
+      empty_profile(edges, 0, box.width, [&](double place) { return section * place; });
+  for (const Vec3& centre : packing.centres) {
+    const double low = window.low - centre.z, high = window.high - centre.z;
+    if (low >= sphere_radius || high <= -sphere_radius) continue;
+    for_each_image(along(centre, axis), box, [&](double place) {
+      share_out(profile, place - sphere_radius, place + sphere_radius, [&](double edge) {
+        // By symmetry what lies below the edge lies beyond its mirror image.
+        return sphere_volume_beyond(place - edge, low) - sphere_volume_beyond(place - edge, high);
+      });
+    });
+  }
+  divide_by_volumes(profile);
+  return profile;
+}
+
+Profile mean_transverse_profile(const Packing& packing, std::span<const double> edges,
+                                HeightWindow window) {
+  if (width_x(packing.container) != width_y(packing.container)) {
+    throw std::invalid_argument(
+        "profile: the mean over x and y needs a square footprint; take each by itself");
+  }
+  Profile profile = transverse_profile(packing, Axis::x, edges, window);
+  const Profile other = transverse_profile(packing, Axis::y, edges, window);
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    profile.values[k] = 0.5 * (profile.values[k] + other.values[k]);
+  }
+  return profile;
+}
+
+std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
+                                    std::span<const double> places, HeightWindow window) {
+  const Footprint box = footprint(packing, axis);
+  require_window(window);
+  std::vector<double> fractions;
+  fractions.reserve(places.size());
+  for (const double place : places) {
+    double area = 0;
+    for (const Vec3& centre : packing.centres) {
+      for_each_image(along(centre, axis), box, [&](double image) {
+        const double squared = 0.25 - (image - place) * (image - place);
+        if (squared <= 0) return;
+        area +=
+            disc_area_in_strip(std::sqrt(squared), window.low - centre.z, window.high - centre.z);
+      });
+    }
+    fractions.push_back(area / (box.depth * (window.high - window.low)));
+  }
+  return fractions;
+}
+
+Profile wall_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
+  const WalledBox& box = walls_of(packing);
+  require_window(window);
+  const double deepest = 0.5 * std::min(box.width_x, box.width_y);
+  const double depth = window.high - window.low;
+  Profile profile = empty_profile(edges, 0, deepest, [&](double distance) {
+    return depth * (box.width_x * box.width_y -
+                    (box.width_x - 2 * distance) * (box.width_y - 2 * distance));
+  });
+  for (const Vec3& centre : packing.centres) {
+    const double low = window.low - centre.z, high = window.high - centre.z;
+    if (low >= sphere_radius || high <= -sphere_radius) continue;
+    const double whole = sphere_volume_in_slab(0, low, high);
+    const double distance =
+        std::min({centre.x, box.width_x - centre.x, centre.y, box.width_y - centre.y});
+    share_out(profile, distance - sphere_radius, distance + sphere_radius, [&](double edge) {
+      const double right = box.width_x - edge, back = box.width_y - edge;
+      if (right <= edge || back <= edge) return whole;
+      return whole - sphere_volume_in_box({edge - centre.x, edge - centre.y, low},
+                                          {right - centre.x, back - centre.y, high});
+    });
+  }
+  divide_by_volumes(profile);
+  return profile;
+}
+
+}  // namespace jostle

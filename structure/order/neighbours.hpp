@@ -1,0 +1,139 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+
+// Which centres are near which, in any container. Lengths in diameters.
+namespace jostle {
+
+/// Finds the centres within a cut of a centre. Along periodic directions every image is a centre of
+/// its own, also where the box is narrower than the cut.
+class NeighbourFinder {
+ public:
+  /// Of wrapped centres; cut > 0. Copies what it needs of the packing.
+  NeighbourFinder(const Packing& packing, double cut);
+
+  /// Calls visit(j, way, distance squared) for every centre at most `cut` away from centre i but
+  /// itself. `way` leads from i to that centre or image. Where the box is narrow, i has images of
+  /// its own as neighbours.
+  template <class Visit>
+  void around(std::uint32_t i, Visit&& visit) const {
+    const std::uint32_t own_place = place_of_[i];
+    const Vec3 r = centres_[own_place];
+    const Cells z_cells = z_.within(r.z, reach_);
+    for (long k = z_cells.first; k <= z_cells.last; ++k) {
+      const Image layer = z_.image(k);
+      const double layer_gap = z_.gap(k, r.z), beside = reach_ * reach_ - layer_gap * layer_gap;
+      if (beside < 0) continue;
+      const Cells y_cells = y_.within(r.y, std::sqrt(beside));
+      for (long j = y_cells.first; j <= y_cells.last; ++j) {
+        const Image row = y_.image(j);
+        const double row_gap = y_.gap(j, r.y), along = beside - row_gap * row_gap;
+        if (along < 0) continue;
+        const std::size_t begin = (static_cast<std::size_t>(layer.cell) * y_.count + row.cell) *
+                                  static_cast<std::size_t>(x_.count);
+        const Cells x_cells = x_.within(r.x, std::sqrt(along));
+        for (long first = x_cells.first; first <= x_cells.last;) {
+          const Image cell = x_.image(first);
+          const long n = std::min(x_cells.last - first + 1, long{x_.count} - cell.cell);
+          const Vec3 shift{cell.shift, row.shift, layer.shift};
+          visit_places(starts_[begin + cell.cell], starts_[begin + cell.cell + n], r, shift,
+                       shift == Vec3{} ? own_place : none, visit);
+          first += n;
+        }
+      }
+    }
+  }
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(place_of_.size()); }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  struct Cells {
+    long first, last;
+  };
+  struct Image {
+    long cell;
+    double shift;  // from the cell to this image of it
+  };
+
+  // The cells along one direction; beyond the box of a periodic one they go on as images.
+  struct Axis {
+    double origin = 0, side = 1, per_length = 1, period = 0;  // period 0: not periodic
+    int count = 1;
+
+    long cell(double x) const { return static_cast<long>(std::floor((x - origin) * per_length)); }
+    Cells within(double x, double reach) const {
+      Cells cells{cell(x - reach), cell(x + reach)};
+      if (period == 0) {
+        cells.first = std::clamp(cells.first, 0L, count - 1L);
+        cells.last = std::clamp(cells.last, 0L, count - 1L);
+      }
+      return cells;
+    }
+    Image image(long k) const {
+      if (k >= 0 && k < count) return {k, 0};
+      const long turn = k >= 0 ? k / count : -((count - 1 - k) / count);
+      return {k - turn * count, static_cast<double>(turn) * period};
+    }
+    // How far x is from cell k: 0 inside.
+    double gap(long k, double x) const {
+      const double low = origin + static_cast<double>(k) * side;
+      return std::max(0.0, std::max(low - x, x - (low + side)));
+    }
+  };
+
+  static Axis make_axis(double origin, double length, double period, double least_side);
+
+  template <class Visit>
+  void visit_places(std::uint32_t begin, std::uint32_t end, Vec3 from, Vec3 shift,
+                    std::uint32_t own_place, Visit& visit) const {
+    for (std::uint32_t place = begin; place != end; ++place) {
+      const Vec3 way = (centres_[place] - from) + shift;
+      const double distance_squared = norm_squared(way);
+      if (distance_squared <= cut_squared_ && place != own_place) {
+        visit(spheres_[place], way, distance_squared);
+      }
+    }
+  }
+
+  double cut_squared_;
+  double reach_;  // a little more than the cut, for the rounding of cells' bounds
+  Axis x_, y_, z_;
+  std::vector<std::uint32_t> starts_;    // [n_cells + 1], into the places
+  std::vector<Vec3> centres_;            // [n], by place: cell after cell
+  std::vector<std::uint32_t> spheres_;   // [n], by place
+  std::vector<std::uint32_t> place_of_;  // [n], by sphere
+};
+
+struct Neighbour {
+  std::uint32_t sphere = 0;
+  Vec3 way;  // from the sphere to this neighbour, its nearest or another image
+  double distance_squared = 0;
+};
+
+/// The neighbours of all spheres, one sphere after another, the nearest first.
+struct NeighbourTable {
+  std::vector<std::uint32_t> first;  // [n + 1]
+  std::vector<Neighbour> neighbours;
+
+  std::size_t size() const { return first.size() - 1; }
+  std::span<const Neighbour> of(std::size_t i) const {
+    return {neighbours.data() + first[i], neighbours.data() + first[i + 1]};
+  }
+};
+
+/// Whatever lies at most `cut` away.
+NeighbourTable neighbours_within(const Packing& packing, double cut);
+
+/// The `count` nearest, fewer only where there are no more. Equally far ones stand in order of
+/// their index.
+NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
+
+}  // namespace jostle

@@ -1,0 +1,260 @@
+#include "structure/voids/pores.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/slab.hpp"
+#include "structure/density/sphere_cuts.hpp"
+
+namespace jostle {
+namespace {
+
+double xi_of(const Pore& pore) {
+  return pore.radius / sphere_radius;
+}
+
+// A vertex from one of the cells that have it.
+struct Sighting {
+  Vec3 centre;  // wrapped
+  double radius;
+  std::uint32_t cell;
+  const VoronoiVertex* vertex;
+};
+
+// Every vertex from every cell that has it: at degenerate ones the cells that meet do not all see
+// one another, and only together they name all the spheres around it.
+std::vector<Sighting> sightings(const Packing& packing, const VoronoiCells& cells) {
+  std::vector<Sighting> found;
+  found.reserve(cells.vertices.size());
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
+      if (vertex.on_boundary) continue;
+      const Vec3 r = vertex.position;
+      const double radius = std::sqrt(norm_squared(r - packing.centres[i])) - sphere_radius;
+      found.push_back(
+          {std::visit([&](const auto& box) { return wrapped(box, r); }, packing.container), radius,
+           i, &vertex});
+    }
+  }
+  return found;
+}
+
+// `owners` is room to work in.
+Pore merged(const Container& container, const VoronoiCells& cells,
+            const std::vector<Sighting>& found, const std::vector<std::uint32_t>& cluster,
+            std::vector<std::uint32_t>& owners) {
+  const Vec3 first = found[cluster.front()].centre;
+  Vec3 shift;
+  double radius = 0;
+  owners.clear();
+  for (const std::uint32_t k : cluster) {
+    shift =
+        shift + std::visit([&](const auto& box) { return separation(box, found[k].centre, first); },
+                           container);
+    radius += found[k].radius;
+    const auto others = cells.owners_of(*found[k].vertex);
+    owners.insert(owners.end(), others.begin(), others.end());
+    owners.push_back(found[k].cell);
+  }
+  std::ranges::sort(owners);
+  const double part = 1.0 / static_cast<double>(cluster.size());
+  return {
+      std::visit([&](const auto& box) { return wrapped(box, first + part * shift); }, container),
+      part * radius,
+      {owners.begin(), std::ranges::unique(owners).begin()}};
+}
+
+double squared_distance(const Container& container, Vec3 a, Vec3 b) {
+  return std::visit([&](const auto& box) { return norm_squared(separation(box, a, b)); },
+                    container);
+}
+
+// What a sphere of radius R around `r` fills of a region between periodic sides.
+double filled_by(const PeriodicBox&, const Region& region, Vec3 r) {
+  return sphere_volume_in_slab(r.z, region.low, region.high);
+}
+double filled_by(const FullyPeriodicBox& box, const Region& region, Vec3 r) {
+  double filled = 0;
+  for (const double z : {r.z - box.height, r.z, r.z + box.height}) {
+    filled += sphere_volume_in_slab(z, region.low, region.high);
+  }
+  return filled;
+}
+double filled_by(const WalledBox& box, const Region& region, Vec3 r) {
+  const Vec3 low{region.from_sides, region.from_sides, region.low};
+  const Vec3 high{box.width_x - region.from_sides, box.width_y - region.from_sides, region.high};
+  return sphere_volume_in_box(low - r, high - r);
+}
+double filled_by(const Cylinder& tube, const Region& region, Vec3 r) {
+  const double axis = 0.5 * tube.diameter, x = r.x - axis, y = r.y - axis;
+  return sphere_volume_in_tube(std::sqrt(x * x + y * y), axis - region.from_sides, region.low - r.z,
+                               region.high - r.z);
+}
+
+PeriodicBox scaled(const PeriodicBox& box, double by) {
+  return {by * box.width_x, by * box.width_y};
+}
+FullyPeriodicBox scaled(const FullyPeriodicBox& box, double by) {
+  return {by * box.width_x, by * box.width_y, by * box.height};
+}
+WalledBox scaled(const WalledBox& box, double by) {
+  return {by * box.width_x, by * box.width_y};
+}
+Cylinder scaled(const Cylinder& tube, double by) {
+  return {by * tube.diameter};
+}
+
+// The part of the region that spheres of radius sigma R around the centres fill, sigma <= 1: as
+// spheres of radius R do where all lengths are divided by sigma.
+double filled_part(const Packing& packing, const Region& region, double sigma) {
+  if (sigma == 0) return 0;
+  const double by = 1 / sigma;
+  const Region larger{by * region.low, by * region.high, by * region.from_sides};
+  const double filled = std::visit(
+      [&](const auto& container) {
+        const auto room = scaled(container, by);
+        double sum = 0;
+        for (const Vec3& r : packing.centres) sum += filled_by(room, larger, by * r);
+        return sum;
+      },
+      packing.container);
+  return filled * sigma * sigma * sigma / region.volume(packing.container);
+}
+
+Vec3 random_point(const Container& container, const Region& region, RandomStream& random) {
+  const bool walled =
+      std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container);
+  const double off = walled ? region.from_sides : 0;
+  while (true) {
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    const Vec3 r{off + (width_x(container) - 2 * off) * x, off + (width_y(container) - 2 * off) * y,
+                 region.low + (region.high - region.low) * z};
+    if (region.contains(container, r)) return r;
+  }
+}
+
+}  // namespace
+
+std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
+  const std::vector<Sighting> found = sightings(packing, cells);
+  const auto n = static_cast<std::uint32_t>(found.size());
+  CellGrid grid;
+  grid.build(packing.container, std::max(merge, 1e-3), n,
+             [&](std::uint32_t k) { return found[k].centre; });
+  std::vector<bool> taken(n, false);
+  std::vector<Pore> all;
+  std::vector<std::uint32_t> cluster, owners;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    if (taken[k]) continue;
+    cluster = {k};
+    taken[k] = true;
+    for (std::size_t at = 0; at < cluster.size(); ++at) {
+      const Vec3 here = found[cluster[at]].centre;
+      grid.for_each_within(here, merge, [&](std::uint32_t j) {
+        if (taken[j]) return;
+        if (squared_distance(packing.container, here, found[j].centre) > merge * merge) return;
+        taken[j] = true;
+        cluster.push_back(j);
+      });
+    }
+    all.push_back(merged(packing.container, cells, found, cluster, owners));
+  }
+  return all;
+}
+
+std::vector<Pore> pores_in(const std::vector<Pore>& all, const Container& container,
+                           const Region& region) {
+  std::vector<Pore> inside;
+  std::ranges::copy_if(all, std::back_inserter(inside),
+                       [&](const Pore& pore) { return region.contains(container, pore.centre); });
+  return inside;
+}
+
+Site site_of(const Pore& pore, double tolerance) {
+  const double tetrahedral = std::sqrt(1.5) - 1, octahedral = std::numbers::sqrt2 - 1;
+  if (std::abs(xi_of(pore) - tetrahedral) <= tolerance) return Site::tetrahedral;
+  if (std::abs(xi_of(pore) - octahedral) <= tolerance) return Site::octahedral;
+  return Site::other;
+}
+
+PoreDistribution pore_distribution(std::span<const Pore> pores, double bin_width, double xi_max) {
+  assert(bin_width > 0 && xi_max > 0);
+  const auto n_bins = static_cast<std::size_t>(std::ceil(xi_max / bin_width));
+  PoreDistribution density;
+  density.rho_xi.assign(n_bins, 0);
+  for (const Pore& pore : pores) {
+    const double bin = xi_of(pore) / bin_width;
+    if (bin >= 0 && bin < static_cast<double>(n_bins)) {
+      density.rho_xi[static_cast<std::size_t>(bin)] += 1 / bin_width;
+    }
+  }
+  for (std::size_t b = 0; b < n_bins; ++b) {
+    const double xi = (static_cast<double>(b) + 0.5) * bin_width;
+    density.xi.push_back(xi);
+    density.rho_v.push_back(density.rho_xi[b] / (3 * xi * xi));
+    density.v_rho_v.push_back(density.rho_xi[b] * xi / 3);
+  }
+  return density;
+}
+
+double mean_pore_volume(std::span<const Pore> pores) {
+  double sum = 0;
+  for (const Pore& pore : pores) sum += xi_of(pore) * xi_of(pore) * xi_of(pore);
+  return sum / static_cast<double>(pores.size());
+}
+
+VoidProbability void_probability(const Packing& packing, const Region& region,
+                                 std::span<const double> sigma, std::uint64_t points,
+                                 StreamKey key) {
+  const double longest = sphere_radius * (sigma.empty() ? 1 : std::ranges::max(sigma));
+  CellGrid grid;
+  grid.build(packing.container, std::max(longest, sphere_radius),
+             static_cast<std::uint32_t>(packing.centres.size()),
+             [&](std::uint32_t i) { return packing.centres[i]; });
+  std::vector<double> reaches;  // squared, ascending
+  for (const double s : sigma) reaches.push_back(s * s * sphere_radius * sphere_radius);
+  std::ranges::sort(reaches);
+  std::vector<std::uint64_t> reached(sigma.size() + 1, 0);  // points by how many reaches are empty
+  RandomStream random(key);
+  for (std::uint64_t p = 0; p < points; ++p) {
+    const Vec3 r = random_point(packing.container, region, random);
+    double nearest = std::numeric_limits<double>::infinity();
+    grid.for_each_near(r, [&](std::uint32_t i) {
+      nearest = std::min(nearest, squared_distance(packing.container, r, packing.centres[i]));
+    });
+    ++reached[static_cast<std::size_t>(std::ranges::upper_bound(reaches, nearest) -
+                                       reaches.begin())];
+  }
+  for (std::size_t k = reached.size() - 1; k > 0; --k) reached[k - 1] += reached[k];
+  VoidProbability result;
+  result.sigma.assign(sigma.begin(), sigma.end());
+  for (std::size_t s = 0; s < sigma.size(); ++s) {
+    if (sigma[s] <= 1) {
+      result.probability.push_back(1 - filled_part(packing, region, sigma[s]));
+      result.error.push_back(0);
+    } else {
+      const auto rank = static_cast<std::size_t>(
+          std::ranges::lower_bound(reaches, sigma[s] * sigma[s] * sphere_radius * sphere_radius) -
+          reaches.begin());
+      const double p = static_cast<double>(reached[rank + 1]) / static_cast<double>(points);
+      result.probability.push_back(p);
+      result.error.push_back(std::sqrt(p * (1 - p) / static_cast<double>(points)));
+    }
+  }
+  return result;
+}
+
+double gotoh_void_probability(double phi, double sigma) {
+  const double cube = sigma * sigma * sigma;
+  if (sigma <= 1) return 1 - phi * cube;
+  const double exponent = phi / ((1 - phi) * (1 - phi)) *
+                          (-(1 + 2 * phi) * cube + 4.5 * phi * sigma * sigma + 1 - 2.5 * phi);
+  return (1 - phi) * std::exp(exponent);
+}
+
+}  // namespace jostle

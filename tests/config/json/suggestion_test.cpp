@@ -1,0 +1,26 @@
+#include "config/json/suggestion.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace jostle {
+
+TEST_CASE("Edit distance counts insertions, deletions, replacements and exchanges") {
+  CHECK(edit_distance("", "") == 0);
+  CHECK(edit_distance("dilate", "dilate") == 0);
+  CHECK(edit_distance("dilat", "dilate") == 1);
+  CHECK(edit_distance("ditale", "dilate") == 2);
+  CHECK(edit_distance("heigth", "height") == 1);
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  CHECK(edit_distance("", "lift") == 4);
+}
+
+TEST_CASE("The nearest candidate is suggested, and none that is far") {
+  const std::vector<std::string> taps{"dilate", "dilate_floor_held", "lift", "shake"};
+  CHECK(did_you_mean("dilat", taps) == " Did you mean \"dilate\"?");
+  CHECK(did_you_mean("floor_held", taps) == " Did you mean \"dilate_floor_held\"?");
+  CHECK(did_you_mean("shkae", taps) == " Did you mean \"shake\"?");
+  CHECK(did_you_mean("vibration", taps).empty());
+  CHECK(did_you_mean("", taps).empty());
+}
+
+}  // namespace jostle

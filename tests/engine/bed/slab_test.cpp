@@ -1,0 +1,86 @@
+#include "engine/bed/slab.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "tests/engine/sample_packings.hpp"
+
+using namespace jostle;
+
+namespace {
+
+// Midpoint rule over plane cuts: discs of area pi (R^2 - (z - z_c)^2).
+double volume_by_cuts(double z, double low, double high) {
+  constexpr int cuts = 200'000;
+  double sum = 0;
+  for (int k = 0; k < cuts; ++k) {
+    const double height = low + (high - low) * (k + 0.5) / cuts - z;
+    if (height * height < 0.25) sum += std::numbers::pi * (0.25 - height * height);
+  }
+  return sum * (high - low) / cuts;
+}
+
+}  // namespace
+
+TEST_CASE("the volume of a sphere in a slab is the integral of its plane cuts") {
+  for (const double z : {0.5, 0.7, 1.9, 2.0, 2.3, 5.0}) {
+    for (const HeightWindow window : {HeightWindow{0, 2}, {0, 0.5}, {1.8, 2.1}, {0.6, 7}}) {
+      CHECK(sphere_volume_in_slab(z, window.low, window.high) ==
+            Approx(volume_by_cuts(z, window.low, window.high)).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE("slabs that share a plane add up to the spheres' volume") {
+  const Packing packing = random_packing(WalledBox{4, 5}, 30, 8, 1);
+  double volume = 0;
+  for (double low = 0; low < 10; low += 0.37) {
+    volume += 0.37 * 20 * solids_fraction(packing, {low, low + 0.37});
+  }
+  CHECK(volume == Approx(30 * sphere_volume).epsilon(1e-12));
+}
+
+TEST_CASE("one hexagonal layer fills 0.6046 of its height") {
+  // Its area fraction times the mean section: (pi / (2 sqrt 3)) (2 / 3).
+  Packing layer{PeriodicBox{4, 4 * std::sqrt(3.0) / 2}, {}};
+  for (int row = 0; row < 4; ++row) {
+    for (int k = 0; k < 4; ++k) {
+      layer.centres.push_back({std::fmod(k + 0.5 * row, 4.0), row * std::sqrt(3.0) / 2, 0.5});
+    }
+  }
+  CHECK(solids_fraction(layer, {0, 1}) == Approx(0.6045997880780726).epsilon(1e-12));
+}
+
+TEST_CASE("a fully periodic box holds all of every sphere, those on its ends too") {
+  const Packing packing{FullyPeriodicBox{3, 3, 4}, {{1, 1, 0.1}, {2, 2, 3.8}, {1, 2.5, 2}}};
+  CHECK(solids_fraction(packing, {0, 4}) == Approx(3 * sphere_volume / 36).epsilon(1e-14));
+}
+
+TEST_CASE("a cylinder's fraction is of its round footprint") {
+  const Packing packing{Cylinder{3}, {{1.5, 1.5, 0.5}}};
+  CHECK(solids_fraction(packing, {0, 1}) ==
+        Approx(sphere_volume / (std::numbers::pi * 2.25)).epsilon(1e-14));
+}
+
+TEST_CASE("a window without depth gives the area fraction of its plane cut") {
+  const Packing layer{PeriodicBox{4, 4}, {{1, 1, 0.5}, {3, 3, 0.5}, {1, 3, 0.7}}};
+  const double cut = std::numbers::pi * (0.25 + 0.25 + 0.25 - 0.04) / 16;
+  const HeightWindow window = resolve(QuantileWindow{0, 0.5}, layer);
+  CHECK(window == HeightWindow{0.5, 0.5});
+  CHECK(solids_fraction(layer, window) == Approx(cut).epsilon(1e-14));
+  // To either side of the depth below which the middle stands for the slab.
+  for (const double depth : {1e-16, 1e-9, 0.99e-5, 1.01e-5}) {
+    CAPTURE(depth);
+    const HeightWindow thin{0.5 - depth / 2, 0.5 + depth / 2};
+    CHECK(solids_fraction(layer, thin) == Approx(cut).margin(2e-10).epsilon(0));
+  }
+}
+
+TEST_CASE("quantile windows interpolate order statistics") {
+  Packing packing{PeriodicBox{4, 4}, {}};
+  for (const double z : {5.0, 1.0, 3.0, 2.0, 4.0}) packing.centres.push_back({0, 0, z});
+  CHECK(resolve(QuantileWindow{0.2, 0.8}, packing) == HeightWindow{1.8, 4.2});
+  CHECK(resolve(QuantileWindow{0, 1}, packing) == HeightWindow{1, 5});
+  CHECK(resolve(HeightWindow{3, 4}, packing) == HeightWindow{3, 4});
+}

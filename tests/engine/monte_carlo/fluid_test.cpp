@@ -1,0 +1,111 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/geometry.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
+
+using namespace jostle;
+
+namespace {
+
+constexpr std::uint32_t n_spheres = 1372;
+constexpr int n_bins = 20;
+constexpr double bin_width = 0.005;
+
+// Histogram of pair distances between 1 and 1 + n_bins bin_width.
+void count_pairs(const Packing& packing, std::array<double, n_bins>& counts) {
+  const auto& box = std::get<FullyPeriodicBox>(packing.container);
+  CellGrid grid;
+  grid.build(packing.container, 1 + n_bins * bin_width, n_spheres,
+             [&](std::uint32_t i) { return packing.centres[i]; });
+  for (std::uint32_t i = 0; i < n_spheres; ++i) {
+    grid.for_each_near(packing.centres[i], [&](std::uint32_t j) {
+      if (j <= i) return;
+      const double r =
+          std::sqrt(norm_squared(separation(box, packing.centres[i], packing.centres[j])));
+      const auto bin = static_cast<int>((r - 1) / bin_width);
+      if (bin < n_bins) ++counts[bin];
+    });
+  }
+}
+
+// Least squares of a cubic through g(r) of the bins, extrapolated to contact: the constant term of
+// the normal equations solved by elimination.
+double contact_value(const std::array<double, n_bins>& counts, double configurations,
+                     double density) {
+  std::array<std::array<double, 5>, 4> rows{};
+  for (int bin = 0; bin < n_bins; ++bin) {
+    const double low = 1 + bin * bin_width, high = low + bin_width;
+    const double shell = 4.0 / 3 * std::numbers::pi * (high * high * high - low * low * low);
+    const double g = 2 * counts[bin] / (configurations * n_spheres * density * shell);
+    const double x = (bin + 0.5) / n_bins;
+    const std::array<double, 4> powers = {1, x, x * x, x * x * x};
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) rows[a][b] += powers[a] * powers[b];
+      rows[a][4] += powers[a] * g;
+    }
+  }
+  for (int pivot = 3; pivot > 0; --pivot) {
+    for (int row = 0; row < pivot; ++row) {
+      const double factor = rows[row][pivot] / rows[pivot][pivot];
+      for (int k = 0; k < 5; ++k) rows[row][k] -= factor * rows[pivot][k];
+    }
+  }
+  return rows[0][4] / rows[0][0];
+}
+
+struct Estimate {
+  double value, error;
+};
+
+Estimate measure_contact_value(double fraction, double step, int sweeps, std::uint64_t seed) {
+  const double side = std::cbrt(n_spheres * sphere_volume / fraction);
+  const FullyPeriodicBox box{side, side, side};
+  RandomStream random(stream_key(seed, 0, 0, Purpose::start));
+  Packing packing = make_start(Grow{}, box, n_spheres, random);
+  const auto loop =
+      make_trial_loop(box, MetropolisMove{step}, stream_key(seed, 0, 0, Purpose::trials));
+  loop->load(packing);
+  loop->run(std::uint64_t{n_spheres} * (sweeps / 4));  // equilibration
+  constexpr int blocks = 20, every = 5;
+  double sum = 0, squares = 0;
+  for (int block = 0; block < blocks; ++block) {
+    std::array<double, n_bins> counts{};
+    const int configurations = sweeps / blocks / every;
+    for (int k = 0; k < configurations; ++k) {
+      loop->run(std::uint64_t{n_spheres} * every);
+      loop->store(packing);
+      count_pairs(packing, counts);
+    }
+    const double g = contact_value(counts, configurations, n_spheres / (side * side * side));
+    sum += g;
+    squares += g * g;
+  }
+  const double mean = sum / blocks;
+  return {mean, std::sqrt((squares / blocks - mean * mean) / (blocks - 1))};
+}
+
+}  // namespace
+
+TEST_CASE("the hard-sphere fluid has the contact values of an independent Monte Carlo",
+          "[statistics]") {
+  // tests/data/bulk_0.30.json, bulk_0.40.json, bulk_0.49.json (g_contact, its error).
+  struct Row {
+    double fraction, step, reference, error;
+    int sweeps;
+  };
+  const auto row =
+      GENERATE(Row{0.30, 0.26, 2.48769, 0.00310, 12'000}, Row{0.40, 0.13, 3.71711, 0.00467, 12'000},
+               Row{0.49, 0.07, 5.69737, 0.00453, 20'000});
+  const Estimate own = measure_contact_value(row.fraction, row.step, row.sweeps, 1957);
+  CAPTURE(row.fraction, own.value, own.error);
+  WARN("Phi " << row.fraction << ": g(contact) " << own.value << " +- " << own.error
+              << ", reference " << row.reference << " +- " << row.error);
+  CHECK(own.error <= std::max(row.error, 0.003 * row.reference));
+  CHECK(std::abs(own.value - row.reference) <= 3 * std::hypot(own.error, row.error));
+}

@@ -1,0 +1,198 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "engine/monte_carlo/rejection_free/bound_tables.hpp"
+#include "engine/monte_carlo/theta_table.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "tests/engine/sample_packings.hpp"
+
+using namespace jostle;
+
+namespace {
+
+const StreamKey key = stream_key(47, 0, 0, Purpose::trials);
+
+// A bed let down from random places, and still creeping.
+template <class Box>
+std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
+  Packing packing = random_packing(box, n, 20, 9);
+  const auto loop = make_trial_loop(packing.container, PolarMove{}, key);
+  loop->load(packing);
+  loop->run(std::uint64_t{3000} * n);
+  loop->store(packing);
+  std::vector<PackedCentre> centres(n);
+  std::ranges::transform(packing.centres, centres.begin(), packed);
+  return centres;
+}
+
+// The bins, tables and directions of the two moves.
+struct Polar {
+  PolarMove move;
+  std::vector<double> theta_table = make_theta_table(move);
+  static constexpr int n_sectors = polar_sectors;
+  double longest_side() const { return move.max_step; }
+  auto bins() const { return polar_bins(theta_table, move.max_step); }
+  SineCosine angle(int ring, double u) const { return polar_angle(theta_table, ring, u); }
+  static double ratio(double weight) { return weight; }
+  static auto kernel() { return baseline::skipping_kernels().linear_bounds; }
+};
+struct Cubic {
+  MetropolisMove move;
+  static constexpr int n_sectors = cubic_sectors;
+  double longest_side() const { return move.max_step; }
+  auto bins() const { return cubic_bins(move.max_step); }
+  static SineCosine angle(int ring, double u) { return cubic_angle(ring, u); }
+  static double ratio(double weight) { return std::cbrt(weight); }
+  static auto kernel() { return baseline::skipping_kernels().cubic_bounds; }
+};
+
+template <class Box, class Kind>
+using TablesOf = BoundTables<Box, Kind::n_sectors>;
+
+// Whether a step is possible, against all spheres.
+template <class Box>
+bool possible(const Box& box, const std::vector<PackedCentre>& centres, std::uint32_t i,
+              Vec3 step) {
+  const Vec3 target = wrapped(box, unpacked(centres[i]) + step);
+  if (!clear_of_boundaries(box, target)) return false;
+  for (std::uint32_t j = 0; j < centres.size(); ++j) {
+    if (j != i && overlaps(box, target, unpacked(centres[j]))) return false;
+  }
+  return true;
+}
+
+struct Tried {
+  int beyond = 0, wrong = 0, possible_within = 0, within = 0;
+};
+
+// Random steps of every bin, to either side of its bound.
+template <class Box, class Kind>
+Tried try_steps(const Box& box, const Kind& kind, const TablesOf<Box, Kind>& tables) {
+  RandomStream random(stream_key(48, 0, 0, Purpose::start));
+  const double longest = tables.bins().longest;
+  Tried tried;
+  for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
+    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
+      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
+      const double weight = tables.row(i).weight[ring][sector] / double{whole_weight};
+      const double bound = longest * Kind::ratio(weight);
+      const SineCosine theta = kind.angle(ring, random.uniform());
+      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / Kind::n_sectors;
+      const bool beyond = random.uniform() < 0.5;
+      double length =
+          beyond ? bound + (longest - bound) * random.uniform() : bound * random.uniform();
+      if (beyond && random.uniform() < 0.3) length = bound * (1 + 1e-9);
+      if (length > longest || (beyond && !(length > bound))) continue;
+      // Azimuths of sectors begin at -pi.
+      const Vec3 step{-length * theta.sine * std::cos(azimuth),
+                      -length * theta.sine * std::sin(azimuth), -length * theta.cosine};
+      const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
+      if (side > kind.longest_side()) continue;
+      const bool free = possible(box, tables.centres(), i, step);
+      (beyond ? tried.beyond : tried.within) += 1;
+      (beyond ? tried.wrong : tried.possible_within) += free;
+    }
+  }
+  return tried;
+}
+
+template <class Box, class Kind>
+void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres, const Kind& kind) {
+  TablesOf<Box, Kind> tables(box, Kind::kernel());
+  tables.build(kind.bins(), centres);
+  const Tried tried = try_steps(box, kind, tables);
+  CHECK(tried.wrong == 0);
+  // A step longer than a sphere is wide may pass it by, and nothing bounds it.
+  if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * centres.size()));
+  // The bounds are of use: some of what they leave is free.
+  CHECK(tried.possible_within > 0);
+}
+
+template <class Box>
+void check_bounds(const Box& box, std::uint32_t n) {
+  const auto centres = bed(box, n);
+  for (const PolarMove& move : {PolarMove{}, PolarMove{0.4, 1.5, ThetaLaw::linear},
+                                PolarMove{0.1, 0.2, ThetaLaw::exponential}, PolarMove{0.01},
+                                PolarMove{1.2}, PolarMove{2.5}}) {
+    check_bounds_of(box, centres, Polar{move});
+  }
+  for (const double step : {0.1, 0.02, 0.3, 0.7}) {
+    check_bounds_of(box, centres, Cubic{MetropolisMove{step}});
+  }
+}
+
+template <class Kind>
+void check_function_of_centres(const Kind& kind) {
+  const PeriodicBox box{4, 5};
+  TablesOf<PeriodicBox, Kind> moved(box, Kind::kernel()), fresh(box, Kind::kernel());
+  moved.build(kind.bins(), bed(box, 100));
+  RandomStream random(stream_key(49, 0, 0, Purpose::start));
+  int moves = 0;
+  for (int trial = 0; trial < 200'000; ++trial) {
+    const auto i = static_cast<std::uint32_t>(random.below(100));
+    const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
+                    0.2 * random.uniform() - 0.1};
+    const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
+    if (norm_squared(step) > 0.01 || !possible(box, moved.centres(), i, step)) continue;
+    moved.move(i, packed(target));
+    ++moves;
+  }
+  CHECK(moves > 1000);
+  fresh.build(kind.bins(), moved.centres());
+  CHECK(fresh.weights().total() == moved.weights().total());
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
+    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
+      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
+      REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every step beyond its bound overlaps, periodic") {
+  check_bounds(PeriodicBox{4, 5}, 100);
+  check_bounds(PeriodicBox{2.1, 2.3}, 30);
+}
+
+TEST_CASE("every step beyond its bound overlaps, between walls") {
+  check_bounds(WalledBox{4, 3}, 70);
+  check_bounds(WalledBox{1.1, 1.5}, 12);
+}
+
+TEST_CASE("every step beyond its bound overlaps, in a tube") {
+  check_bounds(Cylinder{5}, 90);
+  check_bounds(Cylinder{1.2}, 12);
+}
+
+TEST_CASE("bounds are a function of the centres, whatever moves led there") {
+  check_function_of_centres(Polar{});
+  check_function_of_centres(Cubic{});
+}
+
+TEST_CASE("a weight tree finds what adding up the weights finds") {
+  RandomStream random(stream_key(50, 0, 0, Purpose::start));
+  for (const std::size_t n : {1, 15, 16, 17, 256, 257, 5000}) {
+    std::vector<std::uint32_t> weights(n);
+    WeightTree tree;
+    tree.assign(weights);
+    CHECK(tree.total() == 0);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      weights[i] = static_cast<std::uint32_t>(random.below(4) == 0 ? 0 : random.below(1u << 25));
+      tree.set(i, weights[i]);
+    }
+    const std::uint64_t total = std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
+    REQUIRE(tree.total() == total);
+    for (int draw = 0; draw < 1000 && total > 0; ++draw) {
+      const std::uint64_t target = draw == 0 ? 0 : draw == 1 ? total - 1 : random.below(total);
+      std::uint32_t i = 0;
+      std::uint64_t rest = target;
+      while (rest >= weights[i]) rest -= weights[i++];
+      const WeightTree::Hit hit = tree.find(target);
+      REQUIRE(hit.index == i);
+      REQUIRE(hit.rest == rest);
+    }
+  }
+}

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/packing.hpp"
+
+// What carries the spheres of a poured packing, found by all pairs and without the code under test.
+namespace jostle {
+
+inline constexpr double touch_tolerance = 1e-6;  // diameters
+
+/// Unit vectors from what a sphere touches (spheres, walls; not the floor) to its centre.
+inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
+  std::vector<Vec3> found;
+  const Vec3 r = packing.centres[sphere];
+  for (std::size_t other = 0; other < packing.centres.size(); ++other) {
+    if (other == sphere) continue;
+    const Vec3 apart =
+        std::visit([&](const auto& box) { return separation(box, r, packing.centres[other]); },
+                   packing.container);
+    const double length = std::sqrt(norm_squared(apart));
+    if (length < 1 + touch_tolerance) found.push_back((1 / length) * apart);
+  }
+  if (const auto* box = std::get_if<WalledBox>(&packing.container)) {
+    const double reach = sphere_radius + touch_tolerance;
+    if (r.x < reach) found.push_back({1, 0, 0});
+    if (r.y < reach) found.push_back({0, 1, 0});
+    if (r.x > box->width_x - reach) found.push_back({-1, 0, 0});
+    if (r.y > box->width_y - reach) found.push_back({0, -1, 0});
+  } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
+    const double axis = 0.5 * tube->diameter, dx = r.x - axis, dy = r.y - axis;
+    const double off_axis = std::sqrt(dx * dx + dy * dy);
+    if (off_axis > axis - sphere_radius - touch_tolerance && off_axis > 0) {
+      found.push_back({-dx / off_axis, -dy / off_axis, 0});
+    }
+  }
+  return found;
+}
+
+/// Whether forces along the contacts, none of them pulling, can carry the sphere's weight: some
+/// three of them enclose the vertical, so that the centre's projection lies inside their triangle.
+inline bool carried(const std::vector<Vec3>& contacts) {
+  constexpr double rounding = -1e-5;  // a contact within the touch tolerance may be a near miss
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
+      for (std::size_t k = j + 1; k < contacts.size(); ++k) {
+        const Vec3 bc = cross(contacts[j], contacts[k]), ca = cross(contacts[k], contacts[i]),
+                   ab = cross(contacts[i], contacts[j]);
+        const double volume = dot(contacts[i], bc);
+        if (volume == 0) continue;
+        if (bc.z / volume > rounding && ca.z / volume > rounding && ab.z / volume > rounding) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace jostle

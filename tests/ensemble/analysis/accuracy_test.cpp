@@ -1,0 +1,147 @@
+#include "ensemble/analysis/accuracy.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/moments.hpp"
+#include "tests/ensemble/noise.hpp"
+
+namespace jostle {
+
+TEST_CASE("A bias is the mean of the pairs' differences") {
+  const std::vector<double> values = {1, 2, 4, std::nan("")}, reference = {0.5, 1.5, 2.5, 7};
+  const PairedBias found = paired_bias(values, reference);
+  CHECK(found.pairs == 3);
+  CHECK(found.bias == Approx(2.5 / 3));
+  // Differences 0.5, 0.5, 1.5: variance 1/3.
+  CHECK(found.error == Approx(std::sqrt(1.0 / 3 / 3)));
+  // Variances of 1, 2, 4 and of 0.5, 1.5, 2.5.
+  CHECK(found.variance_reduction == Approx((7.0 / 3 + 1) / (1.0 / 3)));
+}
+
+TEST_CASE("Without two pairs there is no error, and equal differences need no others") {
+  const std::vector<double> one = {1}, other = {3};
+  CHECK(paired_bias(one, other).bias == -2);
+  CHECK(std::isnan(paired_bias(one, other).error));
+  const std::vector<double> a = {1, 2}, b = {2, 3};
+  CHECK(std::isinf(paired_bias(a, b).variance_reduction));
+}
+
+TEST_CASE("A growth is the change of the pairs' differences, judged by Student's t") {
+  const std::vector<double> before{1, 2, 4}, reference_before{0.5, 1.5, 3.5}, after{1.5, 2.5, 5},
+      reference{0.5, 1.6, 3.4};
+  const Growth growth = bias_growth(before, reference_before, after, reference);
+  // Differences of 0.5 each before; of 1, 0.9 and 1.6 after.
+  CHECK(growth.change.bias == Approx(2.0 / 3));
+  CHECK(growth.change.pairs == 3);
+  CHECK(growth.least_seen == Approx(4.302653 * growth.change.error));
+  CHECK(growth.is_seen() == (growth.change.bias > growth.least_seen));
+  const std::vector<double> one{1}, other{2};
+  CHECK_FALSE(bias_growth(one, one, other, one).is_seen());
+  CHECK(std::isnan(bias_growth(one, one, other, one).least_seen));
+  // The reference against itself.
+  CHECK_FALSE(bias_growth(before, before, after, after).is_seen());
+}
+
+TEST_CASE("A bias that does not grow is called growing one time in twenty, with any rounds") {
+  RandomStream random = test_stream(23);
+  constexpr int repetitions = 4000;
+  for (const std::size_t rounds : {2u, 3u, 4u, 10u}) {
+    int alarms = 0, missed = 0;
+    for (int k = 0; k < repetitions; ++k) {
+      // Beds differ more than settings; a bias of 0.3 from the first tap on.
+      std::vector<double> early, early_reference, late, late_reference, grown;
+      for (std::size_t r = 0; r < rounds; ++r) {
+        const double bed = 10 * noise(random);
+        early_reference.push_back(bed + noise(random));
+        late_reference.push_back(bed + 2 + noise(random));
+        early.push_back(bed - 0.3 + noise(random));
+        late.push_back(bed + 2 - 0.3 + noise(random));
+        grown.push_back(late.back() - 30);
+      }
+      alarms += bias_growth(early, early_reference, late, late_reference).is_seen();
+      missed += !bias_growth(early, early_reference, grown, late_reference).is_seen();
+    }
+    const double rate = static_cast<double>(alarms) / repetitions;
+    CAPTURE(rounds, rate, missed);
+    CHECK(std::abs(rate - 0.05) <= 3 * std::sqrt(0.05 * 0.95 / repetitions));
+    // What is 15 deviations of a difference is seen even with three rounds.
+    if (rounds > 2) CHECK(missed < repetitions / 100);
+  }
+}
+
+TEST_CASE("What a geometric ladder lacks is the rest of the series") {
+  // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
+  const auto of = [](std::vector<double> two_before, std::vector<double> before,
+                     std::vector<double> last) { return remainder(two_before, before, last); };
+  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).value == Approx(0.125));
+  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).error == 0);
+  CHECK(std::isnan(of({0}, {1}, {2}).value));    // steps that do not shrink
+  CHECK(std::isnan(of({0}, {1}, {0.5}).value));  // steps of changing sign
+  CHECK(std::isnan(of({}, {}, {}).value));
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  CHECK(of({0.5, 9, 1.5}, {0.75, missing, 1.75}, {0.875, 9, 1.875}).value == Approx(0.125));
+}
+
+TEST_CASE("The error of what a ladder lacks is its deviation between ensembles") {
+  RandomStream random = test_stream(7);
+  const auto scatter = [&] { return 0.02 * noise(random); };
+  constexpr int n = 40, repetitions = 400;
+  Moments values, errors;
+  for (int k = 0; k < repetitions; ++k) {
+    std::vector<double> two_before, before, last;
+    for (int r = 0; r < n; ++r) {
+      const double bed = 10 * scatter();
+      two_before.push_back(bed + scatter());
+      before.push_back(bed + 0.5 + scatter());
+      last.push_back(bed + 0.7 + scatter());
+    }
+    const Remainder found = remainder(two_before, before, last);
+    values.add(found.value);
+    errors.add(found.error);
+  }
+  CHECK(values.mean() == Approx(0.2 * 0.4 / 0.6).epsilon(0.05));
+  CHECK(errors.mean() == Approx(values.sigma()).epsilon(0.15));
+}
+
+TEST_CASE("The cheapest setting trades bias against realizations") {
+  const std::vector<Setting> settings = {
+      {.bias = 0.003, .bias_error = 0, .sigma = 0.01, .realization_seconds = 1},
+      {.bias = 0, .bias_error = 0, .sigma = 0.01, .realization_seconds = 3},
+      {.bias = 0.02, .bias_error = 0, .sigma = 0.01, .realization_seconds = 0.1}};
+  // 0.005: 1e-4 / (25e-6 - 9e-6) = 6.25 -> 7 realizations of a second, or 4 of three.
+  const auto rough = cheapest(settings, 0.005);
+  REQUIRE(rough);
+  CHECK(rough->setting == 0);
+  CHECK(rough->realizations == 7);
+  CHECK(rough->core_seconds == 7);
+  CHECK(total_error(settings[0], 7) <= 0.005);
+  CHECK(total_error(settings[0], 6) > 0.005);
+  // Close to the bias only the complete one is left.
+  const auto fine = cheapest(settings, 0.0031);
+  REQUIRE(fine);
+  CHECK(fine->setting == 1);
+  CHECK(fine->realizations == 11);
+  CHECK_FALSE(cheapest(std::vector<Setting>{settings[2]}, 0.02));
+}
+
+TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Setting> settings = {
+      {.bias = 0.001, .bias_error = unknown, .sigma = 0.01, .realization_seconds = 1},
+      {.bias = 0.001, .bias_error = 0.002, .sigma = 0, .realization_seconds = 1}};
+  CHECK_FALSE(cheapest(settings, 0.003));
+  CHECK(cheapest(settings, 0.0031)->setting == 1);
+  CHECK(pareto_front(settings) == std::vector<std::uint64_t>{0, 1});
+}
+
+TEST_CASE("The front holds what is neither slower nor worse") {
+  const std::vector<Setting> settings = {{.bias = 0.01, .realization_seconds = 1},
+                                         {.bias = -0.02, .realization_seconds = 2},
+                                         {.bias = 0.001, .realization_seconds = 5},
+                                         {.bias = 0, .realization_seconds = 9}};
+  CHECK(pareto_front(settings) == std::vector<std::uint64_t>{1, 0, 1, 1});
+}
+
+}  // namespace jostle

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "ensemble/analysis/ageing/fits.hpp"
+#include "tests/ensemble/analysis/ageing/ageing_paths.hpp"
+
+// What intervals of eq. 6 and verdicts on ageing are worth, on paths whose law is known: how often
+// intervals hold the truth, how often tests raise a false alarm, and what they find.
+
+namespace jostle {
+namespace {
+
+using namespace ageing_paths;
+
+LogCurves curves_of(std::uint64_t seed, std::uint32_t m, const Paths& paths) {
+  std::vector<std::uint32_t> all(m);
+  std::iota(all.begin(), all.end(), 0u);
+  return log_curves(rows(seed, m, paths), grid, all);
+}
+
+double deviation(double share, double n) {
+  return std::sqrt(share * (1 - share) / n);
+}
+
+const char* name(Memory memory) {
+  return memory == Memory::long_ ? "long" : "short";
+}
+
+struct Held {
+  int n = 0, at_68 = 0, at_95 = 0, limited = 0;
+  void add(const LogEstimate& found, double exact) {
+    ++n;
+    at_68 += found.low_68 <= exact && exact <= found.high_68;
+    at_95 += found.low_95 <= exact && exact <= found.high_95;
+    limited += is_limited(found);
+  }
+  double percent(int count) const { return 100.0 * count / n; }
+  std::string text() const {
+    if (n == 0) return " |                  ";
+    return fmt::format(" | {:5.1f} {:5.1f} {:5.1f}", percent(at_68), percent(at_95),
+                       percent(limited));
+  }
+  // 60 to 80 % and 90 to 100 %, and three deviations of so many independent cases.
+  void check(double independent) const {
+    CHECK(percent(at_68) >= 60 - 300 * deviation(0.6, independent));
+    CHECK(percent(at_68) <= 80 + 300 * deviation(0.8, independent));
+    CHECK(percent(at_95) >= 90 - 300 * deviation(0.9, independent));
+  }
+};
+
+enum class Laws { own, shared };
+
+void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensembles,
+                    std::uint64_t seed) {
+  Held a_inf, b, tau;
+  for (int e = 0; e < ensembles; ++e) {
+    const std::uint64_t own_seed = seed + static_cast<std::uint64_t>(e);
+    std::vector<AgeingLaw> found;
+    if (laws == Laws::own) {
+      const LogCurves curves = curves_of(own_seed, m, paths);
+      for (std::size_t k = 0; k < 3; ++k) found.push_back(own_law(curves.one(k)));
+    } else {
+      found = fit_ageing(rows(own_seed, m, paths), grid).shared;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (laws == Laws::own || k == 0) b.add(found[k].b, paths.b[k]);
+      // Scales at a B that is held are printed without intervals.
+      if (found[k].b_is_held) continue;
+      a_inf.add(found[k].a_inf, paths.a_inf[k]);
+      tau.add(found[k].tau, paths.tau[k]);
+    }
+  }
+  fmt::print("{:6} {:5} {:6.1f} {:3}{}{}{}\n", laws == Laws::own ? "own" : "shared",
+             name(paths.memory), paths.common_part, m, a_inf.text(), b.text(), tau.text());
+  CAPTURE(m, paths.common_part, name(paths.memory));
+  // The three ages of a shared fit have one B.
+  for (const Held* one : {&a_inf, &b, &tau}) {
+    if (one->n > 0) one->check(laws == Laws::own || one == &b ? one->n : one->n / 3.0);
+  }
+}
+
+constexpr const char* coverage_heading =
+    "\nlaws  memory common   M | A_inf: 68  95 % limited | B | tau\n";
+
+struct Found {
+  int n = 0, alarms = 0, excluded = 0;
+  void add(const AgeTrend& trend, const std::string& not_found) {
+    ++n;
+    alarms += trend.p < 0.05;
+    excluded += trend.verdict.starts_with(not_found);
+  }
+  double share() const { return static_cast<double>(alarms) / n; }
+  std::string text() const {
+    return fmt::format(" | {:5.1f} {:5.1f}", 100 * share(), 100.0 * excluded / n);
+  }
+};
+
+Found collapses(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t seed) {
+  Found found;
+  for (int e = 0; e < ensembles; ++e) {
+    const AgeingLeastSquares fit(curves_of(seed + static_cast<std::uint64_t>(e), m, paths));
+    found.add(trend_of_b(fit), "collapse not refuted");
+  }
+  return found;
+}
+
+Found ageings(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t seed) {
+  Found found;
+  for (int e = 0; e < ensembles; ++e) {
+    found.add(trend_of_a(curves_of(seed + static_cast<std::uint64_t>(e), m, paths)),
+              "no change of a");
+  }
+  return found;
+}
+
+// At most 5 % and three deviations.
+void check_alarms(const Found& found) {
+  CHECK(found.share() <= 0.05 + 3 * deviation(0.05, found.n));
+}
+
+Paths with_b(Paths paths, double first, double middle, double last) {
+  paths.b = {first, middle, last};
+  return paths;
+}
+
+Paths with_a_inf(Paths paths, double first, double middle, double last) {
+  paths.tau = {100, 100, 100};
+  paths.a_inf = {first, middle, last};
+  return paths;
+}
+
+constexpr const char* test_heading =
+    "\nof       memory common   M | none: found excluded, % | factor 10 | 100 | 400 up\n";
+
+Found print_rates(const char* what, std::uint32_t m, const Paths& paths,
+                  const std::vector<Found>& all) {
+  std::string text;
+  for (const Found& one : all) text += one.text();
+  fmt::print("{:8} {:6} {:6.1f} {:3}{}\n", what, name(paths.memory), paths.common_part, m, text);
+  check_alarms(all[0]);
+  return all.back();
+}
+
+Found rates_of_collapse(std::uint32_t m, const Paths& paths, int n, std::uint64_t seed) {
+  return print_rates(
+      "collapse", m, paths,
+      {collapses(m, paths, n, seed), collapses(m, with_b(paths, 0.5, 1.6, 5), n, seed + 10'000),
+       collapses(m, with_b(paths, 10, 1, 0.1), n, seed + 20'000),
+       collapses(m, with_b(paths, 0.1, 2, 40), n, seed + 30'000)});
+}
+
+Found rates_of_ageing(std::uint32_t m, const Paths& paths, int n, std::uint64_t seed) {
+  return print_rates("ageing", m, paths,
+                     {ageings(m, with_a_inf(paths, 1, 1, 1), n, seed),
+                      ageings(m, with_a_inf(paths, 10, 3.16, 1), n, seed + 10'000),
+                      ageings(m, with_a_inf(paths, 100, 10, 1), n, seed + 20'000),
+                      ageings(m, with_a_inf(paths, 1, 20, 400), n, seed + 30'000)});
+}
+
+}  // namespace
+
+TEST_CASE("Intervals of eq. 6 hold the truth as often as they say", "[statistics]") {
+  fmt::print(coverage_heading);
+  check_coverage(Laws::own, 3, {}, 40, 30'000);
+  check_coverage(Laws::own, 10, {.common_part = 0.9}, 40, 40'000);
+}
+
+TEST_CASE("Intervals of eq. 6 hold the truth at every number of realizations", "[nightly]") {
+  fmt::print(coverage_heading);
+  for (const Laws laws : {Laws::own, Laws::shared}) {
+    for (const Paths& paths :
+         {Paths{}, Paths{.common_part = 0.9}, Paths{.memory = Memory::short_}}) {
+      for (const std::uint32_t m : {3u, 4u, 10u}) {
+        check_coverage(laws, m, paths, laws == Laws::own ? 100 : 60, 50'000 * m);
+      }
+    }
+  }
+}
+
+TEST_CASE("Tests of ageing and collapse raise few false alarms, and find what there is",
+          "[statistics]") {
+  fmt::print(test_heading);
+  const Paths compacting = {.common_part = 0.9};
+  constexpr int n = 25;
+  for (const std::uint32_t m : {3u, 10u}) {
+    const Found collapse = rates_of_collapse(m, compacting, n, 60'000 * m);
+    const Found ageing = rates_of_ageing(m, compacting, n, 70'000 * m);
+    if (m == 10) {
+      CHECK(collapse.share() >= 0.5);
+      CHECK(ageing.share() >= 0.5);
+    }
+  }
+}
+
+TEST_CASE("Tests of ageing and collapse are calibrated at every number of realizations",
+          "[nightly]") {
+  fmt::print(test_heading);
+  for (const Paths& paths : {Paths{}, Paths{.common_part = 0.9}, Paths{.memory = Memory::short_}}) {
+    for (const std::uint32_t m : {3u, 4u, 10u}) {
+      rates_of_collapse(m, paths, 100, 80'000 * m);
+      rates_of_ageing(m, paths, 100, 90'000 * m);
+    }
+  }
+}
+
+}  // namespace jostle

@@ -1,0 +1,213 @@
+#include "ensemble/analysis/ageing/fits.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "ensemble/analysis/ageing/ageing_table.hpp"
+#include "tests/ensemble/analysis/ageing/ageing_paths.hpp"
+
+namespace jostle {
+namespace {
+
+using ageing_paths::grid;
+using ageing_paths::Paths;
+
+constexpr double b = 2;
+constexpr double a_inf[] = {1, 3, 2};
+constexpr double tau[] = {20, 100, 500};
+
+// Rows whose A follows eq. 6 at every waiting time, with changes independent at every lag.
+TapRows eq_6_rows(std::uint64_t seed, std::uint32_t realizations, double common_b = b) {
+  RandomStream random = test_stream(seed);
+  TapRows rows{.taps = taps_of(grid), .realizations = realizations, .values = {}};
+  for (const std::uint64_t tap : rows.taps) {
+    const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
+    const double p[] = {a_inf[k] * b / common_b, common_b, tau[k]};
+    const double spread = std::sqrt(Ageing().value(static_cast<double>(lag), p));
+    for (std::uint32_t r = 0; r < realizations; ++r) {
+      rows.values.push_back(10 + spread * noise(random));
+    }
+  }
+  return rows;
+}
+
+// All numbers of a table, as bits: NaN are equal to themselves.
+std::vector<std::uint64_t> numbers(const Table& table) {
+  std::vector<std::uint64_t> bits;
+  for (const Quantity& quantity : table.quantities) {
+    if (const auto* values = std::get_if<std::vector<double>>(&quantity.values)) {
+      for (const double value : *values) bits.push_back(std::bit_cast<std::uint64_t>(value));
+    }
+  }
+  return bits;
+}
+
+const ObservableLabel height = {"mean_height", "diameter", "mean height", ""};
+
+double scalar(const Table& table, const std::string& name) {
+  for (const Quantity& quantity : table.quantities) {
+    if (quantity.name == name) return std::get<std::vector<double>>(quantity.values).at(0);
+  }
+  FAIL("no quantity " << name);
+  return 0;
+}
+
+// ln of what was found, by its own error.
+void check(const LogEstimate& found, double exact) {
+  CAPTURE(found.value, found.error, exact);
+  CHECK(std::abs(std::log(found.value / exact)) <= 3 * found.error / found.value);
+}
+
+std::string note(const Table& table, const std::string& name) {
+  for (const auto& [key, text] : table.notes) {
+    if (key == name) return text;
+  }
+  FAIL("no note " << name);
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("Fits of eq. 6 find the laws that made the curves, apart and with one B",
+          "[statistics]") {
+  const AgeingFits fits = fit_ageing(eq_6_rows(1, 400), grid);
+  CHECK(fits.realizations == 400);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const AgeingLaw& law : {fits.own[k], fits.shared[k]}) {
+      CAPTURE(k, law.verdict);
+      check(law.a_inf, a_inf[k]);
+      check(law.b, b);
+      check(law.tau, tau[k]);
+      CHECK(law.misfit < 0.14);  // errors of a point are sqrt(2/400) of it
+    }
+    CHECK(fits.shared[k].is_determined());
+    CHECK(fits.shared[k].b.value == fits.shared[0].b.value);
+    CHECK(fits.shared[k].tau.error / fits.shared[k].tau.value <
+          fits.own[k].tau.error / fits.own[k].tau.value);
+  }
+}
+
+TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]") {
+  const Table table = ageing_table("ageing", height, eq_6_rows(2, 100), grid);
+  CHECK(scalar(table, "collapse_relative") < 0.3);
+  CHECK(scalar(table, "unscaled_collapse_relative") > 0.5);
+  CHECK(scalar(table, "collapse_p") >= 0.005);
+  CHECK(scalar(table, "ageing_p") < 0.05);
+  CHECK(scalar(table, "ageing_factor_high_95") < 1);
+  CHECK(note(table, "ageing_verdict").starts_with("a changes with age"));
+  CHECK(note(table, "collapse_verdict").find("p = ") != std::string::npos);
+}
+
+TEST_CASE("Errors of scaled curves include those of their scales", "[statistics]") {
+  const TapRows rows = eq_6_rows(8, 100);
+  const AgeingFits fits = fit_ageing(rows, grid);
+  const AgeingCurves curves = ageing_curves(rows, grid);
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Of one lag: its own error and those of the scales, a slope of 1 at most, add up or cancel.
+    const auto relative = [](const LogEstimate& x) { return x.error / x.value; };
+    const std::size_t i = curves.at(k, 20);
+    const double point = relative(curves.a[i]);
+    const double scales = relative(fits.shared[k].a_inf) + relative(fits.shared[k].tau);
+    CAPTURE(k, scales, point, fits.scaled_error[i]);
+    CHECK(fits.scaled_error[i] > 0.5 * point);
+    CHECK(fits.scaled_error[i] != Approx(point).epsilon(1e-3));
+    CHECK(fits.scaled_error[i] < point + scales);
+  }
+}
+
+TEST_CASE("Where B has no limit it is held, and curves keep their scales", "[statistics]") {
+  const TapRows rows = eq_6_rows(7, 100, 1e-9);
+  const AgeingFits fits = fit_ageing(rows, grid);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const AgeingLaw& law = fits.shared[k];
+    CAPTURE(k, law.verdict);
+    CHECK(law.verdict.starts_with("B is not identifiable: the data say only B < "));
+    CHECK(law.verdict.find("it is held at ") != std::string::npos);
+    CHECK(law.b_is_held);
+    CHECK(law.b.low_95 == 0);
+    REQUIRE(law.is_determined());
+    // B is small, so that eq. 6 is the logarithm A_inf B ln(1 + t/tau).
+    CHECK(law.b.value < 0.1);
+    check(law.tau, tau[k]);
+  }
+  // Its value is not stored, nor errors of the scales.
+  const Table table = ageing_table("ageing", height, rows, grid);
+  CHECK(std::isnan(scalar(table, "shared_b")));
+  CHECK(std::isnan(scalar(table, "shared_tau_low_95")));
+  CHECK(scalar(table, "shared_tau") == fits.shared[0].tau.value);
+  CHECK(std::isfinite(scalar(table, "scaled_a_error")));
+}
+
+TEST_CASE("Curves that nothing bounds have no shared law, and nothing is scaled by a runaway") {
+  // Changes whose spread grows with the lag itself: A goes with its square, and never bends.
+  RandomStream random = test_stream(6);
+  TapRows rows{.taps = taps_of(grid), .realizations = 20, .values = {}};
+  for (const std::uint64_t tap : rows.taps) {
+    const auto lag = static_cast<double>(tap % 1000000);
+    for (std::uint32_t r = 0; r < rows.realizations; ++r) {
+      rows.values.push_back(10 + lag * noise(random));
+    }
+  }
+  const AgeingFits fits = fit_ageing(rows, grid);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CAPTURE(k, fits.own[k].verdict, fits.shared[k].verdict);
+    CHECK(fits.own[k].verdict.find("not identifiable") != std::string::npos);
+    CHECK(!fits.own[k].is_determined());
+    CHECK(fits.shared[k].verdict.find("not identifiable") != std::string::npos);
+    CHECK(fits.shared[k].verdict.find("nothing to scale by") != std::string::npos);
+  }
+  const Table table = ageing_table("ageing", height, rows, grid);
+  CHECK(std::isnan(scalar(table, "collapse_relative")));
+  CHECK(std::isfinite(scalar(table, "unscaled_collapse_relative")));
+  for (const Quantity& quantity : table.quantities) {
+    const auto* values = std::get_if<std::vector<double>>(&quantity.values);
+    if (values == nullptr) continue;
+    CAPTURE(quantity.name);
+    const bool of_shared =
+        quantity.name.starts_with("scaled_") ||
+        (quantity.name.starts_with("shared_") && quantity.name != "shared_misfit");
+    for (const double value : *values) {
+      CHECK(!std::isinf(value));  // no overflow and no open end is stored
+      if (of_shared) CHECK(std::isnan(value));
+    }
+  }
+}
+
+TEST_CASE("Ageing tables do not depend on the number of threads") {
+  const TapRows rows = eq_6_rows(3, 12);
+  const auto one = numbers(ageing_table("ageing", height, rows, grid, 1));
+  CHECK(one == numbers(ageing_table("ageing", height, rows, grid, 2)));
+}
+
+TEST_CASE("Too few realizations for a fit are named, with what to do") {
+  TapRows rows = eq_6_rows(4, 4);
+  for (std::uint32_t r = 0; r < 2; ++r) rows.values[rows.values.size() - 1 - r] = std::nan("");
+  const AgeingFits fits = fit_ageing(rows, grid);
+  CHECK(fits.realizations == 2);
+  CHECK(std::isnan(fits.own[0].tau.value));
+  CHECK(fits.shared[2].verdict ==
+        "2 realizations reached every tap asked for: fits need 3, so run more of them, or ask for "
+        "earlier taps");
+  CHECK(fits.collapse.verdict.starts_with("cannot decide: 2 realizations"));
+}
+
+TEST_CASE("A table of ageing has values for all places of its axes") {
+  const Table table = ageing_table("point_0000/ageing/mean_height", height, eq_6_rows(5, 5), grid);
+  const auto length = [](const Quantity& quantity) {
+    return std::visit([](const auto& values) { return values.size(); }, quantity.values);
+  };
+  for (const Quantity& quantity : table.quantities) {
+    std::size_t places = 1;
+    for (const std::string& axis : quantity.axes) {
+      for (const Quantity& known : table.axes) places *= known.name == axis ? length(known) : 1;
+    }
+    CAPTURE(quantity.name);
+    CHECK(length(quantity) == places);
+    CHECK(!quantity.units.empty());
+    CHECK(!quantity.long_name.empty());
+  }
+}
+
+}  // namespace jostle

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "ensemble/analysis/analyses.hpp"
+#include "ensemble/moments.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
+
+// What is said of the slope of a spectrum, where the series are AR(1) and where they are not.
+
+using namespace jostle;
+
+namespace {
+
+double number(const Table& table, const std::string& name) {
+  const auto found = std::ranges::find(table.quantities, name, &Quantity::name);
+  REQUIRE(found != table.quantities.end());
+  return std::get<std::vector<double>>(found->values).at(0);
+}
+
+Table analysed(const std::vector<std::vector<double>>& ensemble, const SpectrumSettings& settings) {
+  const std::uint64_t n_taps = ensemble.front().size();
+  SpectrumAnalysis analysis({.observable = "x", .units = "1", .first_tap = 1, .last_tap = n_taps},
+                            settings);
+  for (const auto& series : ensemble) analysis.add(series);
+  return analysis.table();
+}
+
+void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembles) {
+  fmt::print("{:>3} {:>5} {:>5} | {:>7} {:>9} | {:>13} {:>11}\n", "M", "taps", "rho", "slope",
+             "AR(1)'s", "called other", "1/f, other");
+  for (const std::size_t realizations : all_realizations) {
+    for (const double rho : {0.5, 0.9, 0.99}) {
+      constexpr std::size_t n_taps = 2000;
+      Moments slopes, expected;
+      double other = 0, found = 0;
+      for (std::size_t e = 0; e < ensembles; ++e) {
+        std::vector<std::vector<double>> ensemble, mixture;
+        for (std::size_t r = 0; r < realizations; ++r) {
+          ensemble.push_back(synthetic::autoregressive(rho, n_taps, 20261125 + e, r));
+          // Memories from 1 to 100 taps in equal shares: about 1/f.
+          mixture.emplace_back(n_taps, 0.0);
+          for (int k = 0; k < 5; ++k) {
+            const double time = std::pow(10.0, 0.5 * k), own = (2 * time - 1) / (2 * time + 1);
+            const auto part = synthetic::autoregressive(own, n_taps, 20261126 + e, 100 * r + k);
+            for (std::size_t t = 0; t < n_taps; ++t) {
+              mixture.back()[t] += part[t] * std::sqrt(1 - own * own);
+            }
+          }
+        }
+        const Table table = analysed(ensemble, {});
+        slopes.add(number(table, "slope"));
+        expected.add(number(table, "ar1_slope"));
+        other += number(table, "ar1_slope_p") < 0.05;
+        found += number(analysed(mixture, {}), "ar1_slope_p") < 0.05;
+      }
+      const double share = other / static_cast<double>(ensembles);
+      fmt::print("{:>3} {:>5} {:>5} | {:>7.3f} {:>9.3f} | {:>12.1f}% {:>10.1f}%\n", realizations,
+                 n_taps, rho, slopes.mean(), expected.mean(), 100 * share,
+                 100 * found / static_cast<double>(ensembles));
+      CAPTURE(realizations, rho);
+      CHECK(share <= 0.05 + 3 * std::sqrt(0.05 * 0.95 / static_cast<double>(ensembles)));
+      CHECK(std::abs(slopes.mean() - expected.mean()) < 0.05);
+    }
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+TEST_CASE("A slope that memory alone gives is called other at the level of the test",
+          "[statistics]") {
+  check({1, 3}, 100);
+}
+
+TEST_CASE("Slopes of AR(1) ensembles are told from others as verdicts say", "[nightly]") {
+  check({1, 2, 3, 4, 10, 20}, 400);
+}
+
+TEST_CASE("The expected slope of AR(1) is the mean of measured ones, as steep as a paper's",
+          "[statistics]") {
+  // The pipeline of the reduced fig. 3: 1500 taps, two realizations, linear detrending.
+  const SpectrumSettings settings{.detrending = Detrending::linear};
+  for (const double time : {100.0, 200.0}) {
+    const double rho = (2 * time - 1) / (2 * time + 1);
+    SpectrumAverage average(1500, spectrum_options(settings, 1500));
+    for (std::uint64_t r = 0; r < 100; ++r) {
+      average.add(synthetic::autoregressive(rho, 1500, 20261127, r));
+    }
+    const LogLogSlope slope = average.slope({});
+    const double expected = average.autoregressive_slope(time, {});
+    fmt::print("AR(1) of {} taps in the band of fig. 3: slope {:.3f} +- {:.3f}, expected {:.3f}\n",
+               time, slope.slope, slope.error, expected);
+    CHECK(std::abs(slope.slope - expected) < 3 * slope.error + 0.01);
+    CHECK(expected < -1.5);
+  }
+}

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "ensemble/analysis/steady_state.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
+
+// What the verdicts on steady states are worth: series without memory and AR(1), whose truth is
+// known, in ensembles and lengths as users have them.
+
+using namespace jostle;
+
+namespace {
+
+struct Setting {
+  std::size_t realizations, n_taps;
+  double rho;
+};
+
+/// Of `ensembles` steady ones, and of the same with a drift added.
+struct Counts {
+  std::size_t ensembles = 0;
+  std::size_t false_alarms = 0, reached = 0;           // steady
+  std::size_t found_1 = 0, reached_1 = 0;              // a drift of one deviation of single taps
+  std::size_t with_test = 0, found_at_detectable = 0;  // one of the size that should be found
+  double detectable = 0;                               // mean, in deviations; of those with a test
+};
+
+SteadyState judged(const std::vector<std::vector<double>>& ensemble, double drift) {
+  SteadyStateTest test;
+  for (const auto& series : ensemble) test.add(synthetic::with_ramp(series, drift));
+  return test.result();
+}
+
+Counts calibrated(const Setting& setting, std::size_t ensembles) {
+  const double sigma = 1 / std::sqrt(1 - setting.rho * setting.rho);
+  Counts counts{.ensembles = ensembles};
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    std::vector<std::vector<double>> ensemble;
+    for (std::size_t r = 0; r < setting.realizations; ++r) {
+      ensemble.push_back(synthetic::autoregressive(setting.rho, setting.n_taps, 20261122 + e, r));
+    }
+    const SteadyState steady = judged(ensemble, 0), one = judged(ensemble, sigma);
+    counts.false_alarms += steady.verdict() == Verdict::not_reached;
+    counts.reached += steady.verdict() == Verdict::reached;
+    counts.found_1 += one.verdict() == Verdict::not_reached;
+    counts.reached_1 += one.verdict() == Verdict::reached;
+    if (steady.trend.tests == 0) continue;
+    ++counts.with_test;
+    counts.detectable += steady.trend.detectable / sigma;
+    counts.found_at_detectable +=
+        judged(ensemble, steady.trend.detectable).verdict() == Verdict::not_reached;
+  }
+  return counts;
+}
+
+double deviation(double share, std::size_t n) {
+  return std::sqrt(share * (1 - share) / static_cast<double>(n));
+}
+
+void check(const std::vector<Setting>& settings, std::size_t ensembles) {
+  fmt::print("{:>3} {:>5} {:>5} | {:^21} | {:^21} | {:^26}\n", "M", "taps", "rho", "steady",
+             "drift of 1 sigma", "detectable drift");
+  fmt::print("{:>15} | {:>10} {:>10} | {:>10} {:>10} | {:>7} {:>7} {:>10}\n", "", "found",
+             "reached", "found", "reached", "tested", "sigmas", "found");
+  for (const Setting& setting : settings) {
+    const Counts counts = calibrated(setting, ensembles);
+    const auto share = [&](std::size_t n, std::size_t of) {
+      return of == 0 ? std::nan("") : static_cast<double>(n) / static_cast<double>(of);
+    };
+    const double alarms = share(counts.false_alarms, ensembles);
+    const double reached_1 = share(counts.reached_1, ensembles);
+    const double found = share(counts.found_at_detectable, counts.with_test);
+    fmt::print(
+        "{:>3} {:>5} {:>5} | {:>9.1f}% {:>9.1f}% | {:>9.1f}% {:>9.1f}% | {:>6.0f}% {:>7.2f} "
+        "{:>9.1f}%\n",
+        setting.realizations, setting.n_taps, setting.rho, 100 * alarms,
+        100 * share(counts.reached, ensembles), 100 * share(counts.found_1, ensembles),
+        100 * reached_1, 100 * share(counts.with_test, ensembles),
+        counts.detectable / static_cast<double>(counts.with_test), 100 * found);
+    CAPTURE(setting.realizations, setting.n_taps, setting.rho);
+    CHECK(alarms <= Trend::level + 3 * deviation(Trend::level, ensembles));
+    // "Reached" where a drift of one deviation would have been found with 80 %.
+    CHECK(reached_1 <= 0.2 + 3 * deviation(0.2, ensembles));
+    if (counts.with_test > 20) CHECK(found >= 0.8 - 3 * deviation(0.8, counts.with_test));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+TEST_CASE("Drifts are found, and steady states reached, as often as the verdicts say",
+          "[statistics]") {
+  std::vector<Setting> settings;
+  for (const std::size_t realizations : {1, 2, 3, 10}) {
+    for (const double rho : {0.0, 0.9, 0.99}) settings.push_back({realizations, 300, rho});
+  }
+  settings.push_back({3, 2000, 0.9});
+  check(settings, 200);
+}
+
+TEST_CASE("Drifts are found as often as verdicts say, for every ensemble and length", "[nightly]") {
+  std::vector<Setting> settings;
+  for (const std::size_t realizations : {1, 2, 3, 4, 10, 20}) {
+    for (const std::size_t n_taps : {300, 1000, 4000}) {
+      for (const double rho : {0.0, 0.5, 0.9, 0.97, 0.99})
+        settings.push_back({realizations, n_taps, rho});
+    }
+  }
+  check(settings, 500);
+}

@@ -1,0 +1,202 @@
+#include "ensemble/analysis/structure_tables.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "fitting/models/models.hpp"
+#include "structure/density/gradient.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const Quantity& quantity(const Table& table, const std::string& name) {
+  for (const Quantity& one : table.quantities) {
+    if (one.name == name) return one;
+  }
+  FAIL("no " << name);
+  return table.quantities.front();
+}
+
+const std::vector<double>& numbers(const Table& table, const std::string& name) {
+  return std::get<std::vector<double>>(quantity(table, name).values);
+}
+
+/// Heights of 1, 2, .. and a value at each, and one single value.
+Measurement measurement(const std::vector<double>& along, double value) {
+  Measurement one{.part = "layers"};
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < along.size(); ++k) heights.push_back(static_cast<double>(k + 1));
+  one.places = {{"height", heights, "diameter", "height"}};
+  one.quantities = {
+      {.name = "n", .places = "height", .values = along, .long_name = "ends in nothing"},
+      {.name = "share",
+       .places = "height",
+       .values = along,
+       .long_name = "ends in no value",
+       .beyond = nan},
+      {.name = "lateral", .values = {value}, .long_name = "one value", .with_change = true}};
+  return one;
+}
+
+/// Realizations whose curve of `part` is `curve` times 1 + 0.01 (r - 1), r = 0, 1, 2.
+EnsembleStructure three_curves(const char* part, const char* places, const char* name,
+                               const std::vector<double>& at, const std::vector<double>& curve,
+                               const char* counted = nullptr, double number = 0) {
+  EnsembleStructure structure{.taps = {0}, .packings = {{}}};
+  for (int r = 0; r < 3; ++r) {
+    Measurement one{.part = part};
+    one.places = {{places, at, "1", "places"}};
+    std::vector<double> values = curve;
+    for (double& value : values) value *= 1 + 0.01 * (r - 1);
+    one.quantities = {{.name = name, .places = places, .values = values, .long_name = "a curve"}};
+    if (counted != nullptr) one.quantities.push_back({.name = counted, .values = {number}});
+    structure.packings[0].push_back({one});
+  }
+  return structure;
+}
+
+}  // namespace
+
+TEST_CASE("Averages over packings of unequal height, with the errors of realizations") {
+  EnsembleStructure structure;
+  structure.taps = {0, 10};
+  structure.packings = {{{measurement({1, 2, 3}, 5)}, {measurement({3, 6}, 7)}, {}},
+                        {{measurement({1}, 6)}, {measurement({2}, 11)}, {measurement({3}, 1)}}};
+  const std::vector<Table> tables = structure_tables("p/", structure, {});
+  REQUIRE(tables.size() == 1);
+  const Table& table = tables[0];
+  CHECK(table.name == "p/layers");
+  REQUIRE(table.axes.size() == 2);
+  CHECK(table.axes[0].name == "tap");
+  CHECK(std::get<std::vector<double>>(table.axes[1].values) == std::vector<double>{1, 2, 3});
+  CHECK(quantity(table, "n").axes == std::vector<std::string>{"tap", "height"});
+  CHECK(std::get<std::vector<std::uint64_t>>(quantity(table, "realizations").values) ==
+        std::vector<std::uint64_t>{2, 3});
+  CHECK(numbers(table, "n") == std::vector<double>{2, 4, 1.5, 2, 0, 0});
+  const std::vector<double>& share = numbers(table, "share");
+  CHECK(share[1] == 4);
+  CHECK(share[2] == 3);  // of the one packing that is so high
+  CHECK(share[3] == 2);
+  CHECK(std::isnan(share[4]));
+  // Of 1 and 3: deviation sqrt 2, over sqrt 2; of 1, 2 and 3: 1 over sqrt 3; of one value: none.
+  CHECK(numbers(table, "n_error")[0] == Approx(1).epsilon(1e-14));
+  CHECK(numbers(table, "n_error")[3] == Approx(1 / std::sqrt(3.0)).epsilon(1e-14));
+  CHECK(std::isnan(numbers(table, "share_error")[2]));
+  // Changes by realization: 1 and 4; the third has no start.
+  CHECK(numbers(table, "lateral_change") == std::vector<double>{0, 2.5});
+  CHECK(numbers(table, "lateral_change_error")[1] == Approx(1.5).epsilon(1e-14));
+  CHECK(quantity(table, "lateral_change").long_name == "one value, change since tap 0");
+}
+
+TEST_CASE("A part that all packings refuse says why, and others speak for those that do not") {
+  Measurement refused{.part = "layers", .refused = "no floor"};
+  EnsembleStructure structure{.taps = {0}, .packings = {{{refused}, {refused}}}};
+  Table table = structure_tables("", structure, {}).at(0);
+  CHECK(table.quantities.empty());
+  REQUIRE(table.notes.size() == 1);
+  CHECK(table.notes[0] == std::pair<std::string, std::string>{"refused", "no floor"});
+  structure.packings[0].push_back({measurement({1}, 2)});
+  table = structure_tables("", structure, {}).at(0);
+  CHECK(table.notes.at(0).first == "refused_by_some");
+  CHECK(numbers(table, "n") == std::vector<double>{1});
+  CHECK(structure_tables("", {.taps = {0}, .packings = {{{}}}}, {}).empty());
+}
+
+TEST_CASE("The laws of the papers are found in curves and counts, with jackknife errors") {
+  const StructureSettings settings = all_structure();
+  std::vector<double> at, curve;
+  for (int k = 0; k < 160; ++k) {
+    at.push_back(0.05 + 0.1 * k);
+    const double in_radii = 2 * at.back();
+    const double truth[] = {0.61, 0.001, 2, 24};
+    // Below the range of the law stands something else.
+    curve.push_back(at.back() < GradientRange{}.low ? 0.1
+                                                    : DensityProfile().value(in_radii, truth));
+  }
+  Table table =
+      structure_tables("", three_curves("profile", "height", "phi", at, curve), settings).at(0);
+  CHECK(std::get<std::vector<std::string>>(quantity(table, "eq7_status").values)[0] == "converged");
+  CHECK(numbers(table, "eq7_phi_0")[0] == Approx(0.61).epsilon(1e-7));
+  CHECK(numbers(table, "eq7_alpha")[0] == Approx(0.001).epsilon(1e-5));
+  CHECK(numbers(table, "eq7_z_star")[0] == Approx(24).epsilon(1e-7));
+  // Curves that differ by a factor: so do Phi_0 and alpha, and z* not at all.
+  CHECK(numbers(table, "eq7_phi_0_error")[0] == Approx(0.61 * 0.01 / std::sqrt(3.0)).epsilon(1e-4));
+  CHECK(numbers(table, "eq7_z_star_error")[0] < 1e-6);
+
+  // The expected counts of an exponential tail; below the tail stands something else.
+  std::vector<double> xi, rho;
+  for (int k = 0; k < 75; ++k) {
+    const double low = std::pow(0.02 * k, 3), high = std::pow(0.02 * (k + 1), 3);
+    xi.push_back(0.01 + 0.02 * k);
+    const double v = xi.back() * xi.back() * xi.back();
+    const double tail = 4e4 * 0.08 * (std::exp(-low / 0.08) - std::exp(-high / 0.08));
+    rho.push_back(v < 0.15 ? 1 : tail / 0.02);
+  }
+  table = structure_tables("", three_curves("pores", "xi", "rho_xi", xi, rho), settings).at(0);
+  CHECK(numbers(table, "tail_v0")[0] == Approx(0.08).epsilon(1e-7));
+  CHECK(numbers(table, "tail_a")[0] == Approx(4e4).epsilon(1e-6));
+  const double error = 400 / std::sqrt(3.0);
+  CHECK(numbers(table, "tail_a_error")[0] == Approx(error).epsilon(1e-6));
+  // Student's t of 2 degrees of freedom.
+  CHECK(numbers(table, "tail_a_low_95")[0] == Approx(4e4 - 4.30265 * error).epsilon(1e-6));
+  CHECK(numbers(table, "tail_a_high_95")[0] == Approx(4e4 + 4.30265 * error).epsilon(1e-6));
+  CHECK(numbers(table, "tail_p")[0] > 0.99);
+  CHECK(std::get<std::vector<std::string>>(quantity(table, "tail_status").values)[0].find(
+            "the law is not refuted: F test over ") == 0);
+
+  std::vector<double> free, density;
+  for (int k = 0; k < 100; ++k) {
+    free.push_back(0.01 + 0.02 * k);
+    const double t = free.back() - least_free_volume;
+    const double truth[] = {1, 0.4, 14};
+    density.push_back(t > 0 ? KGamma().value(t, truth) : 0);
+  }
+  EnsembleStructure cells =
+      three_curves("voronoi", "free_volume", "free_volume_density", free, density, "n_cells", 4000);
+  table = structure_tables("", cells, settings).at(0);
+  // The density at the middle of a bin is that of the bin to second order in its width.
+  CHECK(numbers(table, "k_gamma_k")[0] == Approx(14).epsilon(0.01));
+  CHECK(numbers(table, "k_gamma_mean")[0] == Approx(0.4).epsilon(1e-4));
+  CHECK(std::get<std::vector<std::string>>(quantity(table, "normal_status").values)[0] ==
+        "no packing");
+
+  std::vector<double> faces, shares;
+  for (int k = 0; k < 20; ++k) {
+    const double truth[] = {1, 13.9, 1.5};
+    faces.push_back(k);
+    shares.push_back(Normal().value(k, truth));
+  }
+  table = structure_tables(
+              "", three_curves("voronoi", "faces", "face_share", faces, shares, "n_cells", 4000),
+              settings)
+              .at(0);
+  CHECK(numbers(table, "normal_mean")[0] == Approx(13.9).epsilon(1e-4));
+  CHECK(numbers(table, "normal_width")[0] == Approx(1.5).epsilon(1e-3));
+}
+
+TEST_CASE("What is no curve of a law is not fitted, and says why") {
+  const StructureSettings settings = all_structure();
+  const auto status = [&](const EnsembleStructure& structure, const std::string& name) {
+    const Table table = structure_tables("", structure, settings).at(0);
+    CHECK(std::isnan(numbers(table, name)[0]));
+    const std::string prefix = name.substr(0, name.rfind('_'));
+    return std::get<std::vector<std::string>>(quantity(table, prefix + "_status").values)[0];
+  };
+  // All cells of a perfect crystal have twelve faces; a region with a single pore.
+  std::vector<double> faces(13, 0.0), at(13);
+  for (int k = 0; k < 13; ++k) at[k] = k;
+  faces[12] = 1;
+  CHECK(status(three_curves("voronoi", "faces", "face_share", at, faces, "n_cells", 1000),
+               "normal_mean") == "too few places that hold anything");
+  std::vector<double> rho(75, 0.0), xi(75);
+  for (int k = 0; k < 75; ++k) xi[k] = 0.01 + 0.02 * k;
+  rho[30] = 80;
+  CHECK(status(three_curves("pores", "xi", "rho_xi", xi, rho), "tail_v0") ==
+        "too few places that hold anything");
+}
+
+}  // namespace jostle

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "ensemble/analysis/sweep_curve.hpp"
+#include "fitting/intervals/distributions.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
+
+// What is said of sweep curves whose truth is known: noise of M realizations on nothing, on a
+// bell, on a line.
+
+using namespace jostle;
+
+namespace {
+
+struct Setting {
+  std::size_t points, realizations;
+  Streams streams;
+};
+
+/// Curves that hold the truth, or find what there is.
+struct Counts {
+  double maximum_of_flat = 0, maximum_of_plateau = 0;
+  double maximum_of_bell = 0, place_95 = 0, place_68 = 0;  // the places: of the maxima found
+  double slope_68 = 0, slope_95 = 0, straight = 0, difference = 0;
+};
+
+double at(const Setting& setting, std::size_t point) {
+  return 0.1 + 0.4 * static_cast<double>(point) / static_cast<double>(setting.points - 1);
+}
+
+/// Noise of deviation 1; with matched streams on a level of each realization that is twice as far.
+template <class Law>
+SweepCurve curve_of(const Setting& setting, std::size_t ensemble, const Law& law) {
+  const auto code = setting.points * 100 + setting.realizations * 2;
+  const bool matched = setting.streams == Streams::matched;
+  synthetic::Gaussian gaussian(20261123 + ensemble, code + (matched ? 1 : 0));
+  std::vector<double> x, level;
+  std::vector<std::vector<double>> values(setting.points);
+  for (std::size_t r = 0; r < setting.realizations; ++r)
+    level.push_back(matched ? 2 * gaussian() : 0);
+  for (std::size_t i = 0; i < setting.points; ++i) {
+    x.push_back(at(setting, i));
+    for (const double own : level) values[i].push_back(law(x.back()) + own + gaussian());
+  }
+  return {x, values, setting.streams};
+}
+
+bool holds(double truth, double value, const ErrorOf& error, double level) {
+  return std::abs(value - truth) <= error.error * student_two_sided(level, error.dof);
+}
+
+bool differs(const SweepCurve& curve) {
+  for (const SweepDifference& one : differences(curve, std::nullopt)) {
+    if (one.corrected < 0.05) return true;
+  }
+  return false;
+}
+
+Counts calibrated(const Setting& setting, std::size_t ensembles) {
+  Counts counts;
+  const double one = 1 / static_cast<double>(ensembles);
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    const SweepCurve flat = curve_of(setting, e, [](double) { return 0; });
+    counts.maximum_of_flat += one * maximum(flat).found();
+    counts.difference += one * differs(flat);
+    const SweepCurve plateau =
+        curve_of(setting, e, [](double x) { return -20 * std::exp(-10 * (x - 0.1)); });
+    counts.maximum_of_plateau += one * maximum(plateau).found();
+    const SweepMaximum top =
+        maximum(curve_of(setting, e, [](double x) { return -300 * (x - 0.3) * (x - 0.3); }));
+    if (top.found()) {
+      ++counts.maximum_of_bell;
+      counts.place_68 += holds(0.3, top.x, top.x_error, 0.6827);
+      counts.place_95 += !(top.x_low > 0.3) && !(top.x_high < 0.3);
+    }
+    const StraightLine line = straight_line(curve_of(setting, e, [](double x) { return 5 * x; }));
+    counts.slope_68 += one * holds(5, line.slope, line.slope_error, 0.6827);
+    counts.slope_95 += one * holds(5, line.slope, line.slope_error, 0.95);
+    counts.straight += one * (line.p < 0.05);
+  }
+  counts.place_68 /= counts.maximum_of_bell;
+  counts.place_95 /= counts.maximum_of_bell;
+  counts.maximum_of_bell *= one;
+  return counts;
+}
+
+void check(const std::vector<std::size_t>& points, const std::vector<std::size_t>& realizations,
+           std::size_t ensembles) {
+  fmt::print("{:>6} {:>3} {:>8} | {:^15} | {:^20} | {:^20} | {:>6}\n", "points", "M", "streams",
+             "maximum of", "bell", "line", "pairs");
+  fmt::print("{:>19} | {:>7} {:>7} | {:>6} {:>6} {:>6} | {:>6} {:>6} {:>6} | {:>6}\n", "", "flat",
+             "rising", "found", "68 %", "95 %", "68 %", "95 %", "F 5 %", "5 %");
+  for (const std::size_t n : points) {
+    for (const std::size_t m : realizations) {
+      for (const Streams streams : {Streams::independent, Streams::matched}) {
+        const Counts counts = calibrated({n, m, streams}, ensembles);
+        const bool matched = streams == Streams::matched;
+        fmt::print(
+            "{:>6} {:>3} {:>8} | {:>6.1f}% {:>6.1f}% | {:>5.1f}% {:>5.1f}% {:>5.1f}% | {:>5.1f}% "
+            "{:>5.1f}% {:>5.1f}% | {:>5.1f}%\n",
+            n, m, matched ? "matched" : "indep.", 100 * counts.maximum_of_flat,
+            100 * counts.maximum_of_plateau, 100 * counts.maximum_of_bell, 100 * counts.place_68,
+            100 * counts.place_95, 100 * counts.slope_68, 100 * counts.slope_95,
+            100 * counts.straight, 100 * counts.difference);
+        CAPTURE(n, m, matched);
+        const double of_5 = 3 * std::sqrt(0.05 * 0.95 / static_cast<double>(ensembles));
+        const double of_68 = 3 * std::sqrt(0.68 * 0.32 / static_cast<double>(ensembles));
+        CHECK(counts.maximum_of_flat <= 0.05 + of_5);
+        CHECK(counts.maximum_of_plateau <= 0.05 + of_5);
+        CHECK(counts.difference <= 0.05 + of_5);
+        CHECK(std::abs(counts.straight - 0.05) <= of_5);
+        CHECK(std::abs(counts.slope_95 - 0.95) <= of_5);
+        CHECK(std::abs(counts.slope_68 - 0.6827) <= of_68);
+        const double found = counts.maximum_of_bell * static_cast<double>(ensembles);
+        if (found < 20) continue;  // too few places to count
+        CHECK(std::abs(counts.place_95 - 0.95) <= 3 * std::sqrt(0.05 * 0.95 / found));
+        CHECK(std::abs(counts.place_68 - 0.6827) <= 3 * std::sqrt(0.68 * 0.32 / found));
+      }
+    }
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+TEST_CASE("A maximum is found where there is one, and lines hold the truth, as often as they say",
+          "[statistics]") {
+  check({5, 7}, {2, 3, 10}, 200);
+}
+
+TEST_CASE("Maxima, lines and differences are calibrated for every ensemble", "[nightly]") {
+  check({5, 7, 9}, {2, 3, 4, 10, 20}, 1000);
+}

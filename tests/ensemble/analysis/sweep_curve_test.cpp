@@ -1,0 +1,251 @@
+#include "ensemble/analysis/sweep_curve.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "ensemble/moments.hpp"
+#include "tests/ensemble/noise.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::vector<ErrorOf> known(const std::vector<double>& errors) {
+  std::vector<ErrorOf> all;
+  for (const double error : errors) all.push_back({error, infinite});
+  return all;
+}
+
+const std::vector<double> strengths = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3};
+
+// A bell with its maximum of 0.6 at 0.17.
+double bell(double x) {
+  return 0.6 - 2 * (x - 0.17) * (x - 0.17);
+}
+
+std::vector<std::vector<double>> noisy_bell(std::uint64_t seed, std::size_t realizations,
+                                            double spread) {
+  RandomStream random = test_stream(seed);
+  std::vector<std::vector<double>> values;
+  for (const double x : strengths) {
+    values.emplace_back();
+    for (std::size_t r = 0; r < realizations; ++r) {
+      values.back().push_back(bell(x) + spread * noise(random));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("The maximum of a parabola is found exactly, its points in any order") {
+  std::vector<double> x = {0.3, 0.05, 0.1, 0.2, 0.15, 0.24}, y;
+  for (const double at : x) y.push_back(bell(at));
+  x.push_back(0.12);
+  y.push_back(none);  // dropped
+  const SweepCurve curve(x, y, known(std::vector<double>(x.size(), 1e-6)));
+  CHECK(curve.n_points() == 6);
+  for (const std::size_t points : {3, 5, 50}) {
+    const SweepMaximum top = maximum(curve, points);
+    CHECK(top.points == std::min<std::size_t>(points, 6));
+    CHECK(top.x == Approx(0.17).epsilon(1e-11));
+    CHECK(top.y == Approx(0.6).epsilon(1e-13));
+    CHECK(top.p < 1e-9);
+    CHECK(top.verdict.starts_with("found inside the sweep"));
+  }
+}
+
+TEST_CASE("Errors of a maximum are the scatter of maxima", "[statistics]") {
+  constexpr int ensembles = 300;
+  const double spread = 0.002;
+  const std::size_t realizations = GENERATE(2, 20);
+  Moments at, height;
+  Moments squared_error_at, squared_error_height;
+  for (int i = 0; i < ensembles; ++i) {
+    const SweepMaximum top = maximum(
+        SweepCurve(strengths, noisy_bell(static_cast<std::uint64_t>(100 + i), realizations, spread),
+                   Streams::independent));
+    if (!top.found()) continue;
+    at.add(top.x);
+    height.add(top.y);
+    squared_error_at.add(top.x_error.error * top.x_error.error);
+    squared_error_height.add(top.y_error.error * top.y_error.error);
+    CHECK(top.x_low < top.x);
+    CHECK(top.x < top.x_high);
+  }
+  // A bell this clear is seldom missed, even by two realizations: those found stand for all.
+  CHECK(at.count() >= 0.9 * ensembles);
+  // Scatter is known to 1/sqrt(2 * 300) = 4 %.
+  CHECK(std::sqrt(squared_error_at.mean()) == Approx(at.sigma()).epsilon(0.15));
+  CHECK(std::sqrt(squared_error_height.mean()) == Approx(height.sigma()).epsilon(0.15));
+  CHECK(std::abs(at.mean() - 0.17) <= 3 * at.standard_error());
+}
+
+TEST_CASE("With matched streams, what shifts a packing at all points leaves its maximum") {
+  std::vector<std::vector<double>> values;
+  for (const double x : strengths) {
+    values.emplace_back();
+    for (const double shift : {-0.02, 0.01, 0.03, -0.01}) values.back().push_back(bell(x) + shift);
+  }
+  const SweepMaximum matched = maximum(SweepCurve(strengths, values, Streams::matched));
+  CHECK(matched.x == Approx(0.17).epsilon(1e-10));
+  CHECK(matched.x_error.error < 1e-12);
+  Moments shifts;
+  for (const double shift : {-0.02, 0.01, 0.03, -0.01}) shifts.add(shift);
+  CHECK(matched.y_error.error == Approx(shifts.standard_error()).epsilon(1e-10));
+  CHECK(matched.y_error.dof == Approx(3));
+  const SweepMaximum independent = maximum(SweepCurve(strengths, values, Streams::independent));
+  CHECK_FALSE(independent.found());
+  CHECK(independent.verdict.starts_with("cannot decide with 4 realizations: "));
+  CHECK_FALSE(independent.x_error.known());
+}
+
+TEST_CASE("A point with one realization has the error that is pooled over the others") {
+  auto values = noisy_bell(11, 8, 0.002);
+  values.front().resize(1);
+  const SweepCurve curve(strengths, values, Streams::independent);
+  CHECK(curve.pooled().dof == 5 * 7);
+  CHECK_FALSE(curve.error().front().known());
+  CHECK(maximum(curve, 6).x_error.dof == 35);
+  CHECK(straight_line(curve).slope_error.dof == 35);
+  // One packing alone is common to all points of matched streams: nothing is known of its scatter.
+  const SweepMaximum one = maximum(SweepCurve(strengths, values, Streams::matched), 6);
+  CHECK(std::isfinite(one.x));
+  CHECK(std::isnan(one.p));
+  for (auto& realizations : values) realizations.resize(1);
+  const SweepCurve lone(strengths, values, Streams::independent);
+  CHECK(maximum(lone).verdict == "cannot decide: there are no errors to test a maximum by");
+  CHECK(straight_line(lone).slope_error.dof == 4);  // from the scatter about the line
+}
+
+TEST_CASE("No point counts more because its realizations agree by accident") {
+  auto values = noisy_bell(12, 2, 0.002);
+  values[0][1] = values[0][0] + 1e-12;
+  const SweepCurve curve(strengths, values, Streams::independent);
+  CHECK(curve.weights() == std::vector<double>(6, std::sqrt(2.0)));
+  const SweepMaximum top = maximum(curve);
+  CHECK(top.x_error.error > 1e-4);
+  CHECK(top.x_error.dof == 6);
+}
+
+TEST_CASE("What is no maximum is not called one") {
+  const std::vector<double> x = {1, 2, 3, 4, 5};
+  const std::vector<ErrorOf> error = known(std::vector<double>(5, 0.1));
+  const SweepMaximum rising = maximum(SweepCurve(x, {1, 2, 3, 4, 5}, error));
+  CHECK(std::isnan(rising.x));
+  CHECK_FALSE(rising.x_error.known());
+  CHECK(rising.verdict.starts_with("none found: the largest value is at an end of the sweep"));
+  const SweepMaximum flat = maximum(SweepCurve(x, {1, 1.01, 1.02, 1.01, 1}, error));
+  CHECK(flat.p > 0.1);
+  CHECK(flat.verdict.starts_with("cannot decide: chance alone"));
+  CHECK(maximum(SweepCurve({1, 2}, {1, 2}, known({1, 1}))).verdict ==
+        "cannot decide: fewer than three different strengths");
+  CHECK(maximum(SweepCurve(x, {1, 2, 3, 2, 1}, std::vector<ErrorOf>(5))).verdict ==
+        "cannot decide: there are no errors to test a maximum by");
+}
+
+TEST_CASE("Errors of few degrees of freedom are pooled, and count points alike") {
+  std::vector<ErrorOf> error(5, {0.1, 2});
+  error[1].error = 1e-9;
+  const SweepCurve curve({1, 2, 3, 4, 5}, {1, 2, 3, 2, 1}, error);
+  CHECK(curve.weights() == std::vector<double>(5, 1.0));
+  CHECK(curve.pooled().dof == 10);
+  CHECK(curve.pooled().error == Approx(0.1 * std::sqrt(0.8)).epsilon(1e-12));
+}
+
+TEST_CASE("Differences of matched streams are taken realization by realization") {
+  const std::vector<double> shifts = {-0.02, 0.01, 0.03};
+  std::vector<std::vector<double>> values(3);
+  for (std::size_t r = 0; r < 3; ++r) {
+    values[0].push_back(0.5 + shifts[r]);
+    values[1].push_back(0.51 + shifts[r] + 0.001 * static_cast<double>(r));
+    values[2].push_back(0.52 + shifts[r]);
+  }
+  values[2].push_back(0.9);  // of a realization that the others have not
+  const SweepCurve matched({1, 2, 3}, values, Streams::matched);
+  const auto neighbours = differences(matched, std::nullopt);
+  REQUIRE(neighbours.size() == 2);
+  CHECK(neighbours[0].value == Approx(0.011));
+  CHECK(neighbours[0].error.error == Approx(0.001 / std::sqrt(3.0)));
+  CHECK(neighbours[0].error.dof == 2);
+  CHECK(neighbours[1].value == Approx(0.009));
+  CHECK(neighbours[1].pairs == 3);
+  CHECK(neighbours[0].p == Approx(p_value(0.011, {0.001 / std::sqrt(3.0), 2})).epsilon(1e-9));
+  CHECK(neighbours[0].corrected == Approx(2 * neighbours[0].p));
+  CHECK(neighbours[1].p < neighbours[0].corrected);  // Holm's p-values keep the order
+  CHECK(neighbours[1].corrected == neighbours[0].corrected);
+
+  const auto of_last = differences(SweepCurve({1, 2, 3}, values, Streams::independent), 2);
+  REQUIRE(of_last.size() == 2);
+  CHECK(of_last[1].from == 2);
+  CHECK(of_last[1].to == 1);
+  // Welch's test, of three and of four.
+  Moments few, more;
+  for (const double value : values[1]) few.add(value);
+  for (const double value : values[2]) more.add(value);
+  CHECK(of_last[1].value == Approx(few.mean() - more.mean()));
+  CHECK(of_last[1].error.error ==
+        Approx(std::hypot(few.standard_error(), more.standard_error())).epsilon(1e-12));
+  CHECK(of_last[1].error.dof > 2);
+  CHECK(of_last[1].error.dof < 5);
+}
+
+TEST_CASE("A straight line is that of least squares, with the textbook's errors") {
+  const std::vector<double> x = {1, 2, 4, 5};
+  const StraightLine exact =
+      straight_line(SweepCurve(x, {5, 8, 14, 17}, known({0.5, 0.5, 0.5, 0.5})));
+  CHECK(exact.intercept == Approx(2).epsilon(1e-13));
+  CHECK(exact.slope == Approx(3).epsilon(1e-13));
+  // Sum of (x - 3)^2 is 10.
+  CHECK(exact.slope_error.error == Approx(0.5 / std::sqrt(10.0)).epsilon(1e-13));
+  CHECK(exact.intercept_error.error == Approx(0.5 * std::sqrt(0.25 + 0.9)).epsilon(1e-13));
+  CHECK(exact.reduced_chi2 < 1e-25);
+  // Residuals 1, -1, -1, 1 are orthogonal to 1 and x: the variance is 4/2.
+  const StraightLine rough = straight_line(SweepCurve(x, {6, 7, 13, 18}, std::vector<ErrorOf>(4)));
+  CHECK(rough.slope == Approx(3).epsilon(1e-13));
+  CHECK(rough.slope_error.error == Approx(std::sqrt(0.2)).epsilon(1e-13));
+  CHECK(std::isnan(rough.reduced_chi2));
+  CHECK(std::isnan(straight_line(SweepCurve({1, 1}, {1, 2}, known({1, 1}))).slope));
+}
+
+TEST_CASE("Points count by their errors") {
+  // The third point hardly counts: the line goes through the other two.
+  const StraightLine line =
+      straight_line(SweepCurve({0, 1, 2}, {0, 1, 9}, known({1e-6, 1e-6, 1e6})));
+  CHECK(line.slope == Approx(1).epsilon(1e-9));
+}
+
+TEST_CASE("Many realizations give a line the errors of its points", "[statistics]") {
+  const SweepCurve curve(strengths, noisy_bell(7, 200, 0.01), Streams::independent);
+  const StraightLine line = straight_line(curve);
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    const double from_middle = strengths[i] - 0.175;
+    squares += from_middle * from_middle;
+    sum += std::pow(from_middle * curve.error()[i].error, 2);
+  }
+  CHECK(line.slope_error.error == Approx(std::sqrt(sum) / squares).epsilon(1e-9));
+  CHECK(line.slope_error.dof > 200);
+  CHECK(line.p < 1e-6);  // a bell is no line
+}
+
+TEST_CASE("A table of a sweep holds the curve, its maximum and its line") {
+  const SweepCurve curve(strengths, noisy_bell(8, 5, 0.001), Streams::independent);
+  const Table table =
+      sweep_table("sweep/bulk_fraction", {"sqrt_epsilon", "1", "square root of the dilation"},
+                  {"bulk_fraction", "1", "bulk packing fraction", ""}, curve);
+  CHECK(table.axes.at(0).name == "sqrt_epsilon");
+  CHECK(std::get<std::vector<double>>(table.axes[0].values) == strengths);
+  for (const Quantity& quantity : table.quantities) {
+    CAPTURE(quantity.name);
+    const std::size_t pairs = strengths.size() - 1;
+    const bool along_pairs = !quantity.axes.empty() && quantity.axes[0] == "pair";
+    const std::size_t n = quantity.axes.empty() ? 1 : along_pairs ? pairs : strengths.size();
+    CHECK(std::visit([](const auto& values) { return values.size(); }, quantity.values) == n);
+    CHECK(!quantity.long_name.empty());
+  }
+}
+
+}  // namespace jostle

@@ -1,0 +1,111 @@
+#include "ensemble/statistics/trend.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "ensemble/moments.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
+
+using namespace jostle;
+
+namespace {
+
+Trend trend_of(const std::vector<std::vector<double>>& ensemble) {
+  TrendTest test;
+  for (const auto& series : ensemble) test.add(series);
+  return test.result();
+}
+
+}  // namespace
+
+TEST_CASE("A line is fitted by least squares") {
+  const Line line = fit_line(std::vector<double>{1, 3, 2, 6});
+  CHECK(line.center == 1.5);
+  CHECK(line.middle == 3);
+  CHECK(line.slope == Approx(1.4).epsilon(1e-14));
+  CHECK(fit_line(std::vector<double>{2}).slope == 0);
+}
+
+TEST_CASE("A linear ramp is flagged as drift, whatever rides on it") {
+  const std::vector<double> ramp = synthetic::with_ramp(std::vector<double>(1000, 0.6), 0.01);
+  const Trend pure = trend_of({ramp});
+  CHECK(pure.drifts());
+  CHECK(pure.line.value == Approx(0.01).epsilon(1e-9));
+  CHECK(pure.halves.value == Approx(0.005).epsilon(1e-9));
+  CHECK(pure.share == Approx(1).epsilon(1e-9));
+
+  // 4 standard deviations over the range, on noise with a memory of 9.5 taps.
+  const double change = 4 / std::sqrt(1 - 0.81);
+  CHECK(
+      trend_of({synthetic::with_ramp(synthetic::autoregressive(0.9, 4000, 11), change)}).drifts());
+  std::vector<std::vector<double>> ensemble;
+  for (std::uint64_t r = 0; r < 10; ++r) {
+    ensemble.push_back(synthetic::with_ramp(synthetic::autoregressive(0.9, 1000, 12, r), change));
+  }
+  const Trend many = trend_of(ensemble);
+  CHECK(many.drifts());
+  CHECK(std::abs(many.line.value - change) < 3 * many.line.over.error);
+  CHECK(std::abs(many.line.value - change) < 3 * many.line.within.error);
+  CHECK(many.line.over.dof == 9);
+  CHECK(many.line.within.dof > 50);
+  CHECK(many.tests == 4);
+}
+
+TEST_CASE("A constant series does not drift") {
+  const Trend trend = trend_of({std::vector<double>(64, 0.1), std::vector<double>(64, 0.3)});
+  CHECK(trend.line.value == 0);
+  CHECK(trend.detectable == 0);
+  CHECK_FALSE(trend.drifts());
+}
+
+TEST_CASE("The errors within series are the scatter of slopes and halves", "[statistics]") {
+  const double rho = GENERATE(0.0, 0.9);
+  constexpr std::size_t n_taps = 1000, ensembles = 400, realizations = 2;
+  Moments lines, halves;
+  double line_variance = 0, halves_variance = 0;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    TrendTest test;
+    for (std::size_t r = 0; r < realizations; ++r) {
+      test.add(synthetic::autoregressive(rho, n_taps, 500 + e, r));
+    }
+    const Trend trend = test.result();
+    lines.add(trend.line.value);
+    halves.add(trend.halves.value);
+    line_variance += trend.line.within.error * trend.line.within.error / ensembles;
+    halves_variance += trend.halves.within.error * trend.halves.within.error / ensembles;
+  }
+  // 3 errors of a deviation of 400 values, and 5 % for what blocks share.
+  const double tolerance = 3 / std::sqrt(2.0 * ensembles) + 0.05;
+  CHECK(std::sqrt(line_variance) == Approx(lines.sigma()).epsilon(tolerance));
+  CHECK(std::sqrt(halves_variance) == Approx(halves.sigma()).epsilon(tolerance));
+}
+
+TEST_CASE("A drift does not inflate the errors within series") {
+  std::vector<std::vector<double>> steady, drifting;
+  for (std::uint64_t r = 0; r < 3; ++r) {
+    steady.push_back(synthetic::autoregressive(0.9, 2000, 14, r));
+    drifting.push_back(synthetic::with_ramp(steady.back(), 50));
+  }
+  CHECK(trend_of(drifting).line.within.error ==
+        Approx(trend_of(steady).line.within.error).epsilon(1e-9));
+}
+
+TEST_CASE("Two realizations find what their scatter cannot, and say what they would miss") {
+  // 7 errors, as their memory has them: over two realizations t of one degree of freedom needs 255.
+  std::vector<std::vector<double>> ensemble;
+  for (std::uint64_t r = 0; r < 2; ++r)
+    ensemble.push_back(synthetic::autoregressive(0.5, 1000, 15, r));
+  const Trend steady = trend_of(ensemble);
+  CHECK_FALSE(steady.drifts());
+  CHECK(steady.statement().starts_with("no drift found (p = "));
+  for (auto& series : ensemble) series = synthetic::with_ramp(series, 7 * steady.line.within.error);
+  const Trend drifting = trend_of(ensemble);
+  CHECK(drifting.drifts());
+  CHECK(drifting.decisive.ends_with("within series"));
+  CHECK(drifting.statement().starts_with("it drifts: "));
+  // One series of a few times its memory has no test at all.
+  const Trend short_one = trend_of({synthetic::autoregressive(0.99, 300, 16)});
+  CHECK(short_one.tests == 0);
+  CHECK(std::isinf(short_one.detectable));
+  CHECK_FALSE(short_one.drifts());
+}

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fitting/fit.hpp"
+#include "fitting/models/models.hpp"
+
+namespace jostle {
+namespace {
+
+/// A curve whose parameters can nearly make up for each other, with its certified minimum.
+struct SloppySet {
+  std::unique_ptr<Model> model;
+  Curve curve;
+  nlohmann::json json;
+};
+
+SloppySet read_sloppy(const std::string& name, const std::string& model) {
+  std::ifstream file(TEST_DATA "/fits/" + name + ".json");
+  SloppySet set{make_model(model), {}, nlohmann::json::parse(file)};
+  set.curve.t = set.json["x"].get<std::vector<double>>();
+  set.curve.x = set.json["y"].get<std::vector<double>>();
+  return set;
+}
+
+Fit fit_sloppy(const SloppySet& set) {
+  return std::get<Fit>(fit(*set.model, set.curve));
+}
+
+bool mentions(const std::vector<std::string>& texts, const std::string& words) {
+  return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+    return text.find(words) != std::string::npos;
+  });
+}
+
+void check_certified(const SloppySet& set, const Fit& fitted) {
+  const std::vector<double> minimum = set.json["certified_params"];
+  const std::vector<double> errors = set.json["certified_stderr"];
+  const std::vector<double> profile = set.json["profile_95"];
+  for (std::size_t j = 0; j < minimum.size(); ++j) {
+    INFO(fitted.estimates[j].parameter.name);
+    CHECK(fitted.estimates[j].value == Approx(minimum[j]).epsilon(1e-8));
+    CHECK(fitted.estimates[j].standard_error == Approx(errors[j]).epsilon(1e-7));
+  }
+  CHECK(fitted.condition ==
+        Approx(set.json["scaled_condition_number"].get<double>()).epsilon(1e-6));
+  CHECK(fitted.estimates[0].intervals[1].lower == Approx(profile[0]).epsilon(1e-6));
+  CHECK(fitted.estimates[0].intervals[1].upper == Approx(profile[1]).epsilon(1e-6));
+}
+
+}  // namespace
+
+TEST_CASE("an inverse log at small excitation is reported as not unique") {
+  const SloppySet set = read_sloppy("IL_sloppy", "inverse_log");
+  const Fit fitted = fit_sloppy(set);
+  check_certified(set, fitted);
+  CHECK(fitted.estimates[0].identifiability == Identifiability::wide);
+  CHECK(fitted.estimates[1].identifiability == Identifiability::wide);
+  CHECK(fitted.estimates[2].identifiability == Identifiability::wide);
+  CHECK(mentions(fitted.remarks, "not unique"));
+  CHECK(mentions(fitted.remarks, "condition number"));
+  // The profile is not the parabola that a standard error draws.
+  const Estimate& x_inf = fitted.estimates[0];
+  CHECK(x_inf.intervals[1].upper - x_inf.value > 1.5 * (x_inf.value - x_inf.intervals[1].lower));
+}
+
+TEST_CASE("every tap of the same curve narrows it, but X_inf stays wide") {
+  const SloppySet set = read_sloppy("IL_sloppy_every_tap", "inverse_log");
+  const Fit fitted = fit_sloppy(set);
+  check_certified(set, fitted);
+  CHECK(fitted.estimates[0].identifiability == Identifiability::wide);
+}
+
+TEST_CASE("a stretched exponential that is 73 % relaxed is reported as wide") {
+  const SloppySet set = read_sloppy("KWW_sloppy", "kww");
+  const Fit fitted = fit_sloppy(set);
+  check_certified(set, fitted);
+  CHECK(fitted.estimates[0].identifiability == Identifiability::wide);
+  CHECK(fitted.estimates[3].identifiability == Identifiability::identified);
+  CHECK(mentions(fitted.remarks, "not unique"));
+}
+
+TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds at last") {
+  for (const auto& [name, model] :
+       {std::pair{"IL_sloppy", "inverse_log"}, std::pair{"IL_sloppy_every_tap", "inverse_log"},
+        std::pair{"KWW_sloppy", "kww"}}) {
+    const SloppySet set = read_sloppy(name, model);
+    for (const auto& refit : set.json["refits"]) {
+      const Curve part = within(set.curve, 1, refit["last"]);
+      const Fit fitted = std::get<Fit>(fit(*set.model, part));
+      INFO(name << " to " << refit["last"]);
+      CHECK(fitted.residual_sum == Approx(refit["rss"].get<double>()).epsilon(1e-9));
+      const std::vector<double> minimum = refit["params"];
+      for (std::size_t j = 0; j < minimum.size(); ++j) {
+        CHECK(fitted.estimates[j].value == Approx(minimum[j]).epsilon(1e-7));
+      }
+      const Identifiability last = fitted.estimates[0].identifiability;
+      CHECK((last == Identifiability::wide || last == Identifiability::bounded_below));
+    }
+  }
+  const SloppySet set = read_sloppy("IL_sloppy", "inverse_log");
+  const Fit shortest = std::get<Fit>(fit(*set.model, within(set.curve, 1, 300)));
+  CHECK(shortest.estimates[0].identifiability == Identifiability::bounded_below);
+  CHECK(shortest.estimates[0].statement.find("not identifiable") != std::string::npos);
+  CHECK(shortest.estimates[0].statement.find("X_inf >") != std::string::npos);
+}
+
+TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters run away together") {
+  // Twenty nearly straight points: nothing says where the logarithm bends.
+  for (const double noise : {1e-6, 1e-4, 1e-3}) {
+    Curve curve;
+    for (int t = 1; t <= 20; ++t) {
+      curve.t.push_back(t);
+      curve.x.push_back(0.541 + 2.3e-4 * t + noise * std::sin(12.9898 * t * t));
+      curve.sigma.push_back(2e-3);
+    }
+    for (const auto& model : all_models()) {
+      const auto outcome = fit(*model, curve);
+      const auto* fitted = std::get_if<Fit>(&outcome);
+      if (fitted == nullptr) continue;
+      CAPTURE(noise, model->name());
+      for (const Estimate& estimate : fitted->estimates) {
+        CHECK(estimate.intervals[1].lower <= estimate.intervals[0].lower);
+        CHECK(estimate.intervals[1].upper >= estimate.intervals[0].upper);
+      }
+    }
+  }
+}
+
+TEST_CASE("a good curve is reported as identified, without remarks") {
+  const SloppySet set = read_sloppy("IL_easy", "inverse_log");
+  const Fit fitted = fit_sloppy(set);
+  for (const Estimate& estimate : fitted.estimates) {
+    INFO(estimate.statement);
+    CHECK(estimate.identifiability == Identifiability::identified);
+    CHECK(estimate.intervals[1].closed());
+    CHECK(estimate.intervals[1].lower < estimate.intervals[0].lower);
+    CHECK(estimate.intervals[0].upper < estimate.intervals[1].upper);
+  }
+  CHECK(fitted.remarks.empty());
+}
+
+}  // namespace jostle

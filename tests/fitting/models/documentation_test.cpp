@@ -1,0 +1,61 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "fitting/models/models.hpp"
+#include "fitting/report.hpp"
+
+namespace jostle {
+namespace {
+
+std::string read_text(const std::string& name) {
+  std::ifstream file(SOURCE_ROOT "/" + name);
+  REQUIRE(file);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the documentation of fits quotes its example as it is compiled") {
+  CHECK(contains(read_text("docs/fitting.md"), read_text("docs/examples/own_model.cpp")));
+}
+
+TEST_CASE("the documentation of fits lists every model with its parameters") {
+  const std::string text = read_text("docs/fitting.md");
+  for (const auto& model : all_models()) {
+    CHECK(contains(text, '`' + model->name() + '`'));
+    CHECK(contains(text, model->formula()));
+    for (const Parameter& parameter : model->parameters()) {
+      CHECK(contains(text, parameter.name));
+    }
+  }
+}
+
+TEST_CASE("a report for people names what it gives") {
+  Curve curve;
+  const ParameterValues truth = {0.64, 0.056, 0.3, 10};
+  for (double t : geometric(1, 100, 30)) {
+    curve.t.push_back(t);
+    curve.x.push_back(InverseLog().value(t, truth.data()) + 3e-4 * ((curve.t.size() % 3) - 1.0));
+  }
+  const Fit wide = std::get<Fit>(fit(InverseLog(), curve));
+  const std::string report = describe(wide, ReportDetail::full);
+  for (const char* part : {"inverse_log: X = X_inf - dX", "eq. 3", "95 %", "tau", "30 points",
+                           "AIC", "condition", "runs", "not unique", "linear error"}) {
+    INFO(report);
+    CHECK(contains(report, part));
+  }
+  CHECK_FALSE(contains(report, "nan"));
+  const Fit other = std::get<Fit>(fit(StretchedExponential(), curve));
+  const std::string table = compare({wide, other});
+  const bool first = wide.aic < other.aic;
+  CHECK((table.find("inverse_log") < table.find("kww")) == first);
+}
+
+}  // namespace jostle

@@ -1,0 +1,59 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "results/error.hpp"
+#include "results/live_run.hpp"
+#include "tests/results/runs.hpp"
+#include "tests/results/temporary_folder.hpp"
+
+// What a run refuses to start on, and what others see of it once it has started.
+using namespace jostle;
+using Catch::Matchers::Contains;
+using synthetic::provenance;
+
+TEST_CASE("an existing file is not overwritten without force") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "straight.h5";
+  const std::string expected = synthetic::run_to_end(path);
+  const Study study = synthetic::study();
+  CHECK_THROWS_WITH(RunStore::create(path, study, {}, provenance()), Contains("--force"));
+  CHECK(digest_of(path) == expected);
+  CHECK_FALSE(lock_owner(path));
+  CHECK(RunStore::create(path, study, {}, provenance(), true)->pending().size() == 6);
+}
+
+TEST_CASE("a study that does not fit the disk is refused before it runs") {
+  const TemporaryFolder folder;
+  const Study study = synthetic::study({.spheres = 4'000'000'000u, .taps = 1'000'000'000});
+  CHECK_THROWS_WITH(RunStore::create(folder / "a.h5", study, {}, provenance()), Contains("MB"));
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("a resume of another shard is refused") {
+  const TemporaryFolder folder;
+  const Study study = synthetic::study();
+  RunStore::create(folder / "a.h5", study, {1, 2}, provenance());
+  CHECK_THROWS_WITH(RunStore::resume(folder / "a.h5", study, {2, 2}, provenance()),
+                    Contains("--shard 1/2"));
+}
+
+TEST_CASE("a live run is looked at through its parts") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  const Study study = synthetic::study();
+  const auto store = RunStore::create(path, study, {}, provenance());
+  synthetic::run(*store, study, {0, 1}, {.steps = 7});
+  synthetic::run(*store, study, {1, 0});
+  const RunStatus status = run_status(path);
+  CHECK(status.state == RunState::running);
+  REQUIRE(status.owner);
+  CHECK(status.owner->alive);
+  CHECK(status.owner->pid == ::getpid());
+  CHECK(status.realizations.at(0).status == RealizationStatus::missing);
+  CHECK(status.realizations.at(1).status == RealizationStatus::running);
+  CHECK(status.realizations.at(1).rows == 3);
+  CHECK(status.realizations.at(3).status == RealizationStatus::done);
+  CHECK(status.parts_bytes > 0);
+}

@@ -1,0 +1,140 @@
+#include "structure/density/layers.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "structure/snapshot_statistics.hpp"
+#include "tests/structure/density/profile_samples.hpp"
+#include "tests/structure/reference_deposit.hpp"
+
+using namespace jostle;
+
+namespace {
+
+const double row = std::sqrt(3.0) / 2;
+
+Packing crystal(const Container& container, std::uint32_t n, Lattice lattice = Lattice::hcp) {
+  RandomStream random(stream_key(71, 0, 0, Purpose::start));
+  return make_start(Crystal{.lattice = lattice}, container, n, random);
+}
+
+// Close-packed layers in the order ABC: fcc along (111), 12 x 14 spheres a layer.
+Packing fcc_along_111(int n_layers) {
+  Packing packing{PeriodicBox{12, 14 * row}, {}};
+  for (int layer = 0; layer < n_layers; ++layer) {
+    for (int j = 0; j < 14; ++j) {
+      for (int i = 0; i < 12; ++i) {
+        const double shift = layer % 3;
+        packing.centres.push_back({std::fmod(i + 0.5 * (j % 2) + 0.5 * shift, 12.0),
+                                   std::fmod((j + shift / 3) * row, 14 * row),
+                                   0.5 + layer * std::sqrt(2.0 / 3)});
+      }
+    }
+  }
+  return packing;
+}
+
+// Every height displaced evenly by up to `amplitude`.
+Packing shaken(Packing packing, double amplitude) {
+  RandomStream random(stream_key(72, 0, 0, Purpose::resampling));
+  for (Vec3& centre : packing.centres) centre.z += amplitude * (2 * random.uniform() - 1);
+  return packing;
+}
+
+const PeriodicBox commensurate{12, 14 * row};
+
+}  // namespace
+
+TEST_CASE("All full layers of a close-packed crystal have grown") {
+  CHECK(grown_layers(crystal(commensurate, 168 * 8)) == 8);
+  CHECK(grown_layers(fcc_along_111(9)) == 9);
+  // A partial layer on top does not count: the crystal of Rosato et al. has 20.57.
+  CHECK(grown_layers(crystal(commensurate, 3456)) == 20);
+  CHECK(layers(crystal(commensurate, 3456)).size() == 21);
+  // Between walls layers are full when no more spheres fit.
+  for (const double width : {5.0, 9.3, 16.0}) {
+    CAPTURE(width);
+    for (const Container& container : {Container{WalledBox{width, width}}, {Cylinder{width}}}) {
+      const Packing packing = crystal(container, 2000);
+      const std::vector<Layer> all = layers(packing);
+      const std::size_t grown = grown_layers(packing);
+      CHECK(grown + 1 >= all.size());
+      CHECK(grown <= all.size());
+    }
+  }
+}
+
+TEST_CASE("Layers of a crystal lie at the heights of hcp and are full") {
+  const Packing packing = crystal(commensurate, 168 * 5);
+  const std::vector<Layer> all = layers(packing);
+  REQUIRE(all.size() == 5);
+  for (std::size_t k = 0; k < 5; ++k) {
+    CHECK(all[k].height == hcp_layer_height(k));
+    CHECK(all[k].height == Approx(packing.centres[168 * k].z).epsilon(1e-14));
+    CHECK(all[k].filling == Approx(1).epsilon(1e-12));
+    CHECK(all[k].share == 1);
+  }
+  // n(z) is 1/5 in the five bins that hold a layer.
+  const std::vector<double> n = height_histogram(packing);
+  for (std::size_t k = 0; k < 5; ++k) {
+    CHECK(n[static_cast<std::size_t>(hcp_layer_height(k) / 0.1)] == Approx(0.2).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("Layers that lie a little closer than those of hcp are followed to the top") {
+  Packing packing = crystal(commensurate, 168 * 15);
+  for (Vec3& centre : packing.centres) centre.z = 0.5 + 0.97 * (centre.z - 0.5);
+  CHECK(grown_layers(packing) == 15);
+  CHECK(grown_layers(shaken(packing, 0.08)) == 15);
+  const std::vector<Layer> all = layers(packing);
+  CHECK(all[14].found == Approx(0.5 + 0.97 * 14 * std::sqrt(2.0 / 3)).epsilon(1e-12));
+  CHECK(all[14].height == hcp_layer_height(14));
+}
+
+TEST_CASE("Layers of another spacing are none after the floor's") {
+  CHECK(grown_layers(crystal(PeriodicBox{12, 12}, 144 * 6, Lattice::fcc)) == 1);
+}
+
+TEST_CASE("A pour has grown no layers but at most the floor's") {
+  CHECK(grown_layers(reference_deposit()) <= 1);
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    CHECK(grown_layers(poured(PeriodicBox{10, 10}, 800, seed)) <= 1);
+    CHECK(grown_layers(poured(WalledBox{10, 10}, 700, seed)) <= 1);
+    CHECK(grown_layers(poured(Cylinder{10}, 600, seed)) <= 1);
+  }
+}
+
+TEST_CASE("Layers are counted from the floor up to the first that is disordered") {
+  Packing packing = crystal(commensurate, 168 * 10);
+  for (const double amplitude : {1e-9, 0.05, 0.1}) {
+    CHECK(grown_layers(shaken(packing, amplitude)) == 10);
+  }
+  // Spread evenly over +- 0.3, a third lies within 0.1.
+  CHECK(grown_layers(shaken(packing, 0.3)) == 0);
+  // Spread evenly over +- 0.125, four fifths do: what counts is the share asked for.
+  CHECK(grown_layers(shaken(packing, 0.125)) == 10);
+  CHECK(grown_layers(shaken(packing, 0.125), {.least_share = 0.95}) == 0);
+  CHECK(grown_layers(shaken(packing, 0.3), {.tolerance = 0.31}) == 10);
+
+  SECTION("even if there are more above") {
+    for (std::size_t i = 168 * 4; i < 168 * 5; ++i) {
+      packing.centres[i].z += 0.0047 * static_cast<double>(i - 168 * 4) - 0.4;
+    }
+    const std::vector<Layer> all = layers(packing);
+    CHECK(all[4].share < 0.3);
+    CHECK(all[5].share > 0.9);
+    CHECK(grown_layers(packing) == 4);
+  }
+  SECTION("or that is not full") {
+    // Take every second sphere of layer 6 out.
+    for (std::size_t i = 168 * 6; i < 168 * 7; i += 2) packing.centres[i].z = 20;
+    CHECK(grown_layers(packing) == 6);
+    CHECK(grown_layers(packing, {.least_filling = 0.4}) == 10);
+  }
+}
+
+TEST_CASE("Without a floor or spheres there are no layers") {
+  CHECK_THROWS_AS(layers({FullyPeriodicBox{4, 4, 4}, {{1, 1, 1}}}), std::invalid_argument);
+  CHECK(grown_layers({PeriodicBox{4, 4}, {}}) == 0);
+}

@@ -1,0 +1,173 @@
+#include "structure/order/bond_order.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "tests/structure/order/close_packings.hpp"
+#include "tests/structure/random_points.hpp"
+#include "tests/structure/voids/voronoi_points.hpp"
+
+using namespace jostle;
+
+namespace {
+
+// A sphere and those around it, far from any wall: the bonds of sphere 0.
+BondOrder order_of(const std::vector<Vec3>& around) {
+  Packing packing{WalledBox{40, 40}, {{20, 20, 20}}};
+  for (const Vec3& way : around) packing.centres.push_back({20 + way.x, 20 + way.y, 20 + way.z});
+  return bond_order(nearest_neighbours(packing, static_cast<std::uint32_t>(around.size())))[0];
+}
+
+std::vector<Vec3> icosahedron() {
+  const double g = std::numbers::phi;
+  std::vector<Vec3> corners;
+  for (const double a : {-0.5, 0.5}) {
+    for (const double b : {-0.5 * g, 0.5 * g}) {
+      corners.insert(corners.end(), {{0, a, b}, {a, b, 0}, {b, 0, a}});
+    }
+  }
+  return corners;
+}
+
+std::vector<Vec3> bcc_neighbours() {
+  std::vector<Vec3> around;
+  for (const double a : {-0.6, 0.6}) {
+    around.insert(around.end(), {{2 * a, 0, 0}, {0, 2 * a, 0}, {0, 0, 2 * a}});
+    for (const double b : {-0.6, 0.6}) {
+      for (const double c : {-0.6, 0.6}) around.push_back({a, b, c});
+    }
+  }
+  return around;
+}
+
+Vec3 turned(Vec3 r) {
+  // About (1, 2, 2) / 3 by the angle of cosine 0.28 and sine 0.96.
+  const Vec3 axis{1.0 / 3, 2.0 / 3, 2.0 / 3};
+  return 0.28 * r + 0.96 * cross(axis, r) + (0.72 * dot(axis, r)) * axis;
+}
+
+std::vector<Vec3> turned(std::vector<Vec3> all) {
+  for (Vec3& r : all) r = turned(r);
+  return all;
+}
+
+// q_l by the C++ library's spherical harmonics.
+double steinhardt(std::span<const Neighbour> neighbours, int l) {
+  double sum = 0;
+  for (int m = -l; m <= l; ++m) {
+    std::complex<double> q = 0;
+    for (const Neighbour& neighbour : neighbours) {
+      const Vec3 way = neighbour.way;
+      const double theta = std::acos(way.z / std::sqrt(norm_squared(way)));
+      const double phi = std::atan2(way.y, way.x);
+      q += std::sph_legendre(static_cast<unsigned>(l), std::abs(m), theta) *
+           std::polar(1.0, m * phi);
+    }
+    sum += std::norm(q / static_cast<double>(neighbours.size()));
+  }
+  return std::sqrt(4 * std::numbers::pi / (2 * l + 1) * sum);
+}
+
+void check(const BondOrder& order, const BondOrder& expected) {
+  CHECK(order.q4 == Approx(expected.q4).margin(1e-12).epsilon(0));
+  CHECK(order.q6 == Approx(expected.q6).margin(1e-12).epsilon(0));
+  CHECK(order.w4 == Approx(expected.w4).margin(1e-11).epsilon(0));
+  CHECK(order.w6 == Approx(expected.w6).margin(1e-11).epsilon(0));
+}
+
+double spread_of_q6(const std::vector<BondOrder>& orders) {
+  double sum = 0, squares = 0;
+  for (const BondOrder& order : orders) {
+    sum += order.q6;
+    squares += order.q6 * order.q6;
+  }
+  const double n = static_cast<double>(orders.size()), mean = sum / n;
+  return std::sqrt(squares / n - mean * mean);
+}
+
+// From sums over the bonds with scipy's spherical harmonics and sympy's exact 3j symbols. In closed
+// form: fcc q4 = sqrt(7 / 192), q6 = sqrt(169 / 512); hcp q4 = 7 / 72; icosahedron q6 = sqrt(11) /
+// 5, w6 = -11 / sqrt(4199).
+const BondOrder fcc{0.190940653956493, 0.574524259714070, -0.159317373133081, -0.013160600730647};
+const BondOrder hcp{0.097222222222222, 0.484761685223683, 0.134097046880302, -0.012441959464886};
+const BondOrder bcc{0.036369648372665, 0.510688230856951, 0.159317373133081, 0.013160600730647};
+const BondOrder icosahedral{0, 0.663324958071080, 0, -0.169753894958368};
+
+}  // namespace
+
+TEST_CASE("Perfect crystals and the icosahedron have their bond order, however turned") {
+  check(fcc, {std::sqrt(7.0 / 192), std::sqrt(169.0 / 512), fcc.w4, fcc.w6});
+  check(icosahedral, {0, std::sqrt(11.0) / 5, 0, -11 / std::sqrt(4199.0)});
+  check(order_of(icosahedron()), icosahedral);
+  check(order_of(turned(icosahedron())), icosahedral);
+  check(order_of(bcc_neighbours()), bcc);
+  check(order_of(turned(bcc_neighbours())), bcc);
+
+  const Packing cubic = fcc_points(), hexagonal = hcp_points();
+  for (const BondOrder& order : bond_order(nearest_neighbours(cubic))) check(order, fcc);
+  for (const BondOrder& order : bond_order(neighbours_within(cubic, 1.2))) check(order, fcc);
+  for (const BondOrder& order : bond_order(nearest_neighbours(hexagonal))) check(order, hcp);
+  // Cubic layers seen along the threefold axis; those at the floor and the top lack neighbours.
+  const Packing layers = stacked_layers("ABCABC");
+  const std::vector<BondOrder> orders = bond_order(nearest_neighbours(layers));
+  for (std::size_t i = 144; i < 5 * 144; ++i) check(orders[i], fcc);
+}
+
+TEST_CASE("q4 and q6 of any packing are those of the library's spherical harmonics") {
+  const Packing packing = random_points(PeriodicBox{6, 7}, 8, 300);
+  for (const NeighbourTable& table :
+       {nearest_neighbours(packing, 12), neighbours_within(packing, 1.3)}) {
+    const std::vector<BondOrder> orders = bond_order(table);
+    REQUIRE(orders.size() == 300);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      if (table.of(i).empty()) {
+        CHECK(std::isnan(orders[i].q6));
+        CHECK(std::isnan(orders[i].w6));
+        continue;
+      }
+      CHECK(orders[i].q4 == Approx(steinhardt(table.of(i), 4)).margin(1e-10));
+      CHECK(orders[i].q6 == Approx(steinhardt(table.of(i), 6)).margin(1e-10));
+    }
+  }
+}
+
+TEST_CASE("Bond order does not depend on how a packing is turned") {
+  Packing packing = random_points(WalledBox{9, 9}, 9, 250);
+  const std::vector<BondOrder> before = bond_order(nearest_neighbours(packing));
+  packing.container = WalledBox{60, 60};
+  for (Vec3& r : packing.centres) r = turned(r) + Vec3{30, 30, 30};
+  const std::vector<BondOrder> after = bond_order(nearest_neighbours(packing));
+  for (std::size_t i = 0; i < before.size(); ++i) check(after[i], before[i]);
+}
+
+TEST_CASE("A single bond has q 1, and as w the 3j symbol of three zeros") {
+  // Along z only q_l0 is there: w_l = (l l l; 0 0 0), whose squares are 18 / 1001 and 400 / 46189.
+  const BondOrder one = order_of({{0.6, 0, 0.8}}), two = order_of({{0, 0, 1}, {0, 0, -1}});
+  const BondOrder expected{1, 1, std::sqrt(18.0 / 1001), -std::sqrt(400.0 / 46189)};
+  check(one, expected);
+  check(two, expected);
+}
+
+TEST_CASE("Averaged bond order is that of the mean multipoles of a sphere and its neighbours") {
+  for (const BondOrder& order : averaged_bond_order(nearest_neighbours(fcc_points()))) {
+    check(order, fcc);
+  }
+  const NeighbourTable table = nearest_neighbours(shaken(fcc_points(), 0.05));
+  CHECK(spread_of_q6(averaged_bond_order(table)) < 0.5 * spread_of_q6(bond_order(table)));
+
+  // Two spheres, one bond each: both have q = 1 along it, and so has their mean.
+  const Packing pair{WalledBox{9, 9}, {{3, 3, 3}, {3.6, 3.8, 3}}};
+  CHECK(averaged_bond_order(nearest_neighbours(pair, 1))[0].q6 == Approx(1));
+  // Three in a bend: the middle one's mean is of the bond, the bond and both halved. By addition of
+  // Legendre polynomials, q_l^2 = sum of weights w_a w_b P_l(cos angle between bonds a and b).
+  const Packing bend{WalledBox{9, 9}, {{3, 3, 3}, {4, 3, 3}, {3, 4, 3}}};
+  const double across = std::legendre(6, 0.0);
+  CHECK(averaged_bond_order(neighbours_within(bend, 1.1))[0].q6 ==
+        Approx(std::sqrt(0.5 + 0.5 * across)));
+  // An end's mean: weight 3/4 on its own bond, 1/4 on the other.
+  CHECK(averaged_bond_order(neighbours_within(bend, 1.1))[1].q6 ==
+        Approx(std::sqrt(10.0 / 16 + 6.0 / 16 * across)));
+}

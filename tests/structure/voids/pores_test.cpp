@@ -1,0 +1,237 @@
+#include "structure/voids/pores.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "engine/bed/geometry.hpp"
+#include "tests/structure/reference_deposit.hpp"
+#include "tests/structure/voids/voronoi_points.hpp"
+
+using namespace jostle;
+
+namespace {
+
+double distance_to(const Packing& packing, Vec3 point, std::uint32_t i) {
+  return std::visit(
+      [&](const auto& box) {
+        return std::sqrt(norm_squared(separation(box, point, packing.centres[i])));
+      },
+      packing.container);
+}
+
+// Equidistant from its owners, and no centre nearer, by brute force.
+void check_pores(const Packing& packing, const std::vector<Pore>& all) {
+  for (const Pore& pore : all) {
+    REQUIRE(pore.owners.size() >= 4);
+    const double reach = pore.radius + sphere_radius;
+    for (const std::uint32_t i : pore.owners) {
+      REQUIRE(distance_to(packing, pore.centre, i) == Approx(reach).epsilon(1e-8));
+    }
+    for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
+      REQUIRE(distance_to(packing, pore.centre, i) > reach * (1 - 1e-8));
+    }
+  }
+}
+
+std::map<Site, int> count_sites(const std::vector<Pore>& all, double tolerance) {
+  std::map<Site, int> counts;
+  for (const Pore& pore : all) ++counts[site_of(pore, tolerance)];
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("Pores touch four spheres and hold no centre") {
+  const Packing deposit = reference_deposit();
+  auto all = pores(deposit, voronoi_cells(deposit));
+  check_pores(deposit, {all.begin(), all.begin() + 2000});
+  const Packing points = poisson_points();
+  all = pores(points, voronoi_cells(points));
+  check_pores(points, {all.begin(), all.begin() + 2000});
+}
+
+TEST_CASE("Pores of a deposit are those of voro++'s own output") {
+  // Every vertex of the bulk cells, once a cell: heights and radii, six digits.
+  const Packing deposit = reference_deposit();
+  const VoronoiCells cells = voronoi_cells(deposit);
+  const auto table = rows_of("dep_L32_N4096_s1_voro.csv");
+  std::vector<std::pair<double, double>> found, expected;
+  for (const auto& row : table) {
+    const auto i = static_cast<std::uint32_t>(row[0]);
+    if (row[5] == 0) continue;
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) {
+      const double reach = std::sqrt(norm_squared(vertex.position - deposit.centres[i]));
+      found.emplace_back(2 * vertex.position.z, 2 * reach - 1);
+    }
+  }
+  for (const auto& row : rows_of("dep_L32_N4096_s1_pores.csv")) {
+    expected.emplace_back(row[0], row[1]);
+  }
+  REQUIRE(found.size() == expected.size());
+  const auto by_radius = [](const auto& a, const auto& b) { return a.second < b.second; };
+  std::ranges::sort(found, by_radius);
+  std::ranges::sort(expected, by_radius);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    REQUIRE(found[k].second == Approx(expected[k].second).margin(2e-5));
+  }
+  double found_heights = 0, expected_heights = 0;
+  for (const auto& [z, xi] : found) found_heights += z;
+  for (const auto& [z, xi] : expected) expected_heights += z;
+  CHECK(found_heights == Approx(expected_heights).epsilon(1e-6));
+}
+
+TEST_CASE("A deposit has 6.39 pores a sphere, as many as its vertices say") {
+  const Packing deposit = reference_deposit();
+  const VoronoiCells cells = voronoi_cells(deposit);
+  const auto all = pores(deposit, cells);
+  std::size_t corners = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    for (const VoronoiVertex& vertex : cells.vertices_of(i)) corners += !vertex.on_boundary;
+  }
+  CHECK(static_cast<double>(all.size()) == Approx(static_cast<double>(corners) / 4).epsilon(1e-3));
+  const auto inside = pores_in(all, deposit.container, pore_region);
+  double spheres = 0;
+  for (const Vec3& r : deposit.centres) spheres += r.z >= 1 && r.z <= 10;
+  CHECK(static_cast<double>(inside.size()) / spheres == Approx(6.39).epsilon(0.02));
+  for (const Pore& pore : inside) CHECK((pore.centre.z >= 1 && pore.centre.z <= 10));
+}
+
+TEST_CASE("Spheres around four random points follow the Gamma law") {
+  // Circumspheres of Poisson Delaunay tetrahedra: volume times intensity is Gamma(3), mean and
+  // variance 3 (Miles); within 3 standard errors, 27 000 pores counted as 4000 independent ones.
+  const Packing points = poisson_points();
+  const auto all = pores(points, voronoi_cells(points));
+  const auto n = static_cast<double>(all.size());
+  CHECK(n / 4000 == Approx(27.07091492870224 / 4).epsilon(0.01));
+  double mean = 0, square = 0, fourth = 0;
+  std::vector<double> volumes;
+  for (const Pore& pore : all) {
+    volumes.push_back(8 * sphere_volume * std::pow(pore.radius + sphere_radius, 3));
+    mean += volumes.back() / n;
+  }
+  for (const double v : volumes) {
+    square += (v - mean) * (v - mean) / n;
+    fourth += std::pow(v - mean, 4) / n;
+  }
+  CHECK(std::abs(mean - 3) <= 3 * std::sqrt(square / 4000));
+  CHECK(std::abs(square - 3) <= 3 * std::sqrt((fourth - square * square) / 4000));
+}
+
+TEST_CASE("Pores of close-packed crystals are their sites") {
+  for (const Packing& crystal : {fcc_points(), hcp_points()}) {
+    for (const double noise : {0.0, 1e-15, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
+      CAPTURE(noise);
+      const Packing packing = with_noise(crystal, noise);
+      const auto all = pores(packing, voronoi_cells(packing), 1e-6 + 60 * noise);
+      const auto sites = count_sites(all, 1e-9 + 10 * noise);
+      // Two tetrahedral sites and an octahedral one a sphere.
+      CHECK(sites.at(Site::tetrahedral) == 1000);
+      CHECK(sites.at(Site::octahedral) == 500);
+      CHECK(sites.count(Site::other) == 0);
+      for (const Pore& pore : all) {
+        CHECK(pore.owners.size() == (site_of(pore, 0.05) == Site::octahedral ? 6 : 4));
+      }
+    }
+  }
+}
+
+TEST_CASE("Distributions of pores agree with one another") {
+  const Packing deposit = reference_deposit();
+  const auto inside =
+      pores_in(pores(deposit, voronoi_cells(deposit)), deposit.container, pore_region);
+  const double width = 0.01;
+  const PoreDistribution density = pore_distribution(inside, width, 3);
+  double count = 0, by_volume = 0, mean_volume = 0;
+  for (std::size_t b = 0; b < density.xi.size(); ++b) {
+    const double xi = density.xi[b];
+    count += density.rho_xi[b] * width;
+    by_volume += density.rho_v[b] * 3 * xi * xi * width;
+    mean_volume += density.rho_xi[b] * width * xi * xi * xi;
+    CHECK(density.v_rho_v[b] == Approx(xi * xi * xi * density.rho_v[b]).margin(1e-12));
+  }
+  CHECK(count == Approx(static_cast<double>(inside.size())).epsilon(1e-12));
+  CHECK(by_volume == Approx(count).epsilon(1e-12));
+  CHECK(mean_volume / count == Approx(mean_pore_volume(inside)).epsilon(0.01));
+}
+
+TEST_CASE("The chance of a void in a deposit is near Gotoh's") {
+  const Packing deposit = reference_deposit();
+  const std::vector<double> sigma = {0, 0.3, 0.7, 1, 1.2, 1.4, 1.6};
+  const StreamKey key = stream_key(9, 0, 0, Purpose::resampling);
+  const Region slab{4, 9};
+  const auto exact = void_probability(deposit, slab, sigma, 200'000, key);
+  CHECK(exact.probability[0] == 1);
+  const double phi = 1 - exact.probability[3];
+  CHECK(exact.probability[1] == Approx(1 - phi * 0.027).margin(2e-3));
+  // A deposit is no fluid, but the paper finds its voids near the theory's.
+  CHECK(exact.probability[4] == Approx(gotoh_void_probability(phi, 1.2)).margin(0.03));
+}
+
+TEST_CASE("Gotoh's chance of a void is that of the table") {
+  std::ifstream file(TEST_DATA "/voronoi/pore_P0.csv");
+  int compared = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.front() == '#' || line.front() == 'p') continue;
+    double phi = 0, sigma = 0, expected = 0;
+    char comma = 0;
+    std::istringstream(line) >> phi >> comma >> sigma >> comma >> expected;
+    CAPTURE(phi, sigma);
+    CHECK(gotoh_void_probability(phi, sigma) == Approx(expected).epsilon(1e-4).margin(1e-12));
+    ++compared;
+  }
+  CHECK(compared > 100);
+}
+
+TEST_CASE("Regions keep away from walls") {
+  const Region region{1, 10, 2};
+  CHECK(region.volume(WalledBox{16, 16}) == 9 * 12 * 12);
+  CHECK(region.volume(PeriodicBox{16, 16}) == 9 * 256);
+  CHECK(region.volume(Cylinder{10}) == Approx(9 * 28.274333882308138));
+  CHECK_FALSE(region.contains(WalledBox{16, 16}, {1.9, 8, 5}));
+  CHECK(region.contains(PeriodicBox{16, 16}, {1.9, 8, 5}));
+  CHECK_FALSE(region.contains(Cylinder{10}, {5, 8.1, 5}));
+  CHECK(region.contains(Cylinder{10}, {5, 7.9, 5}));
+}
+
+TEST_CASE("The chance of a void is exact for small spheres in every container") {
+  // Against 20 000 random points of the region, by brute force: within 3 standard errors.
+  for (const Container& container :
+       {Container{WalledBox{4.5, 5}}, Container{Cylinder{5}}, Container{PeriodicBox{4.5, 5}},
+        Container{FullyPeriodicBox{4.5, 5, 6.5}}}) {
+    Packing packing{container, {}};
+    for (int i = 0; i < 4 * 4 * 5; ++i) {
+      const Vec3 r{0.55 + 1.03 * (i % 4), 0.6 + 1.1 * (i / 4 % 4), 0.5 + 1.2 * (i / 16)};
+      if (!std::holds_alternative<Cylinder>(container) ||
+          norm_squared(r - Vec3{2.5, 2.5, r.z}) < 4) {
+        packing.centres.push_back(r);
+      }
+    }
+    const Region region{1.1, 4.3, 0.7};
+    const std::vector<double> sigma = {0.4, 0.9, 1};
+    const VoidProbability exact = void_probability(packing, region, sigma, 100, StreamKey{7});
+    constexpr int n_points = 20'000;
+    RandomStream random(StreamKey{20'262});
+    std::vector<int> empty(sigma.size(), 0);
+    for (int p = 0; p < n_points;) {
+      const Vec3 r{4.5 * random.uniform(), 5 * random.uniform(), 5 * random.uniform()};
+      if (!region.contains(container, r)) continue;
+      ++p;
+      double nearest = 100;
+      for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
+        nearest = std::min(nearest, distance_to(packing, r, i));
+      }
+      for (std::size_t s = 0; s < sigma.size(); ++s) {
+        empty[s] += nearest >= sigma[s] * sphere_radius ? 1 : 0;
+      }
+    }
+    for (std::size_t s = 0; s < sigma.size(); ++s) {
+      const double p = exact.probability[s];
+      CHECK(exact.error[s] == 0);
+      CHECK(std::abs(empty[s] / double{n_points} - p) < 3 * std::sqrt(p * (1 - p) / n_points));
+    }
+  }
+}
