@@ -7,13 +7,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "cli/arguments.hpp"
-#include "cli/commands.hpp"
-#include "cli/failure.hpp"
-#include "cli/scene_file.hpp"
-#include "cli/standard_streams.hpp"
-#include "cli/version.hpp"
+#include "cli/commands/arguments.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/failure.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/version.hpp"
 #include "results/export/printable.hpp"
+#include "study/scene_file.hpp"
 
 namespace jostle {
 namespace {

@@ -18,7 +18,7 @@ if(revision STREQUAL "")
   set(revision unknown)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
-#include "cli/version.hpp"
+#include "cli/terminal/version.hpp"
 
 namespace jostle {
 

@@ -16,20 +16,22 @@ MAY_INCLUDE = {
     "config": {"engine", "structure", "ensemble", "config"},
     "results": {"engine", "structure", "ensemble", "results"},
     "bench": {"engine", "structure", "fitting", "ensemble", "config", "bench", "tests"},
-    "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "cli"},
+    "study": {"engine", "structure", "fitting", "ensemble", "config", "results", "study", "cli"},
+    "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "study",
+            "cli"},
 }
 
 # What else only some may see.
 RESERVED = {
     r"hdf5|H5\w*\.h": {"results"},
     r"openssl/": {"results"},
-    r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/version.cpp"},
-    r"nlohmann/": {"config", "results", "cli"},
+    r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/terminal/version.cpp"},
+    r"nlohmann/": {"config", "results", "study", "cli"},
     r"CLI/": {"cli"},
     r"Eigen/": {"fitting", "ensemble"},
     r"spdlog/": {"cli"},
     r"Random123/": {"engine"},
-    r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "cli"},
+    r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "study", "cli"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -1,5 +1,5 @@
-#include "cli/curve_file.hpp"
-#include "cli/scene_file.hpp"
+#include "study/scene_file.hpp"
+#include "study/tables/curve_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
 // A file holds a curve, of columns of one length, or is refused as bad input.

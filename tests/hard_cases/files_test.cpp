@@ -2,12 +2,12 @@
 #include <fstream>
 #include <functional>
 
-#include "cli/curve_file.hpp"
-#include "cli/scene_file.hpp"
 #include "results/error.hpp"
 #include "results/export/packing_file.hpp"
 #include "results/live_run.hpp"
 #include "results/tables.hpp"
+#include "study/scene_file.hpp"
+#include "study/tables/curve_file.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/engine/sample_packings.hpp"
 #include "tests/hard_cases/mutations.hpp"

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/durations.hpp"
+#include "cli/terminal/effects.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/text_table.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "study/available_cpus.hpp"
+#include "study/cost/pilot.hpp"
+#include "study/scene_file.hpp"
+#include "study/scene_warnings.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
+constexpr double process_bytes = 40e6;               // libraries and bookkeeping
+
+struct CheckArguments {
+  std::string scene;
+  int threads = 0;  // 0: what the process may use
+  bool no_pilot = false;
+};
+
+/// First, middle and last point: costs differ along a sweep.
+std::vector<std::size_t> pilot_points(std::size_t n_points) {
+  std::vector<std::size_t> points{0, n_points / 2, n_points - 1};
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+void print_size(const LoadedScene& loaded, const Study& study) {
+  std::uint64_t taps = 0;
+  for (const auto& point : study.points) taps += point.taps * study.realizations;
+  print(fmt::format("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
+                    counted(study.realizations, "realization"),
+                    counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
+  constexpr std::size_t most_labels = 1000;
+  std::string labels;
+  for (const auto& point :
+       std::span(study.points).first(std::min(study.points.size(), most_labels))) {
+    if (!point.label.empty()) labels += fmt::format("  {}\n", point.label);
+  }
+  if (study.points.size() > most_labels) {
+    labels += fmt::format("  ... and {} more\n", study.points.size() - most_labels);
+  }
+  print(labels);
+  if (!loaded.scene.until.targets.empty()) {
+    print(fmt::format("  at first: realizations are added until they are enough, at most {}\n",
+                      loaded.scene.until.at_most));
+  }
+  print(fmt::format("  disk: at most {}, parts and results together\n",
+                    format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
+}
+
+void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
+  std::string pilot = counted(plan.n_spheres, "sphere");
+  if (estimate.n_spheres < plan.n_spheres) {
+    pilot = fmt::format("{} of {}", estimate.n_spheres, pilot);
+  }
+  if (estimate.n_strengths > 1) {
+    pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
+  }
+  print(fmt::format(
+      "  {}{}{}, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a realization\n",
+      plan.label, plan.label.empty() ? "" : ": ", pilot,
+      format_count(static_cast<double>(estimate.trials)), format_count(estimate.trials_per_second),
+      estimate.settled ? "about" : "at least", estimate.sweeps_per_tap,
+      estimate.settled ? "about" : "at least", format_duration(estimate.realization)));
+}
+
+void print_pilot(const LoadedScene& loaded, int cpus) {
+  print("cost, extrapolated from the first taps of a pilot\n");
+  const auto points = pilot_points(loaded.plans.size());
+  Seconds mean{0};
+  std::size_t bytes = 0;
+  bool settled = true;
+  for (const std::size_t point : points) {
+    const PilotEstimate estimate = pilot(loaded.plans[point], pilot_budget / points.size());
+    print_pilot_line(loaded.plans[point], estimate);
+    mean += estimate.realization / static_cast<double>(points.size());
+    bytes = std::max(bytes, estimate.bytes);
+    settled = settled && estimate.settled;
+  }
+  const std::size_t realizations = loaded.plans.size() * loaded.scene.realizations;
+  const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
+  const std::size_t rounds = (realizations + threads - 1) / threads;
+  const char* const about = settled ? "about" : "at least";
+  print(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
+                    format_duration(mean * static_cast<double>(rounds)), counted(threads, "thread"),
+                    mean.count() * static_cast<double>(realizations) / 3600));
+  print(fmt::format("  memory: about {}\n",
+                    format_bytes(process_bytes + static_cast<double>(threads * bytes))));
+}
+
+void check(const CheckArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene);
+  print(fmt::format("{}\n\n", loaded.resolved));
+  print(effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
+  print_size(loaded, study_of(loaded));
+  const std::vector<std::string> warnings = scene_warnings(loaded);
+  if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));
+  if (arguments.no_pilot) return;
+  try {
+    print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());
+  } catch (const StartError& error) {
+    throw BadInput(fmt::format("{}: /start: {}", arguments.scene, error.what()));
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("check", "Say what a scene means and what it will cost");
+  auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("scene", arguments->scene, "The scene, a JSON file")->required();
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Estimate for so many (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
+  command->add_flag("--no-pilot", arguments->no_pilot,
+                    "Leave out the short trial that time and memory are estimated from");
+  command->footer(
+      "Examples:\n"
+      "  jostle check scene.json              up to about ten seconds\n"
+      "  jostle check scene.json --no-pilot   at once, without estimates of time and memory\n"
+      "\n"
+      "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
+  command->callback([arguments, &code] {
+    check(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

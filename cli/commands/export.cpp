@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "cli/commands/arguments.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/output_file.hpp"
+#include "cli/terminal/results_input.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/text_table.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/export/export.hpp"
+#include "results/results_file.hpp"
+#include "study/scene_file.hpp"
+
+namespace jostle {
+namespace {
+
+const std::map<std::string, ExportFormat> formats = {{"extxyz", ExportFormat::extended_xyz},
+                                                     {"lammps", ExportFormat::lammps},
+                                                     {"vtp", ExportFormat::vtk}};
+
+struct ExportArguments {
+  std::string input, output, format, point;
+  std::vector<std::string> taps;
+  std::uint32_t realization = 0;
+  bool realization_given = false, force = false;
+  Live live = Live::no;
+};
+
+KeptTaps tap_choice(const std::vector<std::string>& words) {
+  KeptTaps choice;
+  for (const std::string& word : words) {
+    std::uint64_t tap = 0;
+    const char* const end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, tap);
+    if (word == "all") {
+      choice.all = true;
+    } else if (read.ec == std::errc() && read.ptr == end) {
+      choice.taps.push_back(tap);
+    } else {
+      throw BadInput(
+          fmt::format("--tap {}: neither a number nor \"all\"; several: --tap 0,10,100", word));
+    }
+  }
+  return choice;
+}
+
+/// Packings, and what they are called.
+struct Wanted {
+  std::vector<ExportedFrame> frames;
+  std::string source;  // for people
+  std::string suffix;  // tells the default name from those of other packings of the file
+};
+
+Wanted wanted(const ExportArguments& arguments) {
+  const KeptTaps taps = tap_choice(arguments.taps);
+  const std::string& input = arguments.input;
+  if (is_results_file(input)) {
+    const ResultsFile file = open_results(input, arguments.live);
+    const std::uint32_t point =
+        arguments.point.empty() ? 0 : chosen_points(file.study(), arguments.point).front();
+    const RealizationId id{point, arguments.realization};
+    Wanted found{kept_frames(file, id, taps),
+                 fmt::format("sweep point {}, realization {}, tap", id.point, id.realization), ""};
+    if (file.study().points.size() > 1) found.suffix += fmt::format("_point{}", id.point);
+    if (arguments.realization_given) found.suffix += fmt::format("_realization{}", id.realization);
+    return found;
+  }
+  if (!arguments.point.empty() || arguments.realization_given || arguments.live == Live::yes) {
+    throw BadInput(fmt::format(
+        "{}: not a results file: --sweep-point, --realization and --live mean nothing", input));
+  }
+  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
+    throw BadInput(
+        fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+  }
+  return {kept_frames(input, taps), fmt::format("{}, frame", input), ""};
+}
+
+int export_packings(const ExportArguments& arguments) {
+  const ExportFormat format = formats.at(arguments.format);
+  const Wanted found = wanted(arguments);
+  const std::string output = !arguments.output.empty()
+                                 ? arguments.output
+                                 : std::filesystem::path(arguments.input).stem().string() +
+                                       found.suffix + "." + extension(format);
+  const auto files = exported_files(format, output, found.frames);
+  // Nothing is written where one of the files may not be.
+  for (const ExportedFile& file : files) {
+    require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
+    require_text_output("-o", file.path, std::span(&arguments.input, 1), arguments.force);
+  }
+  std::vector<std::uint64_t> taps;
+  for (const ExportedFrame& frame : found.frames) taps.push_back(frame.tap);
+  for (const ExportedFile& file : files) write_text(file.path, file.text);
+  print(fmt::format("{}: {} {}, {}\n", files.back().path, found.source, list_of(taps),
+                    counted(found.frames.front().packing.centres.size(), "sphere")));
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("export", "Write packings for OVITO, ParaView and others");
+  auto arguments = std::make_shared<ExportArguments>();
+  ExportArguments& a = *arguments;
+  command->add_option("file", a.input, "Results, or a packing in extended XYZ")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--format", a.format, "extxyz, lammps (text dump), vtp (VTK points)")
+      ->required()
+      ->check(CLI::IsMember({"extxyz", "lammps", "vtp"}));
+  command
+      ->add_option("-o,--output", a.output,
+                   "The file to write (default: the input's name, of a sweep with _pointP, with "
+                   ".xyz, .dump or .vtp, in the current folder)")
+      ->check(file_to_write());
+  command->add_option("--sweep-point", a.point,
+                      "Its number, or POINTER=VALUE of the sweep (default: the first)");
+  auto* realization =
+      command->add_option("--realization", a.realization, "Its number (default: 0)");
+  command
+      ->add_option("--tap", a.taps,
+                   "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
+                   "commas, or all (default: the last)")
+      ->delimiter(',');
+  add_live(*command, a.live);
+  command->add_flag("--force", a.force, "Replace files that exist");
+  command->footer(
+      "Examples:\n"
+      "  jostle export quickstart.h5 --format extxyz            writes quickstart.xyz\n"
+      "  jostle export quickstart.h5 --format lammps --tap all  every snapshot, a frame each\n"
+      "  jostle export quickstart.h5 --format vtp --tap 0,100   two .vtp files, and a .pvd of "
+      "both\n"
+      "  jostle export packing.xyz --format vtp -o packing.vtp\n"
+      "\n"
+      "Every sphere with its radius, coordination (centres within 1.05 diameters), the volume of\n"
+      "its Voronoi cell, q6 and crystal structure. A scene can start from the extended XYZ: the\n"
+      "same bits.");
+  command->callback([arguments, realization, &code] {
+    arguments->realization_given = realization->count() > 0;
+    code = export_packings(*arguments);
+  });
+}
+
+}  // namespace jostle

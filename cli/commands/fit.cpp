@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+
+#include "cli/commands/arguments.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/fit_output.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/output_file.hpp"
+#include "cli/terminal/results_input.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
+#include "fitting/models/models.hpp"
+#include "study/available_cpus.hpp"
+#include "study/provenance.hpp"
+#include "study/scene_file.hpp"
+#include "study/tables/curve_file.hpp"
+#include "study/tables/fit_source.hpp"
+#include "study/tables/fits.hpp"
+
+namespace jostle {
+
+namespace {
+
+struct FitArguments {
+  std::string input, observable, point, model = "all", range, csv;
+  std::vector<std::string> fixed;
+  std::string resample = "none";
+  std::uint32_t count = 1000;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool json = false, force = false, not_stored = false, verbose = false;
+  bool realizations = false;  // columns of a curve file
+  Live live = Live::no;
+  bool resampling_asked_for = false;
+};
+
+std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
+  auto models = models_named(name);
+  if (!models.empty()) return models;
+  std::vector<std::string> names{"all"};
+  for (const auto& model : all_models()) names.push_back(model->name());
+  throw BadInput(fmt::format("--model {}: there is none; there are {}.{}", name,
+                             joined(names, ", "), did_you_mean(name, names)));
+}
+
+std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {
+  std::map<std::string, double> fixed;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    char* end = nullptr;
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const double number = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0' || !std::isfinite(number)) {
+      throw BadInput(fmt::format("--fix {}: not NAME=NUMBER", text));
+    }
+    const std::string name = text.substr(0, equals);
+    if (!fixed.emplace(name, number).second) {
+      throw BadInput(fmt::format("--fix {}: {} is fixed already", text, name));
+    }
+  }
+  return fixed;
+}
+
+std::vector<FitSource> read_sources(const FitArguments& arguments) {
+  if (is_results_file(arguments.input)) {
+    if (arguments.realizations) {
+      throw BadInput(
+          "--realizations is of the columns of a text file; a results file knows its own");
+    }
+    if (arguments.observable.empty()) {
+      throw BadInput("a results file needs --observable NAME; jostle info lists them");
+    }
+    // Tap 0 is the start: a law of taps begins with the first.
+    const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
+    return results_curves(arguments.input, arguments.observable, arguments.point, range,
+                          arguments.live);
+  }
+  if (!arguments.observable.empty() || !arguments.point.empty()) {
+    throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
+                               arguments.input));
+  }
+  if (arguments.resampling_asked_for && !arguments.realizations) {
+    throw BadInput(fmt::format(
+        "{}: not a results file, and without realizations (--realizations) that --resample, "
+        "--resamples or --seed could be of",
+        arguments.input));
+  }
+  const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
+  FitSource source;
+  const auto columns = arguments.realizations ? CurveColumns::realizations : CurveColumns::errors;
+  source.curve = within(read_curve(arguments.input, columns), range.first, range.last);
+  source.title = arguments.input;
+  if (arguments.realizations) {
+    source.title += fmt::format(", {} realizations", source.curve.n_realizations);
+  }
+  return {source};
+}
+
+FitManner manner_of(const FitArguments& arguments) {
+  return {.fixed = fixed_parameters(arguments.fixed),
+          .resampled = arguments.resample != "none",
+          .resampling = {.kind = arguments.resample == "bootstrap" ? Resampling::bootstrap
+                                                                   : Resampling::jackknife,
+                         .count = arguments.count,
+                         .seed = arguments.seed,
+                         .threads = arguments.threads > 0 ? arguments.threads : available_cpus()}};
+}
+
+nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+  nlohmann::json object = {{"title", source.title}, {"fits", nlohmann::json::array()}};
+  if (source.point) {
+    object["observable"] = source.observable;
+    object["sweep_point"] = *source.point;
+    object["label"] = source.label;
+    object["realizations"] = std::max<std::size_t>(source.curve.n_realizations, 1);
+  }
+  if (!source.curve.t.empty()) object["range"] = {source.curve.t.front(), source.curve.t.back()};
+  for (const FitOutcome& outcome : outcomes) object["fits"].push_back(fit_json(outcome));
+  return object;
+}
+
+int run_fits(const FitArguments& arguments) {
+  require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
+  const auto models = chosen_models(arguments.model);
+  const std::vector<FitSource> sources = read_sources(arguments);
+  if (!arguments.csv.empty() && sources.size() > 1) {
+    throw BadInput("--csv holds one curve: choose it with --sweep-point");
+  }
+  const FitManner manner = manner_of(arguments);
+  const Provenance by = provenance_of_this_run("");
+  const ReportDetail detail = arguments.verbose ? ReportDetail::full : ReportDetail::brief;
+  bool any = false;
+  std::vector<Table> tables;
+  nlohmann::json curves = nlohmann::json::array();
+  for (const FitSource& source : sources) {
+    const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
+    for (const FitOutcome& outcome : outcomes) {
+      any = any || std::holds_alternative<Fit>(outcome.result);
+    }
+    if (arguments.json) {
+      curves.push_back(source_json(source, outcomes));
+    } else {
+      print(fits_text(source, outcomes, detail));
+    }
+    if (source.point) {
+      const auto made = fit_tables(source, outcomes, manner);
+      tables.insert(tables.end(), made.begin(), made.end());
+    }
+    if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, outcomes));
+  }
+  if (arguments.json) {
+    const nlohmann::json object = {
+        {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
+    print_json(object);
+  }
+  if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
+    keep_tables(arguments.input, "fits", tables, by);
+  }
+  return any ? exit_ok : exit_bad_input;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("fit", "Fit the papers' laws to results or a measured curve");
+  auto arguments = std::make_shared<FitArguments>();
+  FitArguments& a = *arguments;
+  command
+      ->add_option("input", a.input,
+                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--observable", a.observable, "Which column of the results");
+  command->add_option("--sweep-point", a.point,
+                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
+  command->add_option("--model", a.model,
+                      "A law of docs/fitting.md, or all: every law of relaxation (default)");
+  command->add_option("--range", a.range,
+                      "FIRST:LAST of t, either may be left out (default: results from tap 1)");
+  command->add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
+  command->add_flag("--realizations", a.realizations,
+                    "The text file has a column t and one column of X a realization, two or more");
+  auto* resample =
+      command
+          ->add_option(
+              "--resample", a.resample,
+              "Also errors from resampled realizations: jackknife, bootstrap, none (default)")
+          ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
+  auto* count = command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
+                    ->check(CLI::Range(2, 1000000));
+  auto* seed = command->add_option("--seed", a.seed, "Of the bootstrap (default 1)");
+  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
+      ->check(CLI::Range(1, 4096))
+      ->envname("JOSTLE_THREADS");
+  command->add_flag("--verbose", a.verbose,
+                    "Also linear errors, 68 % intervals and the statistics of each fit");
+  command->add_flag("--json", a.json, "Print JSON, for programs");
+  command->add_option("--csv", a.csv, "Also write the curve with its fits to this file")
+      ->check(file_to_write());
+  command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
+  add_live(*command, a.live);
+  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
+  command->footer(
+      "Examples:\n"
+      "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
+      "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
+      "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
+      "  jostle fit experiments.csv --realizations --model inverse_log      a column an "
+      "experiment\n"
+      "\n"
+      "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
+      "Exit code 2 where no law could be fitted.");
+  command->callback([=, &code] {
+    arguments->resampling_asked_for = (resample->count() > 0 && arguments->resample != "none") ||
+                                      count->count() > 0 || seed->count() > 0;
+    code = run_fits(*arguments);
+  });
+}
+
+}  // namespace jostle

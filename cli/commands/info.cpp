@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/effects.hpp"
+#include "cli/terminal/report.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/text_table.hpp"
+#include "results/error.hpp"
+#include "results/live_run.hpp"
+#include "results/results_file.hpp"
+#include "results/tables.hpp"
+#include "study/scene_file.hpp"
+
+namespace jostle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name(RunState state) {
+  switch (state) {
+    case RunState::running:
+      return "running";
+    case RunState::interrupted:
+      return "interrupted";
+    case RunState::complete:
+      return "complete";
+  }
+  return "unknown";
+}
+
+const char* name(RealizationStatus status) {
+  switch (status) {
+    case RealizationStatus::missing:
+      return "missing";
+    case RealizationStatus::running:
+      return "running";
+    case RealizationStatus::done:
+      return "done";
+    case RealizationStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+/// A file whose run was killed says "running" still, and one that a run goes on from says what it
+/// was: the lock tells.
+std::string state_of(const RunStatus& status) {
+  if (status.owner && status.owner->alive) return "running";
+  if (status.state != RunState::running) return name(status.state);
+  return "killed; --resume goes on";
+}
+
+Json realization_json(const RealizationSummary& one) {
+  Json json{{"point", one.id.point},      {"realization", one.id.realization},
+            {"status", name(one.status)}, {"taps_recorded", one.rows},
+            {"trials", one.work.trials},  {"seconds", one.work.seconds}};
+  if (!one.reason.empty()) json["reason"] = one.reason;
+  return json;
+}
+
+/// A value of the sweep as the scene has it.
+Json json_or_text(const std::string& value) {
+  Json json = Json::parse(value, nullptr, false);
+  return json.is_discarded() ? Json(value) : json;
+}
+
+Json info_json(const ResultsFile& file, const RunStatus& status) {
+  const Study& study = file.study();
+  Json points = Json::array(), realizations = Json::array();
+  for (const auto& point : study.points) {
+    Json values = Json::object();
+    for (const auto& [pointer, value] : point.sweep_values) values[pointer] = json_or_text(value);
+    points.push_back({{"label", point.label},
+                      {"values", values},
+                      {"spheres", point.n_spheres},
+                      {"taps", point.taps},
+                      {"seed", point.seed}});
+  }
+  for (const auto& one : status.realizations) realizations.push_back(realization_json(one));
+  return {{"file", file.path()},
+          {"state", name(status.state)},
+          {"alive", status.owner && status.owner->alive},
+          {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
+          {"version", file.provenance().front().version},
+          {"git_revision", file.provenance().front().git_revision},
+          {"scene", stored_scene(file)},
+          {"points", points},
+          {"realizations", realizations},
+          {"tables", table_names(file.path())},
+          {"bytes", {{"file", status.file_bytes}, {"parts", status.parts_bytes}}}};
+}
+
+std::string counts(const ResultsFile& file, const RunStatus& status) {
+  std::map<RealizationStatus, std::uint64_t> by_status;
+  std::uint64_t rows = 0, all_rows = 0;
+  for (const auto& one : status.realizations) {
+    if (!in_share(file.shard(), file.study(), one.id)) continue;
+    ++by_status[one.status];
+    rows += one.rows;
+    all_rows += file.study().points[one.id.point].taps + 1;
+  }
+  std::string text;
+  for (const auto& [status_of_some, n] : by_status) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, name(status_of_some));
+  }
+  return text + fmt::format("; {} of {} taps", rows, all_rows);
+}
+
+std::string info_text(const ResultsFile& file, const RunStatus& status) {
+  const Study& study = file.study();
+  const Json scene = stored_scene(file);
+  std::string text =
+      fmt::format("{}: {}, {}\n", file.path(), scene.value("name", ""), state_of(status));
+  if (const std::string about = scene.value("description", ""); !about.empty()) {
+    text += about + "\n";
+  }
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  {:<13}{}\n", key, value);
+  };
+  line("sweep points", fmt::to_string(study.points.size()));
+  line("realizations", fmt::format("{} a point: {}", study.realizations, counts(file, status)));
+  if (file.shard().count > 1) {
+    line("shard", fmt::format("{}/{}", file.shard().index, file.shard().count));
+  }
+  line("seed", fmt::to_string(study.points.front().seed));
+  line("size", fmt::format("{} and {} of parts", format_bytes(double(status.file_bytes)),
+                           format_bytes(double(status.parts_bytes))));
+  for (const std::string& table : table_names(file.path())) line("table", "/" + table);
+  for (const auto& process : file.provenance()) {
+    line("made by", fmt::format("jostle {} ({}) on {}, {}, {} thread{}", process.version,
+                                process.git_revision, process.host, process.started,
+                                process.threads, process.threads == "1" ? "" : "s"));
+  }
+  std::string curves;
+  try {
+    const ResultsFile live = live_results(file.path(), Content::without_snapshots);
+    if (status.parts_bytes > 0) line("curves", "so far, with the last checkpoints");
+    curves = report(live);
+  } catch (const ResultsError& error) {  // no room for a temporary file, for one
+    line("curves", fmt::format("of the last stop, without checkpoints: {}", error.what()));
+    curves = report(file);
+  }
+  return text + effects_text(scene) + "\n" + curves;
+}
+
+struct InfoArguments {
+  std::string file;
+  bool digest = false, json = false;
+};
+
+void info(const InfoArguments& arguments) {
+  if (arguments.digest) {
+    print(fmt::format("{}\n", digest_of(arguments.file)));
+    return;
+  }
+  const ResultsFile file(arguments.file);
+  const RunStatus status = run_status(arguments.file);
+  try {
+    if (arguments.json) {
+      print_json(info_json(file, status));
+    } else {
+      print(info_text(file, status));
+    }
+  } catch (const Json::exception&) {
+    throw ResultsError(arguments.file,
+                       "its scene (/scene/resolved) is not as jostle writes it; restore the file "
+                       "from a copy");
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("info", "Summarise a results file, also of a live run");
+  auto arguments = std::make_shared<InfoArguments>();
+  command->add_option("file", arguments->file, "The results")->required();
+  auto* digest = command->add_flag("--digest", arguments->digest,
+                                   "Print the SHA-256 of the data alone, the same for equal runs");
+  command->add_flag("--json", arguments->json, "Print the summary as JSON")->excludes(digest);
+  command->footer(
+      "Examples:\n"
+      "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
+      "  jostle info quickstart.h5 --digest   tells whether two runs gave the same numbers");
+  command->callback([arguments, &code] {
+    info(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
+#include "config/shipped_scenes.hpp"
+#include "results/export/input_file.hpp"
+#include "study/scene_file.hpp"
+
+namespace jostle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* schema_name = "scene.schema.json";
+
+struct NewArguments {
+  std::string name, from = "quickstart";
+  bool force = false;
+};
+
+std::string text_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const ShippedScene& scene : shipped_scenes()) {
+    if (scene.name == name || fmt::format("{}.json", scene.name) == name) {
+      return std::string(scene.text);
+    }
+    names.emplace_back(scene.name);
+  }
+  throw BadInput(fmt::format("--from {}: there is no such scene.{} There are\n  {}", name,
+                             did_you_mean(name, names), joined(names, "\n  ")));
+}
+
+/// The text with another string at a key (a regular expression) of its outermost object, the first
+/// of that name.
+std::string with_string(const std::string& text, const char* key, const std::string& value) {
+  const std::regex member(fmt::format("(\"{}\"\\s*:\\s*)\"[^\"]*\"", key));
+  std::smatch found;
+  if (!std::regex_search(text, found, member)) return text;
+  return fmt::format("{}{}\"{}\"{}", found.prefix().str(), found.str(1), value,
+                     found.suffix().str());
+}
+
+/// The schema beside the scene, which editors complete its keys by.
+void write_schema(const fs::path& path, bool force) {
+  if (fs::exists(path) && !force) {
+    if (read_text_file(path.string()) == scene_schema()) return;
+    print_to_standard_error(fmt::format(
+        "jostle: {} is not the schema of this version, and is kept; --force replaces it\n",
+        path.string()));
+    return;
+  }
+  write_text(path.string(), std::string(scene_schema()));
+}
+
+int write_new_scene(const NewArguments& arguments) {
+  fs::path path = arguments.name;
+  if (path.extension() == ".json") path.replace_extension();
+  const std::string name = path.filename().string();
+  path += ".json";
+  std::string text = with_string(text_of(arguments.from), "name", name);
+  text = with_string(text, "\\$schema", schema_name);
+  const ParsedScene parsed = parse_scene(text);
+  if (!parsed.scene)
+    throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));
+  if (fs::exists(path) && !arguments.force) {
+    throw BadInput(
+        fmt::format("{} exists and is kept: take another name, or replace it with "
+                    "--force",
+                    path.string()));
+  }
+  write_text(path.string(), text);
+  write_schema(path.parent_path() / schema_name, arguments.force);
+  print(fmt::format(
+      "{0}: a copy of {1}; jostle check {0} says what it costs, jostle run {0} writes {2}.h5\n",
+      path.string(), arguments.from, parsed.scene->name));
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, int& code) {
+  auto* command = app.add_subcommand("new", "Write a scene of your own, from one that is shipped");
+  auto arguments = std::make_shared<NewArguments>();
+  command->add_option("name", arguments->name, "Of the scene: NAME.json is written")->required();
+  command->add_option("--from", arguments->from,
+                      "A shipped scene (default: quickstart); an unknown name lists them");
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->footer(
+      "Examples:\n"
+      "  jostle new my-bed                                     writes my-bed.json\n"
+      "  jostle new bell --from philippe-bideau-2001/fig4-bell\n"
+      "\n"
+      "The scene names its results NAME.h5, and the schema that is written beside it, by which\n"
+      "editors complete and check its keys.");
+  command->callback([arguments, &code] { code = write_new_scene(*arguments); });
+}
+
+}  // namespace jostle

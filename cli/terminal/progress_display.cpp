@@ -1,0 +1,91 @@
+#include "cli/terminal/progress_display.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "cli/terminal/durations.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/text_table.hpp"
+
+namespace jostle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds live_interval{500};
+constexpr std::chrono::seconds plain_interval{30};
+constexpr const char* clear_line = "\r\033[K";
+
+Clock::duration interval_of(ProgressStyle style) {
+  return style == ProgressStyle::live ? Clock::duration(live_interval) : plain_interval;
+}
+
+}  // namespace
+
+std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
+                          std::chrono::duration<double> elapsed) {
+  const std::uint64_t taps = progress.taps_done;
+  std::string line = fmt::format(
+      "{}/{} done, {} running, {} failed; taps {}/{}; {} trials/s",
+      progress.realizations_done.load(), ahead.realizations, progress.realizations_running.load(),
+      progress.realizations_failed.load(), taps, ahead.taps, format_count(rate));
+  if (taps > 0 && taps <= ahead.taps) {
+    const double left = static_cast<double>(ahead.taps - taps) / static_cast<double>(taps);
+    line += fmt::format("; {} left", format_duration(elapsed * left));
+  }
+  return line;
+}
+
+ProgressDisplay::ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style)
+    : progress_(progress), ahead_(ahead), style_(style) {
+  if (style == ProgressStyle::none) return;
+  clock_ = std::jthread([this](std::stop_token token) {
+    try {
+      show_until(token);
+    } catch (const std::bad_alloc&) {  // no more lines; the run is told where it needs memory
+    }
+  });
+}
+
+ProgressDisplay::~ProgressDisplay() {
+  if (!clock_.joinable()) return;
+  clock_.request_stop();
+  clock_.join();
+  if (style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
+}
+
+void ProgressDisplay::show_until(std::stop_token token) {
+  const bool live = style_ == ProgressStyle::live;
+  const Clock::duration interval = interval_of(style_);
+  const auto began = Clock::now();
+  auto last_time = began;
+  std::uint64_t last_trials = progress_.trials_done;
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, token, interval, [&] { return token.stop_requested(); })) {
+    const auto now = Clock::now();
+    const std::uint64_t trials = progress_.trials_done;
+    const std::chrono::duration<double> since = now - last_time;
+    const double rate = static_cast<double>(trials - last_trials) / since.count();
+    const std::string line = progress_line(progress_, ahead_, rate, now - began);
+    print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
+    last_time = now;
+    last_trials = trials;
+  }
+}
+
+StoringDisplay::~StoringDisplay() {
+  if (shown_ && style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
+}
+
+void StoringDisplay::show(std::uint64_t done, std::uint64_t of) {
+  const auto now = Clock::now();
+  if (style_ == ProgressStyle::none || now - last_ < interval_of(style_)) return;
+  last_ = now;
+  shown_ = true;
+  const std::string line = fmt::format("writing the results: {}/{} realizations", done, of);
+  const bool live = style_ == ProgressStyle::live;
+  print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
+}
+
+}  // namespace jostle

@@ -1,0 +1,109 @@
+#include "cli/terminal/results_input.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/terminal/standard_streams.hpp"
+#include "results/export/input_file.hpp"
+#include "results/live_run.hpp"
+#include "study/scene_file.hpp"
+
+namespace jostle {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_value(const StudyPoint& point, const std::string& wanted) {
+  return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
+                     [&](const auto& value) { return value.first + "=" + value.second == wanted; });
+}
+
+/// The sweep points that can be named, one a line.
+std::string known(const Study& study) {
+  constexpr std::size_t most_lines = 50;
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(study.points.size(), most_lines); ++i) {
+    lines += fmt::format("\n  {}", i);
+    for (const auto& [pointer, value] : study.points[i].sweep_values) {
+      lines += fmt::format("  {}={}", pointer, value);
+    }
+  }
+  if (study.points.size() > most_lines) {
+    lines += fmt::format("\n  ... and {} more", study.points.size() - most_lines);
+  }
+  return lines;
+}
+
+}  // namespace
+
+bool is_results_file(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;  // and nothing is taken out of a pipe
+  std::array<std::byte, 8> signature{};
+  InputFile(path).read(signature);
+  return std::memcmp(signature.data(), "\x89HDF\r\n\x1a\n", signature.size()) == 0;
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (fs::equivalent(a, b, ignored)) return true;
+  return fs::weakly_canonical(fs::absolute(a), ignored) ==
+         fs::weakly_canonical(fs::absolute(b), ignored);
+}
+
+void add_live(CLI::App& command, Live& live) {
+  command.add_flag_callback(
+      "--live", [&live] { live = Live::yes; },
+      "Read the checkpoints of an unfinished run too; its results file stays as it is");
+}
+
+ResultsFile open_results(const std::string& path, Live live) {
+  ResultsFile file = live == Live::yes ? live_results(path) : ResultsFile(path);
+  if (file.state() == RunState::running) {
+    throw BadInput(fmt::format(
+        "{}: its run goes on or was killed, and {}. Finish it with jostle run SCENE --resume; "
+        "jostle info {} says how far it is.",
+        path,
+        live == Live::yes ? "it has no checkpoint yet"
+                          : "its file has no taps yet; --live reads its checkpoints",
+        path));
+  }
+  if (file.state() == RunState::interrupted) {
+    print_to_standard_error(fmt::format(
+        "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "
+        "jostle run SCENE --resume.\n",
+        path, live == Live::yes ? "checkpoints" : "stop"));
+  }
+  return file;
+}
+
+void require_different(std::span<const std::string> paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!is_same_file(paths[i], paths[j])) continue;
+      throw BadInput(fmt::format("{} is given twice, and counts once", paths[i]));
+    }
+  }
+}
+
+std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
+    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(study.points[i], wanted)) {
+      chosen.push_back(i);
+    }
+  }
+  if (chosen.empty()) {
+    throw BadInput(
+        fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known(study)));
+  }
+  return chosen;
+}
+
+}  // namespace jostle

@@ -1,0 +1,69 @@
+#include "cli/terminal/standard_streams.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <initializer_list>
+#include <iostream>
+
+#include "results/export/printable.hpp"
+
+namespace jostle {
+namespace {
+
+/// Whatever interrupts or shortens a write. Returns errno of what failed, 0 if nothing did.
+int write_whole(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void guard_files() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // open() takes the lowest number that is free: this one.
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0) return;
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void outlive_readers() {
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void print(std::string_view text) {
+  print_exactly(printable(text));
+}
+
+// std::cout holds the one bit of state that standard output has; nothing is written through it.
+void print_exactly(std::string_view text) {
+  if (output_is_lost()) return;
+  const int error = write_whole(STDOUT_FILENO, text);
+  if (error == 0) return;
+  std::cout.setstate(std::ios::badbit);
+  print_to_standard_error(
+      fmt::format("jostle: cannot write to standard output: {}\n", std::strerror(error)));
+}
+
+bool output_is_lost() {
+  return std::cout.bad();
+}
+
+void print_to_standard_error(std::string_view text) {
+  print_to_standard_error_exactly(printable(text));
+}
+
+void print_to_standard_error_exactly(std::string_view text) {
+  write_whole(STDERR_FILENO, text);
+}
+
+}  // namespace jostle

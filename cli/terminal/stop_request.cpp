@@ -1,0 +1,66 @@
+#include "cli/terminal/stop_request.hpp"
+
+#include <csignal>
+
+namespace jostle {
+namespace {
+
+// A signal handler reaches nothing but statics: the only mutable ones of the program.
+std::atomic<bool> stop_asked{false};
+std::atomic<int> asked_by{0};  // a signal number, or time_limit_reached
+constexpr int time_limit_reached = -1;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGUSR1};
+
+void ask(int by) {
+  int nobody = 0;
+  asked_by.compare_exchange_strong(nobody, by);
+  stop_asked = true;
+}
+
+}  // namespace
+
+StopRequest::StopRequest() {
+  stop_asked = false;
+  asked_by = 0;
+  for (const int signal : stop_signals) {
+    struct sigaction action = {};
+    action.sa_handler = ask;
+    action.sa_flags = SA_RESTART | (signal == SIGINT ? static_cast<int>(SA_RESETHAND) : 0);
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+void StopRequest::stop_after(Seconds limit) {
+  clock_ = std::jthread([this, limit](std::stop_token token) {
+    std::unique_lock lock(mutex_);
+    ended_.wait_for(lock, token, limit, [] { return false; });
+    if (!token.stop_requested()) ask(time_limit_reached);
+  });
+}
+
+StopRequest::~StopRequest() {
+  for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
+}
+
+const std::atomic<bool>& StopRequest::flag() const {
+  return stop_asked;
+}
+
+std::string StopRequest::reason() const {
+  switch (asked_by) {
+    case 0:
+      return "";
+    case SIGINT:
+      return "SIGINT";
+    case SIGTERM:
+      return "SIGTERM";
+    case SIGUSR1:
+      return "SIGUSR1";
+    default:
+      return "the time limit";
+  }
+}
+
+}  // namespace jostle

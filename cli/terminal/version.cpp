@@ -1,0 +1,33 @@
+#include "cli/terminal/version.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/version.h>
+#include <tbb/version.h>
+#include <CLI/Version.hpp>
+#include <nlohmann/json.hpp>
+
+#include "results/study.hpp"
+
+namespace jostle {
+
+const char* version() {
+  return JOSTLE_VERSION;
+}
+
+std::string version_text() {
+#ifdef __clang__
+  const std::string compiler = fmt::format("clang {}", __clang_version__);
+#else
+  const std::string compiler = fmt::format("g++ {}", __VERSION__);
+#endif
+  return fmt::format(
+      "jostle {} (git {})\n"
+      "compiler {}\n"
+      "{}, oneTBB {}, nlohmann-json {}.{}.{}, CLI11 {}, fmt {}.{}.{}, spdlog {}.{}.{}",
+      version(), git_revision(), compiler, provenance_of_this_machine().libraries,
+      TBB_runtime_version(), NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+      NLOHMANN_JSON_VERSION_PATCH, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR, SPDLOG_VER_PATCH);
+}
+
+}  // namespace jostle

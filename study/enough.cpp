@@ -1,0 +1,92 @@
+#include "study/enough.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/counted.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// The target's largest spread over its taps; NaN where one has fewer than two realizations.
+double largest_spread(const ResultsFile& file, std::uint32_t point, const SpreadTarget& target) {
+  std::vector<std::uint64_t> taps = target.taps;
+  if (taps.empty()) taps = {file.study().points[point].taps};
+  double largest = 0;
+  for (const std::uint64_t tap : taps) {
+    Moments moments;
+    for (const double value :
+         file.block(point, target.observable, {tap, tap + 1}, {0, file.study().realizations})) {
+      moments.add(value);
+    }
+    const double error = moments.standard_error();  // NaN below two, where sigma is 0
+    const double spread = target.spread == Spread::sigma && error >= 0 ? moments.sigma() : error;
+    if (!(spread <= largest)) largest = spread;
+  }
+  return largest;
+}
+
+const char* name_of(Spread spread) {
+  return spread == Spread::sigma ? "sigma" : "standard_error";
+}
+
+}  // namespace
+
+EnoughStatus enough_status(const ResultsFile& file, const Enough& until) {
+  EnoughStatus status;
+  status.realizations = file.study().realizations;
+  std::vector<SpreadFound> found;
+  std::vector<std::uint64_t> rows, points;
+  std::vector<std::string> observables, spreads;
+  std::vector<double> values, limits;
+  for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
+    for (const SpreadTarget& target : until.targets) {
+      const double value = largest_spread(file, point, target);
+      found.push_back({target.spread, value, target.at_most});
+      rows.push_back(rows.size());
+      points.push_back(point);
+      observables.push_back(target.observable);
+      spreads.emplace_back(name_of(target.spread));
+      values.push_back(value);
+      limits.push_back(target.at_most);
+    }
+  }
+  status.met = std::ranges::all_of(found, [](const SpreadFound& one) { return one.met(); });
+  status.next = next_realizations(status.realizations, found, until.at_most);
+  const std::vector<std::string> along = {"target"};
+  status.table = {.name = "enough",
+                  .axes = {{"target", along, rows, "1", "targets at sweep points", ""}},
+                  .quantities = {{"point", along, points, "1", "sweep point", ""},
+                                 {"observable", along, observables, "1", "observable", ""},
+                                 {"spread", along, spreads, "1", "what is to be small", ""},
+                                 {"value", along, values, "", "largest over the taps", ""},
+                                 {"at_most", along, limits, "", "what was asked for", ""}},
+                  .notes = {{"realizations", fmt::to_string(status.realizations)},
+                            {"verdict", status.met ? "met" : "not met"}}};
+  return status;
+}
+
+std::string enough_line(const EnoughStatus& status) {
+  const auto& values = std::get<std::vector<double>>(status.table.quantities[3].values);
+  const auto& limits = std::get<std::vector<double>>(status.table.quantities[4].values);
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double excess = values[i] / limits[i], most = values[farthest] / limits[farthest];
+    if (!(excess <= most)) farthest = i;
+  }
+  const auto text = [&](std::size_t column) {
+    return std::get<std::vector<std::string>>(status.table.quantities[column].values)[farthest];
+  };
+  const char* const verdict = status.met                          ? "enough"
+                              : status.next > status.realizations ? "not enough yet"
+                                                                  : "NOT enough, but the limit";
+  return fmt::format("{} {} {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
+                     counted(status.realizations, "realization"),
+                     status.realizations == 1 ? "is" : "are", verdict, text(2), text(1),
+                     values[farthest], limits[farthest]);
+}
+
+}  // namespace jostle

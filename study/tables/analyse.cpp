@@ -1,0 +1,170 @@
+#include "study/tables/analyse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/table_output.hpp"
+#include "config/grids.hpp"
+#include "ensemble/analysis/ageing/ageing_table.hpp"
+#include "ensemble/analysis/hysteresis.hpp"
+#include "results/layout.hpp"
+#include "results/tables.hpp"
+#include "study/point_scenes.hpp"
+#include "study/provenance.hpp"
+#include "study/scene_file.hpp"
+#include "study/tables/sweep.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// Where an analysis finds what is not in its series.
+struct Surroundings {
+  const ResultsFile& file;
+  std::uint32_t point;
+  int threads;
+};
+
+Table made(const ObservableSeries& series, const SteadySettings& settings, const Surroundings&) {
+  const AnalysedSeries analysed = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
+  SteadyStateTest test;
+  series.for_each({analysed.first_tap, analysed.last_tap + 1},
+                  [&](std::span<const double> values) { test.add(values); });
+  return steady_table(analysed, test.result());
+}
+
+Table made(const ObservableSeries& series, const SpectrumSettings& settings, const Surroundings&) {
+  const AnalysedSeries analysed = last_taps(series, settings.last, 2, fewest_spectrum_taps);
+  if (settings.segment && *settings.segment > analysed.n_taps()) {
+    throw BadInput(fmt::format("a segment of {} taps is longer than the {} analysed",
+                               *settings.segment, analysed.n_taps()));
+  }
+  SpectrumAnalysis analysis(analysed, settings);
+  series.for_each({analysed.first_tap, analysed.last_tap + 1},
+                  [&](std::span<const double> values) { analysis.add(values); });
+  return analysis.table();
+}
+
+/// A lag of a tap follows the last waiting time.
+void require_reached(const char* what, std::span<const std::uint64_t> taps, std::uint64_t last) {
+  const auto beyond = std::ranges::find_if(taps, [&](std::uint64_t tap) { return tap > last; });
+  if (beyond == taps.end()) return;
+  throw BadInput(fmt::format("{} {} is too late: the last possible is {}", what, *beyond, last));
+}
+
+Table made(const ObservableSeries& series, const AgeingSettings& settings,
+           const Surroundings& around) {
+  if (series.n_rows() < 3) throw BadInput("needs two taps");
+  require_reached("waiting time", settings.waiting_times, series.n_rows() - 2);
+  require_reached("lag", settings.lags, series.n_rows() - 1);
+  AgeingGrid grid = ageing_grid(series.n_rows());
+  if (!settings.waiting_times.empty()) grid.waiting_times = settings.waiting_times;
+  if (!settings.lags.empty()) grid.lags = settings.lags;
+  TapRows rows{.taps = taps_of(grid), .realizations = series.n_realizations(), .values = {}};
+  std::erase_if(rows.taps, [&](std::uint64_t tap) { return tap >= series.n_rows(); });
+  rows.values = series.rows(rows.taps);
+  return ageing_table("", series.label(), rows, grid, around.threads);
+}
+
+Table made(const ObservableSeries& series, const HysteresisSettings& settings,
+           const Surroundings& around) {
+  const std::vector<Stage> protocol = stages(PointScenes(around.file).at(around.point).protocol);
+  std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
+  for (const Stage& stage : protocol) shortest = std::min(shortest, stage.count);
+  if (protocol.empty()) throw BadInput("the protocol has no taps");
+  const std::uint64_t last = settings.last.value_or(std::max<std::uint64_t>(1, shortest / 4));
+  const auto found = protocol_steps(protocol, last);
+  if (const auto* refusal = std::get_if<std::string>(&found)) throw BadInput(*refusal);
+  const auto& steps = std::get<ProtocolSteps>(found);
+  std::vector<double> values;
+  for (const StepTaps& window : steps.windows) {
+    const std::vector<double> means = series.means({window.first, window.last + 1});
+    values.insert(values.end(), means.begin(), means.end());
+  }
+  return hysteresis_table("", series.label(), steps, values, series.n_realizations());
+}
+
+template <class Settings>
+void add_tables(const Surroundings& around, const char* kind,
+                const std::vector<AnalysisRequest<Settings>>& requests,
+                std::vector<Table>& tables) {
+  for (const auto& request : requests) {
+    const auto& [file, point, threads] = around;
+    const ObservableSeries series(file, point, request.observable);
+    Table table;
+    try {
+      if (series.n_realizations() == 0) throw BadInput("there is no realization with taps");
+      table = made(series, request.settings, around);
+    } catch (const BadInput& refusal) {
+      table.notes = {{"refused", refusal.what()}};
+    }
+    table.name = fmt::format("{}/{}/{}", point_name(point), kind, request.observable);
+    const std::string& label = file.study().points[point].label;
+    if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
+    tables.push_back(std::move(table));
+  }
+}
+
+}  // namespace
+
+std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
+                           const Analyses& analyses, int threads) {
+  std::vector<Table> tables;
+  for (const std::uint32_t point : points) {
+    const Surroundings around{file, point, threads};
+    add_tables(around, "steady", analyses.steady, tables);
+    add_tables(around, "spectrum", analyses.spectrum, tables);
+    add_tables(around, "ageing", analyses.ageing, tables);
+    add_tables(around, "hysteresis", analyses.hysteresis, tables);
+  }
+  return tables;
+}
+
+AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
+                         std::uint64_t divisor, std::uint64_t least) {
+  const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
+  const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
+  if (available < least) {
+    throw BadInput(fmt::format("needs at least {} taps; there are {}", least, available));
+  }
+  if (wanted < least) {
+    throw BadInput(fmt::format("asks for the last {} taps; at least {} are needed", wanted, least));
+  }
+  if (wanted > available) {
+    throw BadInput(fmt::format("asks for the last {} taps; there are {}", wanted, available));
+  }
+  return {.observable = series.label().name,
+          .units = series.label().units,
+          .first_tap = available + 1 - wanted,
+          .last_tap = available};
+}
+
+bool is_made(const Table& table) {
+  return std::ranges::none_of(table.notes,
+                              [](const auto& note) { return note.first == "refused"; });
+}
+
+void make_scene_analyses(const std::string& results, int threads, bool quiet) {
+  std::vector<Table> tables;
+  {
+    const ResultsFile file(results);
+    const ParsedScene parsed = parse_scene(file.study().resolved_scene);
+    if (!parsed.scene || parsed.scene->analyse.empty()) return;
+    std::vector<std::uint32_t> points(file.study().points.size());
+    for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
+    tables = analyse(file, points, parsed.scene->analyse, threads);
+    const ResultsFile* const files[] = {&file};
+    for (Table& table : sweep_tables(files, tables, parsed.scene->analyse.sweep)) {
+      tables.push_back(std::move(table));
+    }
+  }
+  for (const Table& table : tables) {
+    if (!quiet) print(table_text(table, Detail::brief).insert(0, 1, '\n'));
+  }
+  store_tables(results, "analysis", tables, provenance_of_this_run(fmt::to_string(threads)));
+}
+
+}  // namespace jostle

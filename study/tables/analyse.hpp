@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "results/results_file.hpp"
+#include "study/observable_series.hpp"
+
+namespace jostle {
+
+/// The tables of all analyses at the given sweep points, point_PPPP/<analysis>/<observable>, as
+/// results files keep them; those over the points of a sweep are not made here. An analysis that is
+/// not possible gives a table with the note "refused" alone. The tables do not depend on the number
+/// of threads. Throws BadInput for an observable that there is not.
+std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
+                           const Analyses& analyses, int threads);
+
+/// The last taps of a series, without its start: `n_taps`, or where that is absent a part of them,
+/// 1/divisor, at least `least`. Throws BadInput where there are not so many.
+AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
+                         std::uint64_t divisor, std::uint64_t least);
+
+/// Whether the table holds an analysis, and no refusal.
+bool is_made(const Table& table);
+
+/// Makes, prints briefly (unless quiet) and stores the analyses that the scene of a complete
+/// results file asks for. Throws ResultsError.
+void make_scene_analyses(const std::string& results, int threads, bool quiet);
+
+}  // namespace jostle

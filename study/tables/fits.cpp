@@ -1,0 +1,238 @@
+#include "study/tables/fits.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "cli/terminal/standard_streams.hpp"
+#include "config/scene.hpp"
+#include "fitting/report.hpp"
+#include "results/layout.hpp"
+#include "results/results_file.hpp"
+#include "results/tables.hpp"
+#include "study/provenance.hpp"
+
+namespace jostle {
+
+namespace {
+
+FitOutcome fit_model(const Model& model, const FitSource& source, const FitManner& manner) {
+  FitOptions options;
+  options.fixed = manner.fixed;
+  FitOutcome outcome{model.name(), fit(model, source.curve, options), {}};
+  const auto* found = std::get_if<Fit>(&outcome.result);
+  const Curve& curve = source.curve;
+  if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
+  const RealizationCurves behind{curve.t, curve.sigma, curve.values,
+                                 static_cast<std::uint32_t>(curve.n_realizations)};
+  outcome.resampled = resample(model, behind, *found, manner.resampling);
+  return outcome;
+}
+
+// In units of the observable, X, and of taps, t.
+const char* unit_text(ParameterUnit unit) {
+  switch (unit) {
+    case ParameterUnit::none:
+      return "1";
+    case ParameterUnit::value:
+      return "X";
+    case ParameterUnit::time:
+      return "t";
+    case ParameterUnit::value_per_time:
+      return "X/t";
+    case ParameterUnit::value_time:
+      return "X t";
+    case ParameterUnit::per_time:
+      return "1/t";
+  }
+  return "";
+}
+
+std::string lines(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all.append(all.empty() ? "" : "\n").append(text);
+  return all;
+}
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+Quantity values(std::string name, std::vector<std::string> axes, std::vector<double> numbers,
+                std::string long_name) {
+  return {std::move(name), std::move(axes), std::move(numbers), "", std::move(long_name), ""};
+}
+
+void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
+  std::vector<std::string> names, units, statements;
+  std::vector<double> value, error, linear, resampled, lower, upper, covariance, correlation;
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    const Estimate& estimate = fit.estimates[j];
+    names.push_back(estimate.parameter.name);
+    units.push_back(unit_text(estimate.parameter.unit));
+    statements.push_back(estimate.statement);
+    value.push_back(estimate.has_value() ? estimate.value : not_a_number);
+    error.push_back(estimate.has_value() ? estimate.error : not_a_number);
+    linear.push_back(estimate.standard_error);
+    if (outcome.resampled) resampled.push_back(outcome.resampled->errors[j]);
+    for (const Interval& interval : estimate.intervals) {
+      lower.push_back(interval.lower);
+      upper.push_back(interval.upper);
+    }
+    for (std::size_t k = 0; k < fit.estimates.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(j), column = static_cast<Eigen::Index>(k);
+      covariance.push_back(fit.covariance(row, column));
+      correlation.push_back(fit.correlation(row, column));
+    }
+  }
+  const std::vector<std::string> one = {"parameter"}, matrix = {"parameter", "other_parameter"},
+                                 ends = {"parameter", "level"};
+  table.axes = {{"parameter", one, names, "", "parameters of the law", ""},
+                {"other_parameter", {"other_parameter"}, names, "", "the same", ""},
+                values("level", {"level"}, {interval_levels[0], interval_levels[1]},
+                       "probability of an interval")};
+  table.quantities = {
+      values("value", one, value, "least squares; not a number where the data set no limits"),
+      values("error", one, error,
+             "standard error that counts realizations or memory, for Student's t of error_dof"),
+      values("standard_error", one, linear, "of a linear problem with independent points"),
+      {"units", one, units, "", "units of the parameter", ""},
+      {"statement", one, statements, "", "what the data say of the parameter", ""},
+      values("interval_lower", ends, lower, "lower end of the profile-likelihood interval"),
+      values("interval_upper", ends, upper, "upper end of the profile-likelihood interval"),
+      values("covariance", matrix, covariance, "covariance"),
+      values("correlation", matrix, correlation, "correlation")};
+  if (!resampled.empty()) {
+    table.quantities.push_back(
+        values("resampled_error", one, resampled, "error from resampled realizations"));
+  }
+}
+
+void add_curve(Table& table, const Curve& source, const Fit& fit) {
+  const Curve curve = with_pooled_errors(source, fit.logarithmic);
+  const std::vector<std::string> along = {"t"};
+  table.axes.push_back(values("t", along, curve.t, "taps"));
+  table.quantities.push_back(values("x", along, curve.x, "mean over realizations"));
+  if (!curve.sigma.empty()) {
+    table.quantities.push_back(
+        values("x_error", along, curve.sigma, "standard error of the mean, pooled over taps"));
+  }
+  table.quantities.push_back(values("fitted", along, fit.fitted, "the law"));
+}
+
+void add_statistics(Table& table, const Fit& fit) {
+  const std::pair<const char*, double> numbers[] = {{"residual_sum", fit.residual_sum},
+                                                    {"reduced_chi2", fit.reduced_chi2},
+                                                    {"r2", fit.r2},
+                                                    {"aic", fit.aic},
+                                                    {"bic", fit.bic},
+                                                    {"aic_effective", fit.aic_effective},
+                                                    {"bic_effective", fit.bic_effective},
+                                                    {"condition", fit.condition},
+                                                    {"effective_points", fit.effective_size},
+                                                    {"weighted_points", fit.weighted_size},
+                                                    {"error_dof", fit.error_dof},
+                                                    {"error_factor", fit.error_factor},
+                                                    {"runs_p", fit.runs.p}};
+  for (const auto& [name, value] : numbers) {
+    table.quantities.push_back(values(name, {}, {value}, ""));
+  }
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Model>> models_named(const std::string& name) {
+  std::vector<std::unique_ptr<Model>> models;
+  if (name == "all") {
+    for (const std::string& law : relaxation_laws()) models.push_back(make_model(law));
+  } else if (auto model = make_model(name)) {
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& models,
+                                   const FitSource& source, const FitManner& manner) {
+  std::vector<FitOutcome> outcomes;
+  for (const auto& model : models) outcomes.push_back(fit_model(*model, source, manner));
+  return outcomes;
+}
+
+std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes,
+                      ReportDetail detail) {
+  std::string text = source.title + "\n";
+  std::vector<Fit> fits;
+  for (const FitOutcome& outcome : outcomes) {
+    text += '\n';
+    text += fit_text(outcome, detail);
+    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+  }
+  if (fits.size() > 1) text.append("\n").append(compare(fits));
+  text += '\n';
+  return text;
+}
+
+std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutcome>& outcomes,
+                              const FitManner& manner) {
+  std::vector<Table> tables;
+  for (const FitOutcome& outcome : outcomes) {
+    Table table;
+    table.name = fmt::format("{}/{}/{}", point_name(source.point.value_or(0)), source.observable,
+                             outcome.model);
+    table.notes = {{"observable", source.observable}, {"sweep_point", source.label}};
+    if (!source.curve.t.empty()) {
+      table.notes.emplace_back("range",
+                               fmt::format("{}:{}", source.curve.t.front(), source.curve.t.back()));
+    }
+    if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
+      table.notes.emplace_back("refused", refusal->message);
+      tables.push_back(std::move(table));
+      continue;
+    }
+    const Fit& fit = std::get<Fit>(outcome.result);
+    table.notes.emplace_back("law", fit.formula);
+    table.notes.emplace_back("source", fit.source);
+    table.notes.emplace_back("ended", describe(fit.reason));
+    table.notes.emplace_back("realizations", fmt::to_string(source.curve.n_realizations));
+    table.notes.emplace_back("remarks", lines(fit.remarks));
+    if (!fit.combinations.empty()) {
+      std::vector<std::string> statements;
+      for (const Estimate& found : fit.combinations) statements.push_back(found.statement);
+      table.notes.emplace_back("combinations", lines(statements));
+    }
+    if (outcome.resampled) {
+      const bool bootstrap = manner.resampling.kind == Resampling::bootstrap;
+      table.notes.emplace_back(
+          "resampling",
+          fmt::format("{}, {} resamples, {} of them without a settled fit",
+                      bootstrap ? fmt::format("bootstrap with seed {}", manner.resampling.seed)
+                                : std::string("jackknife"),
+                      outcome.resampled->resamples, outcome.resampled->failed));
+    }
+    add_parameters(table, outcome, fit);
+    add_curve(table, source.curve, fit);
+    add_statistics(table, fit);
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+void make_scene_fits(const std::string& results, int threads, bool quiet) {
+  const ParsedScene parsed = parse_scene(ResultsFile(results).study().resolved_scene);
+  if (!parsed.scene || parsed.scene->fits.empty()) return;
+  const FitManner manner{.resampling = {.threads = threads}};
+  std::vector<Table> tables;
+  for (const FitRequest& request : parsed.scene->fits) {
+    const auto models = models_named(request.model);
+    const FitRange range{static_cast<double>(request.first),
+                         request.last ? static_cast<double>(*request.last)
+                                      : std::numeric_limits<double>::infinity()};
+    for (const FitSource& source : results_curves(results, request.observable, "", range)) {
+      const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
+      if (!quiet) print(fits_text(source, outcomes).insert(0, 1, '\n'));
+      const auto made = fit_tables(source, outcomes, manner);
+      tables.insert(tables.end(), made.begin(), made.end());
+    }
+  }
+  store_tables(results, "fits", tables, provenance_of_this_run(fmt::to_string(threads)));
+}
+
+}  // namespace jostle

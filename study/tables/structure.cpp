@@ -1,0 +1,293 @@
+#include "study/tables/structure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/table_output.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/analysis/structure_tables.hpp"
+#include "ensemble/parallel.hpp"
+#include "results/export/export.hpp"
+#include "results/export/extended_xyz.hpp"
+#include "results/export/particle_columns.hpp"
+#include "results/layout.hpp"
+#include "results/tables.hpp"
+#include "study/point_scenes.hpp"
+#include "study/provenance.hpp"
+#include "study/scene_file.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// A kept packing, or none.
+struct KeptPacking {
+  std::uint64_t tap = 0;
+  Packing packing;
+};
+
+/// The packings of one ensemble, read realization by realization.
+struct KeptEnsemble {
+  std::string name;  // for messages
+  std::vector<std::uint64_t> taps;
+  std::uint32_t realizations = 0;
+  std::function<std::vector<KeptPacking>(std::uint32_t realization)> read;  // one call at a time
+  std::uint64_t seed = 0, sweep_point = 0;                                  // of random points
+};
+
+/// Measures one packing after another, on many threads. Those of a realization are read together.
+class Measurer {
+ public:
+  Measurer(const KeptEnsemble& ensemble, const StructureSettings& settings)
+      : ensemble_(ensemble),
+        settings_(settings),
+        n_jobs_(ensemble.taps.size() * ensemble.realizations),
+        failures_(n_jobs_) {
+    structure_.taps = ensemble.taps;
+    structure_.packings.assign(ensemble.taps.size(),
+                               std::vector<std::vector<Measurement>>(ensemble.realizations));
+  }
+
+  EnsembleStructure measured(int threads) {
+    on_threads(threads, [this] { work(); });
+    for (const std::exception_ptr& failure : failures_) {
+      if (failure) std::rethrow_exception(failure);
+    }
+    return std::move(structure_);
+  }
+
+ private:
+  using Packings = std::vector<KeptPacking>;
+
+  void work() {
+    for (std::size_t job = next_++; job < n_jobs_; job = next_++) {
+      try {
+        measure_one(static_cast<std::uint32_t>(job / ensemble_.taps.size()),
+                    job % ensemble_.taps.size());
+      } catch (...) {
+        failures_[job] = std::current_exception();
+      }
+    }
+  }
+
+  /// Jobs come in the order of realizations: the last one read is nearly always the one wanted.
+  std::shared_ptr<const Packings> packings_of(std::uint32_t realization) {
+    const std::lock_guard lock(reading_);
+    if (!read_ || read_realization_ != realization) {
+      read_ = std::make_shared<const Packings>(ensemble_.read(realization));
+      read_realization_ = realization;
+    }
+    return read_;
+  }
+
+  void measure_one(std::uint32_t r, std::size_t place) {
+    const std::uint64_t tap = ensemble_.taps[place];
+    const auto packings = packings_of(r);
+    const auto kept = std::ranges::find(*packings, tap, &KeptPacking::tap);
+    if (kept == packings->end()) return;
+    try {
+      structure_.packings[place][r] =
+          measure(wrapped_inside(kept->packing), settings_,
+                  stream_key(ensemble_.seed, ensemble_.sweep_point, r, Purpose::void_points));
+    } catch (const std::invalid_argument& error) {
+      throw BadInput(
+          fmt::format("{}, realization {}, tap {}: {}", ensemble_.name, r, tap, error.what()));
+    }
+  }
+
+  const KeptEnsemble& ensemble_;
+  const StructureSettings& settings_;
+  std::size_t n_jobs_;
+  EnsembleStructure structure_;
+  std::vector<std::exception_ptr> failures_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex reading_;
+  std::shared_ptr<const Packings> read_;
+  std::uint32_t read_realization_ = 0;
+};
+
+/// The tables, each with what it was measured with.
+std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ensemble,
+                             const StructureSettings& settings, int threads) {
+  const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
+  const auto written = resolved(settings);
+  std::vector<Table> tables = structure_tables(prefix, structure, settings);
+  for (Table& table : tables) {
+    const auto part = written.find(table.name.substr(prefix.size()));
+    table.notes.emplace_back("settings", part->dump());
+    table.notes.emplace_back(
+        "region", settings.region
+                      ? written["region"].dump()
+                      : "of each packing: heights 1 to 10 but at most 2<Z> - 1, 1 from walls; all "
+                        "of a fully periodic box");
+  }
+  return tables;
+}
+
+[[noreturn]] void refuse_without_packings(const std::string& name) {
+  throw BadInput(
+      fmt::format("{}: no packings are kept: every realization failed, or the scene keeps none; it "
+                  "keeps them with \"snapshots\": {{\"taps\": [...], \"keep\": [\"positions\"]}}",
+                  name));
+}
+
+std::vector<Table> tables_without_packings(const std::string& prefix,
+                                           const StructureSettings& settings) {
+  std::vector<Table> tables;
+  for (const std::string& part : parts_of(settings)) {
+    tables.push_back({.name = prefix + part,
+                      .notes = {{"refused", "no realization has a packing at this point"}}});
+  }
+  return tables;
+}
+
+/// Of the taps that there are, those that are named; all if none is.
+std::vector<std::uint64_t> chosen_taps(const std::string& name,
+                                       const std::vector<std::uint64_t>& there,
+                                       std::span<const std::uint64_t> named) {
+  if (named.empty()) return there;
+  std::vector<std::uint64_t> chosen(named.begin(), named.end());
+  std::ranges::sort(chosen);
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  for (const std::uint64_t tap : chosen) {
+    if (!std::ranges::binary_search(there, tap)) {
+      throw BadInput(
+          fmt::format("{}: no packing of tap {}; there are {}", name, tap, list_of(there)));
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::uint64_t> kept_taps(const ResultsFile& file, std::uint32_t point) {
+  std::vector<std::uint64_t> taps;
+  for (std::uint32_t r = 0; r < file.study().realizations; ++r) {
+    for (const SnapshotRecord& snapshot : file.snapshots({point, r})) {
+      if (!snapshot.centres.empty()) taps.push_back(snapshot.tap);
+    }
+  }
+  std::ranges::sort(taps);
+  taps.erase(std::unique(taps.begin(), taps.end()), taps.end());
+  return taps;
+}
+
+KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
+  const Scene scene = PointScenes(file).at(point);
+  const Container& container = file.study().points[point].container;
+  KeptEnsemble ensemble{.name = fmt::format("{}, sweep point {}", file.path(), point),
+                        .taps = kept_taps(file, point),
+                        .realizations = file.study().realizations,
+                        .read = {},
+                        .seed = scene.seed,
+                        .sweep_point = file.study().points[point].id};
+  ensemble.read = [&file, &container, point](std::uint32_t r) {
+    std::vector<KeptPacking> packings;
+    for (SnapshotRecord& snapshot : file.snapshots({point, r})) {
+      if (snapshot.centres.empty()) continue;
+      packings.push_back({snapshot.tap, {container, std::move(snapshot.centres)}});
+    }
+    return packings;
+  };
+  return ensemble;
+}
+
+}  // namespace
+
+std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> taps, int threads) {
+  std::vector<KeptEnsemble> ensembles;
+  for (const std::uint32_t point : points) ensembles.push_back(ensemble_at(file, point));
+  const auto is_empty = [](const KeptEnsemble& ensemble) { return ensemble.taps.empty(); };
+  if (std::ranges::all_of(ensembles, is_empty)) refuse_without_packings(file.path());
+  std::vector<Table> tables;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::uint32_t point = points[k];
+    KeptEnsemble& ensemble = ensembles[k];
+    const std::string prefix = point_name(point) + "/";
+    std::vector<Table> of_point;
+    if (is_empty(ensemble)) {
+      of_point = tables_without_packings(prefix, settings);
+    } else {
+      ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
+      of_point = tables_of(prefix, ensemble, settings, threads);
+    }
+    for (Table& table : of_point) {
+      const std::string& label = file.study().points[point].label;
+      if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
+      tables.push_back(std::move(table));
+    }
+  }
+  return tables;
+}
+
+std::vector<Table> structure_of(std::span<const std::string> files,
+                                const StructureSettings& settings,
+                                std::span<const std::uint64_t> frames, int threads) {
+  std::vector<std::vector<Packing>> packings;
+  std::size_t most = 0;
+  for (const std::string& path : files) {
+    packings.push_back(read_extended_xyz_frames(path));
+    most = std::max(most, packings.back().size());
+    for (const Packing& packing : packings.back()) {
+      if (packing.container == packings.front().front().container) continue;
+      throw BadInput(fmt::format(
+          "{}: its container is not that of {}: only packings of one container have a mean", path,
+          files.front()));
+    }
+    const auto twin = std::ranges::find_if(packings, [&](const std::vector<Packing>& other) {
+      return std::ranges::equal(other, packings.back(), {}, &Packing::centres, &Packing::centres);
+    });
+    if (twin != packings.end() - 1) {
+      throw BadInput(fmt::format("{}: the same packings as in {}, and not another realization",
+                                 path, files[static_cast<std::size_t>(twin - packings.begin())]));
+    }
+  }
+  KeptEnsemble ensemble{.name = joined({files.begin(), files.end()}, ", "),
+                        .taps = {},
+                        .realizations = static_cast<std::uint32_t>(files.size()),
+                        .read = {},
+                        .seed = 1};
+  for (std::uint64_t frame = 0; frame < most; ++frame) ensemble.taps.push_back(frame);
+  ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, frames);
+  ensemble.read = [&packings](std::uint32_t r) {
+    std::vector<KeptPacking> kept;
+    for (std::size_t k = 0; k < packings[r].size(); ++k) kept.push_back({k, packings[r][k]});
+    return kept;
+  };
+  return tables_of("", ensemble, settings, threads);
+}
+
+StructureSettings structure_asked_for(const ResultsFile& file) {
+  const ParsedScene parsed = parse_scene(file.study().resolved_scene);
+  return parsed.scene ? parsed.scene->structure : StructureSettings{};
+}
+
+void make_scene_structure(const std::string& results, int threads, bool quiet) {
+  std::vector<Table> tables;
+  {
+    const ResultsFile file(results);
+    const StructureSettings settings = structure_asked_for(file);
+    if (settings.empty()) return;
+    std::vector<std::uint32_t> points(file.study().points.size());
+    for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
+    try {
+      tables = structure_of(file, points, settings, {}, threads);
+    } catch (const BadInput& refusal) {  // the run is stored and stays so
+      print_to_standard_error(fmt::format("jostle: no structure: {}\n", refusal.what()));
+      return;
+    }
+  }
+  for (const Table& table : tables) {
+    if (!quiet) print(fmt::format("\n{}", table_text(table, Detail::brief)));
+  }
+  store_tables(results, "structure", tables, provenance_of_this_run(fmt::to_string(threads)));
+}
+
+}  // namespace jostle

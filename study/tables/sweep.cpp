@@ -1,0 +1,260 @@
+#include "study/tables/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <regex>
+
+#include "config/json/json_text.hpp"
+#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/protocol_steps.hpp"
+#include "results/layout.hpp"
+#include "results/tables.hpp"
+#include "study/point_scenes.hpp"
+#include "study/scene_file.hpp"
+#include "study/tables/analyse.hpp"
+
+namespace jostle {
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// One sweep point of one file as a point of the curve.
+struct Member {
+  double x = not_a_number;
+  SweptValue swept;
+  std::string others;                // values of the sweep that do not vary with x
+  std::vector<double> realizations;  // of the value, by number; empty for other quantities
+  double y = not_a_number;
+  ErrorOf y_error;
+  ObservableLabel label;
+  std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
+};
+
+/// "/protocol/0/tap/dilate" -> 0.
+std::optional<std::size_t> tap_line(const std::string& pointer) {
+  static const std::regex of_tap("/protocol/([0-9]+)/tap(/.*)?");
+  std::smatch match;
+  if (!std::regex_match(pointer, match, of_tap)) return std::nullopt;
+  return std::stoul(match[1]);
+}
+
+/// What is swept, and the values of the sweep that do not vary with it.
+void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, const Scene& scene,
+           std::string against) {
+  if (against.empty()) {
+    against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
+  }
+  for (const auto& [pointer, value] : swept.sweep_values) {
+    if (pointer == against || scenes.vary_together(pointer, against)) continue;
+    member.others.append(member.others.empty() ? "" : ", ")
+        .append(pointer)
+        .append(" = ")
+        .append(value);
+  }
+  const auto line = tap_line(against);
+  if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
+    const Control strength = control(scene.protocol[*line].tap);
+    member.x = strength.value;
+    member.swept = {strength.name, strength.units, "strength of the taps"};
+    return;
+  }
+  const auto values = resolved(scene);
+  const Json::json_pointer place(against);
+  if (!values.contains(place)) throw BadInput(fmt::format("the scene has no value at {}", against));
+  const Json& value = values.at(place);
+  if (!value.is_number())
+    throw BadInput(fmt::format("{} is not a number: {}", against, value.dump()));
+  member.x = value.get<double>();
+  member.swept = {against.substr(against.rfind('/') + 1), "1", against};
+}
+
+/// The mean of the last taps, of each realization.
+void set_value(Member& member, const ObservableSeries& series, std::optional<std::uint64_t> last,
+               std::uint32_t n_realizations) {
+  if (series.n_realizations() == 0) return;
+  const AnalysedSeries taps = last_taps(series, last, 4, 1);
+  const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
+  member.realizations.assign(n_realizations, not_a_number);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    member.realizations[series.realizations()[i]] = means[i];
+  }
+}
+
+const Quantity* quantity_named(const Table& table, const std::string& name) {
+  for (const Quantity& quantity : table.quantities) {
+    if (quantity.name == name) return &quantity;
+  }
+  return nullptr;
+}
+
+double number_at(const Quantity* quantity, std::size_t place) {
+  const auto* numbers = quantity ? std::get_if<std::vector<double>>(&quantity->values) : nullptr;
+  return numbers && place < numbers->size() ? (*numbers)[place] : not_a_number;
+}
+
+/// An error as tables hold it; where they do not give its degrees of freedom it is taken for known.
+ErrorOf error_of(double error, double dof) {
+  if (std::isnan(error)) return {};
+  return {error, std::isnan(dof) ? std::numeric_limits<double>::infinity() : dof};
+}
+
+/// A single value of an analysis with its error.
+bool take_single(Member& member, const Table& table, const std::string& name) {
+  const Quantity* const found = quantity_named(table, name);
+  if (!found || !found->axes.empty()) return false;
+  member.y = number_at(found, 0);
+  member.y_error = error_of(number_at(quantity_named(table, name + "_error"), 0),
+                            number_at(quantity_named(table, name + "_dof"), 0));
+  member.label = {name, found->units, found->long_name, found->source};
+  return true;
+}
+
+/// A parameter of a fit with its error, which counts realizations or memory.
+bool take_parameter(Member& member, const Table& table, const std::string& name) {
+  for (const Quantity& axis : table.axes) {
+    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
+    if (axis.name != "parameter" || !names) continue;
+    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
+    if (place == names->size()) return false;
+    member.y = number_at(quantity_named(table, "value"), place);
+    member.y_error = error_of(number_at(quantity_named(table, "error"), place),
+                              number_at(quantity_named(table, "error_dof"), 0));
+    member.label = {name, "1", "parameter of a fit", ""};
+    return true;
+  }
+  return false;
+}
+
+/// "kww/rho_inf" of fits, "steady/sigma" of analyses.
+void set_derived(Member& member, std::span<const Table> analyses, std::span<const Table> fits,
+                 std::uint32_t point, const std::string& observable, const std::string& quantity) {
+  const std::size_t slash = quantity.find('/');
+  if (slash == std::string::npos) {
+    throw BadInput(
+        fmt::format("{}: expected value, or analysis/quantity or law/parameter", quantity));
+  }
+  const std::string kind = quantity.substr(0, slash), name = quantity.substr(slash + 1);
+  for (const Table& table : analyses) {
+    if (table.name != fmt::format("{}/{}/{}", point_name(point), kind, observable)) continue;
+    if (take_single(member, table, name)) return;
+  }
+  for (const Table& table : fits) {
+    if (table.name != fmt::format("{}/{}/{}", point_name(point), observable, kind)) continue;
+    if (take_parameter(member, table, name)) return;
+  }
+  throw BadInput(
+      fmt::format("{} of {} is not kept for sweep point {}: make the analysis or the fit first",
+                  quantity, observable, point));
+}
+
+Streams streams_of(std::span<const Member> members) {
+  const bool paired = std::ranges::all_of(
+      members, [&](const Member& member) { return member.stream == members.front().stream; });
+  return paired ? Streams::matched : Streams::independent;
+}
+
+/// The point of the curve at this place of its axis.
+std::size_t point_at(const SweepCurve& curve, double x) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    if (std::abs(curve.x()[i] - x) <= 1e-9 * std::abs(x)) return i;
+    places.push_back(fmt::format("{:.6g}", curve.x()[i]));
+  }
+  throw BadInput(
+      fmt::format("reference {}: there is no such point; there are {}", x, joined(places, ", ")));
+}
+
+Table curve_table(std::string name, std::span<const Member> members,
+                  const std::optional<double>& reference) {
+  std::vector<double> x, y;
+  std::vector<ErrorOf> y_error;
+  std::vector<std::vector<double>> realizations;
+  for (const Member& member : members) {
+    if (member.swept.name != members.front().swept.name) {
+      throw BadInput(fmt::format("{} and {} are not one sweep", member.swept.name,
+                                 members.front().swept.name));
+    }
+    x.push_back(member.x);
+    y.push_back(member.y);
+    y_error.push_back(member.y_error);
+    realizations.push_back(member.realizations);
+  }
+  const bool means = std::ranges::any_of(
+      members, [](const Member& member) { return !member.realizations.empty(); });
+  const SweepCurve curve =
+      means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
+  std::optional<std::size_t> point;
+  if (reference) point = point_at(curve, *reference);
+  return sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
+}
+
+std::vector<Member> members_of(std::span<const ResultsFile* const> files,
+                               std::span<const Table> made,
+                               const AnalysisRequest<SweepSettings>& request) {
+  const auto& [observable, settings] = request;
+  std::vector<Member> members;
+  for (const ResultsFile* file : files) {
+    const PointScenes scenes(*file);
+    std::vector<Table> analyses(made.begin(), file == files.front() ? made.end() : made.begin());
+    std::vector<Table> fits;
+    if (settings.quantity != "value") {
+      const auto kept = read_tables(file->path(), "analysis");
+      analyses.insert(analyses.end(), kept.begin(), kept.end());
+      fits = read_tables(file->path(), "fits");
+    }
+    for (std::uint32_t point = 0; point < file->study().points.size(); ++point) {
+      Member member;
+      const ObservableSeries series(*file, point, observable);
+      member.label = series.label();
+      const StudyPoint& studied = file->study().points[point];
+      const Scene scene = scenes.at(point);
+      set_x(member, studied, scenes, scene, settings.against);
+      if (settings.quantity == "value") {
+        set_value(member, series, settings.last, file->study().realizations);
+      } else {
+        set_derived(member, analyses, fits, point, observable, settings.quantity);
+      }
+      member.stream = {studied.seed, scene.streams == Streams::matched ? 0 : studied.id};
+      members.push_back(std::move(member));
+    }
+  }
+  return members;
+}
+
+}  // namespace
+
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files,
+                                std::span<const Table> made,
+                                const std::vector<AnalysisRequest<SweepSettings>>& requests) {
+  std::vector<Table> tables;
+  for (const auto& request : requests) {
+    std::string quantity = request.settings.quantity;
+    std::ranges::replace(quantity, '/', '_');
+    const std::string name = fmt::format("sweep/{}/{}", request.observable, quantity);
+    try {
+      std::map<std::string, std::vector<Member>> groups;
+      std::vector<std::string> order;
+      for (Member& member : members_of(files, made, request)) {
+        if (!groups.contains(member.others)) order.push_back(member.others);
+        groups[member.others].push_back(std::move(member));
+      }
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        Table table = curve_table(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
+                                  groups[order[i]], request.settings.reference);
+        if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
+        tables.push_back(std::move(table));
+      }
+    } catch (const BadInput& refusal) {
+      tables.push_back({.name = name, .notes = {{"refused", refusal.what()}}});
+    }
+  }
+  return tables;
+}
+
+}  // namespace jostle

@@ -1,0 +1,40 @@
+#include "cli/terminal/report.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/results/runs.hpp"
+#include "tests/results/temporary_folder.hpp"
+
+using namespace jostle;
+
+namespace {
+
+/// The report of a study of one point whose second realization ends after so many steps, three a
+/// tap.
+std::string report_of(std::uint64_t steps) {
+  const TemporaryFolder folder;
+  const Study study = synthetic::study({.points = 1, .realizations = 2});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  synthetic::run(*store, study, {0, 0});
+  synthetic::run(*store, study, {0, 1}, {.steps = steps});
+  store->finish();
+  return report(ResultsFile(folder / "a.h5"));
+}
+
+}  // namespace
+
+TEST_CASE("A report has the number of realizations a row where not all reached every tap") {
+  const std::string partial = report_of(7), whole = report_of(100);
+  CHECK(partial.starts_with("epsilon = 0\ntap  M  mean_height"));
+  CHECK(partial.find("\n  2  2  ") != std::string::npos);
+  CHECK(partial.find("\n  5  1  ") != std::string::npos);
+  CHECK(partial.find("\n  6  1  ") != std::string::npos);
+  CHECK(whole.starts_with("epsilon = 0\ntap  mean_height"));
+}
+
+TEST_CASE("Reported taps are about three a decade, with both ends") {
+  CHECK(reported_taps(0) == std::vector<std::uint64_t>{0});
+  CHECK(reported_taps(1) == std::vector<std::uint64_t>{0, 1});
+  CHECK(reported_taps(50) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50});
+  CHECK(reported_taps(400) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50, 100, 200, 400});
+}
