@@ -101,8 +101,8 @@ double total_error(const Setting& setting, std::uint64_t realizations) {
   return std::hypot(largest_bias(setting), statistical);
 }
 
-std::optional<Choice> cheapest(std::span<const Setting> settings, double target) {
-  std::optional<Choice> best;
+std::optional<Recommendation> cheapest(std::span<const Setting> settings, double target) {
+  std::optional<Recommendation> best;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const double bias = largest_bias(settings[i]);
     if (!(bias < target)) continue;

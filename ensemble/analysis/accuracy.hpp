@@ -61,7 +61,7 @@ struct Setting {
 /// |bias| + its error, and sigma / M^(1/2), in quadrature.
 double total_error(const Setting& setting, std::uint64_t realizations);
 
-struct Choice {
+struct Recommendation {
   std::size_t setting = 0;
   std::uint64_t realizations = 0;  // at least 2
   double core_seconds = 0;
@@ -70,7 +70,7 @@ struct Choice {
 /// The setting and number of realizations that reach a total error of at most `target` (above 0)
 /// for the least core time; nothing where every bias is too large. Settings without a known bias
 /// are passed over.
-std::optional<Choice> cheapest(std::span<const Setting> settings, double target);
+std::optional<Recommendation> cheapest(std::span<const Setting> settings, double target);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
 std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings);

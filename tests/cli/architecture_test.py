@@ -45,6 +45,23 @@ def includes():
                 yield path.relative_to(SOURCE), quote, name
 
 
+# What stands in an anonymous namespace may have any name.
+ANONYMOUS = re.compile(r"^namespace \{.*?^\}  // namespace$", re.DOTALL | re.MULTILINE)
+# A class, struct or enumeration that is defined here: neither declared nor specialised.
+DEFINED = re.compile(r"(?<!template <>\n)^(?:class|struct|enum class|enum)\s+"
+                     r"(?:alignas\([^)]*\)\s*)?(\w+)\b(?!::)[^;{(]*\{", re.MULTILINE)
+
+
+def types_by_name():
+    """{name: files that define a type of this name for all to see}."""
+    found = {}
+    for folder in MAY_INCLUDE:
+        for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):
+            for name in DEFINED.findall(ANONYMOUS.sub("", path.read_text())):
+                found.setdefault(name, []).append(str(path.relative_to(SOURCE)))
+    return found
+
+
 class Architecture(unittest.TestCase):
     def test_there_is_something_to_look_at(self):
         folders = {file.parts[0] for file, _, _ in includes()}
@@ -54,6 +71,12 @@ class Architecture(unittest.TestCase):
         wrong = [f"{file} includes {name}" for file, quote, name in includes()
                  if quote == '"' and name.split("/")[0] not in MAY_INCLUDE[file.parts[0]]]
         self.assertEqual(wrong, [])
+
+    def test_every_type_is_defined_once(self):
+        """Two of one name would be one to the linker, which takes either."""
+        types = types_by_name()
+        self.assertGreater(len(types), 200)
+        self.assertEqual({name: files for name, files in types.items() if len(files) > 1}, {})
 
     def test_libraries_are_seen_only_where_they_belong(self):
         wrong = []
