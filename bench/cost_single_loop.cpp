@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   using namespace jostle;
   if (argc != 3) return 2;
   const PeriodicBox box{8, 8};
-  const auto loop = std::make_unique<TypedTrialLoop<PeriodicBox, Rise::impossible>>(
-      box, PolarMove{}, bench::cost_trials, avx2::proposal_kernels());
+  const auto loop = std::make_unique<TypedTrialLoop<PeriodicBox, Polar>>(
+      box, Polar{PolarMove{}}, bench::cost_trials, avx2::proposal_kernels());
   loop->load(bench::cost_bed(box));
   loop->run(std::strtoull(argv[2], nullptr, 10));
   return loop->tally().accepted > 0 ? 0 : 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -9,22 +10,21 @@
 #include "engine/bed/geometry.hpp"
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
-#include "engine/monte_carlo/rejection_free/direction_bins.hpp"
-#include "engine/monte_carlo/rejection_free/skipping_kernels.hpp"
+#include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 #include "engine/monte_carlo/rejection_free/weight_tree.hpp"
 
 namespace jostle {
 
-/// For every sphere and direction bin a length beyond which a step is certainly refused. A function
-/// of the centres alone: neither lists nor the order and history of moves change anything.
-template <class Box, int n_sectors>
+/// For every sphere and direction bin a length beyond which a step is certainly rejected. A
+/// function of the centres alone: neither lists nor the order and history of moves change anything.
+template <class Box, class Directions>
 class BoundTables {
  public:
   using Index = std::uint32_t;
-  using Bins = DirectionBins<n_sectors>;
-  using Row = BoundRow<n_sectors>;
+  using Bins = typename Directions::Bins;
+  using Row = BoundRow<Directions::n_sectors>;
 
-  BoundTables(const Box& box, BoundsKernel<n_sectors> kernel)
+  BoundTables(const Box& box, BoundsKernel<Directions::n_sectors> kernel)
       : box_(box), packed_box_(box), kernel_(kernel) {}
 
   /// Builds everything.
@@ -109,16 +109,10 @@ class BoundTables {
     for (const Index *j = row + 1, *const last = j + *row; j != last; ++j) visit(*j);
   }
 
-  static constexpr bool cubic = n_sectors == cubic_sectors;
-
-  // Neighbours higher than that are left out: they hardly ever bound a step that does not rise, but
-  // for the many nearly horizontal ones of the Metropolis move.
-  static constexpr double highest = cubic ? 0.75 : 0.3;
-
   // The distance up to which a neighbour is taken into account. A step as long as a sphere is wide
   // may pass it by: then no bound holds.
   static double reach(double longest) {
-    return longest < 1.99 ? 1 + std::min((cubic ? 1 : 0.5) * longest, 0.3) : 0;
+    return longest < 1.99 ? 1 + std::min(Directions::obstacle_reach * longest, 0.3) : 0;
   }
 
   // Another centre as seen from a sphere's own. All say in the same arithmetic what is in the way.
@@ -126,7 +120,8 @@ class BoundTables {
     Pair away;
     double up, squared;
     bool in_the_way(double reach_squared) const {
-      return (up < highest) & (squared < reach_squared);  // no branch: it could not be guessed
+      return (up < Directions::highest_obstacle) &
+             (squared < reach_squared);  // no branch: it could not be guessed
     }
   };
   Seen seen_from(const PackedCentre& own, const PackedCentre& other) const {
@@ -192,7 +187,7 @@ class BoundTables {
 
   Box box_;
   PackedBox<Box> packed_box_;
-  BoundsKernel<n_sectors> kernel_;
+  BoundsKernel<Directions::n_sectors> kernel_;
   Bins bins_{};
   double reach_squared_ = 0;
   std::vector<PackedCentre> centres_;

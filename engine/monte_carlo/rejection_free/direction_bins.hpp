@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/bed/elementary.hpp"
-#include "engine/monte_carlo/rejection_free/skipping_kernels.hpp"
+#include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
 // The directions of trial steps, cut into bins of equal probability.
 namespace jostle {

@@ -76,9 +76,9 @@ TEST_CASE("the trial loop keeps to the plain loop where hardly any trial is acce
   compare_with_plain_loop(start, MetropolisMove{1.9}, {1000, 255, 200'000});
 }
 
-TEST_CASE("the trial loop keeps to the plain loop where spheres wander behind their shields") {
+TEST_CASE("the trial loop keeps to the plain loop where spheres wander behind their caches") {
   // Accepted often enough that lists are renewed, rarely enough that trials are held against
-  // shields first.
+  // blocker caches first.
   for (const Container& container : std::vector<Container>{FullyPeriodicBox{4.1, 4.1, 4.1},
                                                            WalledBox{4.2, 4.3}, Cylinder{4.6}}) {
     CAPTURE(container.index());
@@ -139,8 +139,8 @@ TEST_CASE("a loop restored from its state goes on bit for bit") {
   }
 }
 
-TEST_CASE("the published rule shrinks the step on a fixed schedule in the cold") {
-  // Half of all trials rise and are refused, so fewer than half are ever accepted.
+TEST_CASE("the published rule shrinks the step on a fixed schedule at zero temperature") {
+  // Half of all trials rise and are rejected, so fewer than half are ever accepted.
   MetropolisMove move{0.1};
   move.adaptation = StepAdaptation{};
   const auto loop = make_trial_loop(PeriodicBox{5, 5}, move, key);
@@ -164,7 +164,7 @@ TEST_CASE("counted over trials that do not rise, a dilute gas keeps its step") {
 
 TEST_CASE("counted over trials that do not rise, accepted rises do not count") {
   // In equilibrium as many rises as falls are accepted: both together outnumber the falling trials,
-  // of which the floor refuses some.
+  // of which the floor rejects some.
   MetropolisMove move{1.0, 1.0};
   move.adaptation = StepAdaptation{0.9, 1000, 1, AcceptanceBase::not_upward, false};
   const auto loop = make_trial_loop(PeriodicBox{5, 5}, move, key);

@@ -67,7 +67,7 @@ template <int n_sectors>
 using BoundsKernel = std::uint32_t (*)(const DirectionBins<n_sectors>& bins,
                                        const Obstacles& obstacles, BoundRow<n_sectors>& row);
 
-struct SkippingKernels {
+struct RejectionFreeKernels {
   BoundsKernel<polar_sectors> linear_bounds;  // weights are lengths
   BoundsKernel<cubic_sectors> cubic_bounds;   // and their cubes
   /// Candidates first .. first + CandidateBatch::size - 1 of a stream, where azimuths are cut into
@@ -76,13 +76,13 @@ struct SkippingKernels {
 };
 
 namespace baseline {
-SkippingKernels skipping_kernels();
+RejectionFreeKernels rejection_free_kernels();
 }
 namespace avx2 {
-SkippingKernels skipping_kernels();
+RejectionFreeKernels rejection_free_kernels();
 }
 namespace avx512 {
-SkippingKernels skipping_kernels();
+RejectionFreeKernels rejection_free_kernels();
 }
 
 }  // namespace jostle

@@ -1,7 +1,7 @@
 // Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
 // It must instantiate nothing that another translation unit could pick up: plain arrays and
 // static functions only.
-#include "engine/monte_carlo/rejection_free/skipping_kernels.hpp"
+#include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
 #include "engine/bed/elementary.hpp"
 
@@ -225,7 +225,7 @@ void candidates(std::uint64_t key, std::uint64_t first, int n_sectors, Candidate
 
 }  // namespace
 
-SkippingKernels skipping_kernels() {
+RejectionFreeKernels rejection_free_kernels() {
   return {linear_bounds, cubic_bounds, candidates};
 }
 

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "engine/monte_carlo/rejection_free/bound_tables.hpp"
-#include "engine/monte_carlo/theta_table.hpp"
+#include "engine/monte_carlo/rejection_free/directions.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "tests/engine/sample_packings.hpp"
 
@@ -26,29 +26,28 @@ std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
   return centres;
 }
 
-// The bins, tables and directions of the two moves.
-struct Polar {
+// The two moves, and the length at a bound's weight over the longest, by the C library.
+template <class Directions>
+struct Kind;
+template <>
+struct Kind<PolarDirections> {
   PolarMove move;
-  std::vector<double> theta_table = make_theta_table(move);
-  static constexpr int n_sectors = polar_sectors;
-  double longest_side() const { return move.max_step; }
-  auto bins() const { return polar_bins(theta_table, move.max_step); }
-  SineCosine angle(int ring, double u) const { return polar_angle(theta_table, ring, u); }
+  PolarDirections directions{Polar(move)};
+  auto bins() const { return directions.bins(move.max_step); }
   static double ratio(double weight) { return weight; }
-  static auto kernel() { return baseline::skipping_kernels().linear_bounds; }
 };
-struct Cubic {
+template <>
+struct Kind<CubicDirections> {
   MetropolisMove move;
-  static constexpr int n_sectors = cubic_sectors;
-  double longest_side() const { return move.max_step; }
-  auto bins() const { return cubic_bins(move.max_step); }
-  static SineCosine angle(int ring, double u) { return cubic_angle(ring, u); }
+  CubicDirections directions{ZeroTemperature(move)};
+  auto bins() const { return directions.bins(move.max_step); }
   static double ratio(double weight) { return std::cbrt(weight); }
-  static auto kernel() { return baseline::skipping_kernels().cubic_bounds; }
 };
 
-template <class Box, class Kind>
-using TablesOf = BoundTables<Box, Kind::n_sectors>;
+template <class Box, class Directions>
+BoundTables<Box, Directions> tables_for(const Box& box) {
+  return {box, Directions::kernel(baseline::rejection_free_kernels())};
+}
 
 // Whether a step is possible, against all spheres.
 template <class Box>
@@ -67,18 +66,20 @@ struct Tried {
 };
 
 // Random steps of every bin, to either side of its bound.
-template <class Box, class Kind>
-Tried try_steps(const Box& box, const Kind& kind, const TablesOf<Box, Kind>& tables) {
+template <class Box, class Directions>
+Tried try_steps(const Box& box, const Kind<Directions>& kind,
+                const BoundTables<Box, Directions>& tables) {
+  constexpr int n_sectors = Directions::n_sectors;
   RandomStream random(stream_key(48, 0, 0, Purpose::start));
   const double longest = tables.bins().longest;
   Tried tried;
   for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
-    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
-      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
+    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
+      const int ring = bin / n_sectors, sector = bin % n_sectors;
       const double weight = tables.row(i).weight[ring][sector] / double{whole_weight};
-      const double bound = longest * Kind::ratio(weight);
-      const SineCosine theta = kind.angle(ring, random.uniform());
-      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / Kind::n_sectors;
+      const double bound = longest * kind.ratio(weight);
+      const SineCosine theta = kind.directions.angle(ring, random.uniform());
+      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / n_sectors;
       const bool beyond = random.uniform() < 0.5;
       double length =
           beyond ? bound + (longest - bound) * random.uniform() : bound * random.uniform();
@@ -88,7 +89,7 @@ Tried try_steps(const Box& box, const Kind& kind, const TablesOf<Box, Kind>& tab
       const Vec3 step{-length * theta.sine * std::cos(azimuth),
                       -length * theta.sine * std::sin(azimuth), -length * theta.cosine};
       const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
-      if (side > kind.longest_side()) continue;
+      if (side > kind.move.max_step) continue;
       const bool free = possible(box, tables.centres(), i, step);
       (beyond ? tried.beyond : tried.within) += 1;
       (beyond ? tried.wrong : tried.possible_within) += free;
@@ -97,9 +98,10 @@ Tried try_steps(const Box& box, const Kind& kind, const TablesOf<Box, Kind>& tab
   return tried;
 }
 
-template <class Box, class Kind>
-void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres, const Kind& kind) {
-  TablesOf<Box, Kind> tables(box, Kind::kernel());
+template <class Box, class Directions>
+void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres,
+                     const Kind<Directions>& kind) {
+  auto tables = tables_for<Box, Directions>(box);
   tables.build(kind.bins(), centres);
   const Tried tried = try_steps(box, kind, tables);
   CHECK(tried.wrong == 0);
@@ -115,17 +117,19 @@ void check_bounds(const Box& box, std::uint32_t n) {
   for (const PolarMove& move : {PolarMove{}, PolarMove{0.4, 1.5, ThetaLaw::linear},
                                 PolarMove{0.1, 0.2, ThetaLaw::exponential}, PolarMove{0.01},
                                 PolarMove{1.2}, PolarMove{2.5}}) {
-    check_bounds_of(box, centres, Polar{move});
+    check_bounds_of(box, centres, Kind<PolarDirections>{move});
   }
   for (const double step : {0.1, 0.02, 0.3, 0.7}) {
-    check_bounds_of(box, centres, Cubic{MetropolisMove{step}});
+    check_bounds_of(box, centres, Kind<CubicDirections>{MetropolisMove{step}});
   }
 }
 
-template <class Kind>
-void check_function_of_centres(const Kind& kind) {
+template <class Directions>
+void check_function_of_centres(const Kind<Directions>& kind) {
+  constexpr int n_sectors = Directions::n_sectors;
   const PeriodicBox box{4, 5};
-  TablesOf<PeriodicBox, Kind> moved(box, Kind::kernel()), fresh(box, Kind::kernel());
+  auto moved = tables_for<PeriodicBox, Directions>(box);
+  auto fresh = tables_for<PeriodicBox, Directions>(box);
   moved.build(kind.bins(), bed(box, 100));
   RandomStream random(stream_key(49, 0, 0, Purpose::start));
   int moves = 0;
@@ -143,8 +147,8 @@ void check_function_of_centres(const Kind& kind) {
   CHECK(fresh.weights().total() == moved.weights().total());
   for (std::uint32_t i = 0; i < 100; ++i) {
     CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
-    for (int bin = 0; bin < n_rings * Kind::n_sectors; ++bin) {
-      const int ring = bin / Kind::n_sectors, sector = bin % Kind::n_sectors;
+    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
+      const int ring = bin / n_sectors, sector = bin % n_sectors;
       REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
     }
   }
@@ -168,8 +172,8 @@ TEST_CASE("every step beyond its bound overlaps, in a tube") {
 }
 
 TEST_CASE("bounds are a function of the centres, whatever moves led there") {
-  check_function_of_centres(Polar{});
-  check_function_of_centres(Cubic{});
+  check_function_of_centres(Kind<PolarDirections>{});
+  check_function_of_centres(Kind<CubicDirections>{});
 }
 
 TEST_CASE("a weight tree finds what adding up the weights finds") {

@@ -1,0 +1,230 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+#include "engine/monte_carlo/kernel/blocker_cache.hpp"
+#include "engine/monte_carlo/kernel/neighbour_lists.hpp"
+#include "engine/monte_carlo/kernel/packed_geometry.hpp"
+
+namespace jostle {
+
+/// What the lists are made for. Diameters.
+struct Reach {
+  double longest = 0;  // no displacement of a trial is longer
+  double drift = 0;    // mean dz of the trials that geometry decides
+};
+
+/// Whether trials are first held against blocker caches. They pay where few trials are accepted:
+/// every move brings those up to date that show the sphere.
+enum class BlockerCaching { off, on };
+
+template <class Box, BlockerCaching caching>
+class NeighbourhoodView;
+
+/// The spheres of a loop, who is near whom, and what blocks each most often. Trials ask and move
+/// through a view: there is no other way to move a sphere, and a view keeps lists and caches good.
+/// Lists and caches are made when a view is asked for that needs them.
+template <class Box>
+class Neighbourhood {
+ public:
+  explicit Neighbourhood(const Box& box) : box_(box), packed_box_(box) {}
+
+  /// Takes over the centres of a packing in this container, any number.
+  void load(const Packing& packing) {
+    centres_.resize(packing.centres.size());
+    std::ranges::transform(packing.centres, centres_.begin(), packed);
+    built_for_ = -1;
+  }
+  /// Writes them back, in the order they were loaded.
+  void store(Packing& packing) const {
+    packing.centres.resize(centres_.size());
+    std::ranges::transform(centres_, packing.centres.begin(), unpacked);
+  }
+
+  /// A view for trials that keep within `reach`. At most one view at a time, and none across
+  /// load().
+  template <BlockerCaching caching>
+  NeighbourhoodView<Box, caching> view(const Reach& reach) {
+    reach_ = reach;
+    caches_follow_ = caches_follow_ && caching == BlockerCaching::on;
+    if (reach.longest > built_for_) build<caching>();
+    if (caching == BlockerCaching::on && !caches_follow_) build_caches();
+    return NeighbourhoodView<Box, caching>(*this);
+  }
+
+  const PackedCentres& centres() const { return centres_; }
+  const NeighbourLists& lists() const { return lists_; }
+  const BlockerCaches<Box>& caches() const { return caches_; }
+  /// Buildings of all lists, and renewals of one sphere's.
+  std::uint64_t builds() const { return builds_; }
+  std::uint64_t renewals() const { return renewals_; }
+  std::size_t bytes() const {
+    return lists_.bytes() + caches_.bytes() + sizeof(PackedCentre) * centres_.capacity();
+  }
+
+ private:
+  template <class, BlockerCaching>
+  friend class NeighbourhoodView;
+
+  // Room in the skin beyond the longest step, diameters (bench/: little changes from 0.1 to 0.3).
+  static constexpr double spare_skin = 0.2;
+
+  template <BlockerCaching caching>
+  [[gnu::noinline]] void build() {
+    lists_.build(box_, centres_, 2 * reach_.longest + spare_skin, {0, 0, reach_.drift});
+    built_for_ = reach_.longest;
+    ++builds_;
+    if (caching == BlockerCaching::on) build_caches();
+  }
+  [[gnu::noinline]] void build_caches() {
+    caches_.build(packed_box_, centres_, lists_);
+    caches_follow_ = true;
+  }
+
+  // Sphere i gets the list of where it stands, and its former neighbours forget it.
+  template <BlockerCaching caching>
+  void renew(NeighbourLists::Index i) {
+    const auto* const row = lists_.row(i);
+    if (caching == BlockerCaching::on) former_.assign(row + 1, row + 1 + row[0]);
+    if (!lists_.renew(box_, i, centres_[i])) return build<caching>();
+    ++renewals_;
+    if (caching == BlockerCaching::off) return;
+    for (const auto j : former_) caches_.refresh(packed_box_, centres_, lists_, j);
+  }
+
+  Box box_;
+  PackedBox<Box> packed_box_;
+  Reach reach_;
+  double built_for_ = -1;  // longest step of the reach that lists were built for; negative: none
+  bool caches_follow_ = false;
+  std::uint64_t builds_ = 0, renewals_ = 0;
+  PackedCentres centres_;
+  NeighbourLists lists_;
+  BlockerCaches<Box> caches_;
+  std::vector<NeighbourLists::Index> former_;  // neighbours of the sphere whose list is renewed
+};
+
+/// What trials ask of a neighbourhood, and how they move its spheres. It holds in members what the
+/// loop reads again and again: the compiler cannot know that no store to a centre changes them.
+/// What is rare, and the second look at a trial that its cache lets pass, is never inlined.
+template <class Box, BlockerCaching caching>
+class NeighbourhoodView {
+ public:
+  using Index = NeighbourLists::Index;
+
+  explicit NeighbourhoodView(Neighbourhood<Box>& all) : all_(all), box_(all.packed_box_) {
+    refresh();
+  }
+  NeighbourhoodView(const NeighbourhoodView&) = delete;
+  NeighbourhoodView& operator=(const NeighbourhoodView&) = delete;
+
+  /// Where a step, diameters, leads sphere i, wrapped.
+  [[gnu::always_inline]] PackedCentre target(Index i, Pair lateral, double dz) const {
+    const PackedCentre& from = centres_[i];
+    return box_.wrapped({from.xy + lateral, from.z + dz, 0});
+  }
+
+  /// Whether the cache alone rejects the step: then rejects() would. False decides nothing.
+  [[gnu::always_inline]] bool certainly_rejects(Index i, double dx, double dy, double dz) const
+      requires(caching == BlockerCaching::on) {
+    return jostle::certainly_rejects<Box>(caches_[i], static_cast<float>(dx),
+                                          static_cast<float>(dy), static_cast<float>(dz));
+  }
+
+  /// Whether floor, sides or another sphere reject sphere i at r, a target.
+  [[gnu::always_inline]] bool rejects(Index i, const PackedCentre& r) {
+    if (!box_.clear_of_boundaries(r)) return true;
+    if constexpr (caching == BlockerCaching::on) return blocked_beyond_cache(i, r);
+    return blocked_by_first(i, r, *row(i));
+  }
+
+  /// Moves sphere i to r, a target that rejects() did not reject. Far from where its list was made
+  /// the list may lack what lies there: false, and nothing moved, if a new one shows what does.
+  [[gnu::always_inline]] bool move(Index i, const PackedCentre& r) {
+    if (distance_squared(box_, r, origins_[i]) > half_skin_squared_ && !free_by_new_list(i, r)) {
+      return false;
+    }
+    centres_[i] = r;
+    if constexpr (caching == BlockerCaching::on) follow(i);
+    return true;
+  }
+
+  // Batches fetch early what their trials will need.
+  [[gnu::always_inline]] void fetch_cache(Index i) const { __builtin_prefetch(&caches_[i]); }
+  [[gnu::always_inline]] void fetch_list(Index i) const {
+    __builtin_prefetch(&centres_[i]);
+    __builtin_prefetch(row(i));
+  }
+  [[gnu::noinline]] void fetch_neighbours(Index i) const {
+    const Index* const near = row(i);
+    for (Index m = 1; m <= near[0]; ++m) __builtin_prefetch(&centres_[near[m]]);
+  }
+
+  /// Distances that rejects() and move() compared.
+  std::uint64_t distance_tests() const { return distance_tests_; }
+
+ private:
+  [[gnu::always_inline]] const Index* row(Index i) const { return rows_ + i * stride_; }
+
+  void refresh() {
+    centres_ = all_.centres_.data();
+    rows_ = all_.lists_.rows();
+    stride_ = all_.lists_.stride();
+    caches_ = all_.caches_.data();
+    origins_ = all_.lists_.origins();
+    half_skin_squared_ = all_.lists_.half_skin_squared();
+  }
+
+  // One of the first n neighbours.
+  [[gnu::always_inline]] bool blocked_by_first(Index i, const PackedCentre& r, Index n) {
+    const Index* const near = row(i);
+    const Index* const last = near + 1 + n;
+    for (const Index* j = near + 1; j < last; ++j) {
+      ++distance_tests_;
+      if (distance_squared(box_, r, centres_[*j]) < 1.0) return true;
+    }
+    return false;
+  }
+
+  // Those that the cache does not hold first. One that blocks moves up in the list: caches come to
+  // hold those that block most often.
+  [[gnu::noinline]] bool blocked_beyond_cache(Index i, const PackedCentre& r) {
+    const Index* const near = row(i);
+    for (Index place = BlockerCache::size; place < near[0]; ++place) {
+      ++distance_tests_;
+      if (distance_squared(box_, r, centres_[near[1 + place]]) < 1.0) {
+        all_.caches_.promote(box_, all_.centres_, all_.lists_, i, place);
+        return true;
+      }
+    }
+    return blocked_by_first(i, r, std::min(*near, BlockerCache::size));
+  }
+
+  [[gnu::noinline]] bool free_by_new_list(Index i, const PackedCentre& r) {
+    all_.template renew<caching>(i);
+    refresh();
+    if (!blocked_by_first(i, r, *row(i))) return true;
+    if constexpr (caching == BlockerCaching::on) follow(i);
+    return false;
+  }
+
+  [[gnu::always_inline]] void follow(Index i) {
+    all_.caches_.follow(box_, all_.centres_, all_.lists_, i);
+  }
+
+  Neighbourhood<Box>& all_;
+  PackedBox<Box> box_;
+  PackedCentre* centres_;
+  const Index* rows_;
+  std::size_t stride_;
+  const BlockerCache* caches_;
+  const PackedCentre* origins_;
+  double half_skin_squared_;
+  std::uint64_t distance_tests_ = 0;
+};
+
+}  // namespace jostle
