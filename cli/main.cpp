@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -72,13 +71,6 @@ void say(const std::string& what) {
   print_to_standard_error(fmt::format("jostle: {}\n", printable(what, longest_line)));
 }
 
-/// Without the library's number: "[json.exception.type_error.302] type must be string, ...".
-std::string json_reason(const nlohmann::json::exception& error) {
-  const std::string what = error.what();
-  const auto bracket = what.find("] ");
-  return bracket == std::string::npos ? what : what.substr(bracket + 2);
-}
-
 /// Every error ends here, and says on stderr what is wrong.
 int run_program(int argc, char** argv) {
   try {
@@ -93,8 +85,8 @@ int run_program(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {  // an environment variable, for one
     say(error.what());
     return exit_bad_input;
-  } catch (const nlohmann::json::exception& error) {
-    say(fmt::format("a stored scene is not as jostle writes it: {}", json_reason(error)));
+  } catch (const JsonError& error) {
+    say(fmt::format("a stored scene is not as jostle writes it: {}", error.what()));
     return exit_broken_surroundings;
   } catch (const std::exception& error) {
     say(failure_text(error));

@@ -27,8 +27,7 @@ Json shared_part(const Scene& scene) {
   for (const char* own : {"name", "description", "realizations", "sweep"}) shared.erase(own);
   for (const SweepAxis& axis : scene.sweep) {
     for (const std::string& pointer : pointers_of(axis)) {
-      const Json::json_pointer place(pointer);
-      if (shared.contains(place)) shared.at(place) = nullptr;
+      if (Json* place = shared.find_pointer(pointer)) *place = nullptr;
     }
   }
   return shared;
@@ -37,10 +36,11 @@ Json shared_part(const Scene& scene) {
 /// The top-level keys in which they differ.
 std::string differences(const Json& a, const Json& b) {
   std::vector<std::string> keys;
-  for (const auto& [key, value] : a.items()) {
-    if (b.value(key, Json()) != value) keys.push_back("/" + key);
+  for (const auto& [key, value] : a.members()) {
+    if (const Json* other = b.find(key); other == nullptr || *other != value)
+      keys.push_back("/" + key);
   }
-  for (const auto& [key, value] : b.items()) {
+  for (const auto& [key, value] : b.members()) {
     if (!a.contains(key)) keys.push_back("/" + key);
   }
   return joined(keys, ", ");

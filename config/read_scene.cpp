@@ -37,7 +37,7 @@ void read_name(const Reader& in, std::string& name) {
 /// A string, or a list of strings that are joined by blanks.
 void read_description(const Reader& in, std::string& description) {
   if (in.value().is_string()) {
-    description = in.value().get<std::string>();
+    description = in.value().text();
   } else if (!in.value().is_array()) {
     in.fault("expected a string or a list of strings, found " + described(in.value()));
   } else {

@@ -15,22 +15,23 @@ namespace {
 void compare(const Json& was, const Json& is, const std::string& pointer,
              std::vector<Fault>& faults) {
   if (was == is) return;
-  if (!was.is_structured() || was.type() != is.type() ||
-      (was.is_array() && was.size() != is.size())) {
+  if (!was.is_structured() || was.is_array() != is.is_array() ||
+      was.is_object() != is.is_object() || (was.is_array() && was.size() != is.size())) {
     faults.push_back(
         {pointer, fmt::format("was {}, is {}: a resumed run keeps it", was.dump(), is.dump())});
     return;
   }
   if (was.is_array()) {
     for (std::size_t i = 0; i < was.size(); ++i) {
-      compare(was[i], is[i], pointer_to(pointer, i), faults);
+      compare(was.at(i), is.at(i), pointer_to(pointer, i), faults);
     }
     return;
   }
-  for (const auto& [key, value] : was.items()) {
-    compare(value, is.value(key, Json()), pointer_to(pointer, key), faults);
+  for (const auto& [key, value] : was.members()) {
+    const Json* now = is.find(key);
+    compare(value, now ? *now : Json(), pointer_to(pointer, key), faults);
   }
-  for (const auto& [key, value] : is.items()) {
+  for (const auto& [key, value] : is.members()) {
     if (!was.contains(key)) compare(Json(), value, pointer_to(pointer, key), faults);
   }
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "config/fault.hpp"
+#include "config/json/json.hpp"
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/enough.hpp"
 #include "ensemble/plan.hpp"
@@ -18,13 +19,6 @@
 
 // A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
 namespace jostle {
-
-/// What is wrong with one value of a scene.
-struct Fault {
-  std::string pointer;  // JSON pointer to the value (RFC 6901); "" is the whole scene
-  std::string message;  // what, why, the allowed range or keys, and a did-you-mean
-  bool operator==(const Fault&) const = default;
-};
 
 /// "start": {"file": ...}: a packing saved by an earlier run (.h5, .hdf5: point, realization, tap)
 /// or extended XYZ (.xyz, .extxyz: frame).
@@ -84,7 +78,7 @@ struct SnapshotChoice {
 /// Values that vary together: one list of values a pointer, all of one length. An axis with one
 /// pointer is a plain axis, with several a zipped one. Axes are crossed, the first varies slowest.
 struct SweepAxis {
-  std::vector<std::pair<std::string, std::vector<nlohmann::ordered_json>>> columns;
+  std::vector<std::pair<std::string, std::vector<Json>>> columns;
   std::size_t size() const { return columns.empty() ? 0 : columns.front().second.size(); }
   bool operator==(const SweepAxis&) const = default;
 };
@@ -163,7 +157,7 @@ struct ParsedStructure {
 ParsedStructure parse_structure(std::string_view json_text);
 
 /// The settings with every default of their parts written out.
-nlohmann::ordered_json resolved(const StructureSettings& settings);
+Json resolved(const StructureSettings& settings);
 
 /// Names of the parts that are measured: "profile", "pores", ...
 std::vector<std::string> parts_of(const StructureSettings& settings);
@@ -173,7 +167,7 @@ StructureSettings with_parts(StructureSettings settings, std::span<const std::st
 
 /// The scene with every default written out, keys in a fixed order: parse_scene(resolved(s).dump())
 /// gives s again.
-nlohmann::ordered_json resolved(const Scene& scene);
+Json resolved(const Scene& scene);
 
 /// Number of sweep points, 1 without a sweep.
 std::size_t n_sweep_points(const Scene& scene);
@@ -192,13 +186,11 @@ std::string_view scene_schema();
 /// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
 /// those, more realizations, more values of what is swept, other limits of `until`, fits, analyses
 /// and measured structure, and another name or description.
-std::vector<Fault> resume_faults(const nlohmann::ordered_json& old_resolved,
-                                 const nlohmann::ordered_json& new_resolved);
+std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resolved);
 
 /// One scene of two (both as resolved() gives them) that differ in the values of their sweep alone,
 /// and maybe in name and description, which are the first one's: every axis with the values of
 /// both, the first one's first. Faults where anything else differs.
-ParsedScene join_sweeps(const nlohmann::ordered_json& resolved_scene,
-                        const nlohmann::ordered_json& other_resolved);
+ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved);
 
 }  // namespace jostle

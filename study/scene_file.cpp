@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 
+#include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
 #include "results/export/container_text.hpp"
@@ -134,14 +135,15 @@ LoadedScene load_derived(const Scene& scene, const std::string& path) {
   return load_text(resolved(scene).dump(2), path);
 }
 
-nlohmann::ordered_json stored_scene(const ResultsFile& file) {
-  auto scene = nlohmann::ordered_json::parse(file.study().resolved_scene, nullptr, false);
-  if (!scene.is_object()) {
+Json stored_scene(const ResultsFile& file) {
+  std::vector<Fault> faults;
+  auto scene = read_json(file.study().resolved_scene, faults);
+  if (!scene || !scene->is_object()) {
     throw ResultsError(file.path(),
                        "its scene (/scene/resolved) is not a JSON object: jostle did not write it "
                        "so; restore the file from a copy");
   }
-  return scene;
+  return std::move(*scene);
 }
 
 Study study_of(const LoadedScene& loaded) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "config/json/json.hpp"
 #include "config/scene.hpp"
 #include "results/results_file.hpp"
 
@@ -33,7 +33,7 @@ LoadedScene load_derived(const Scene& scene, const std::string& path);
 
 /// The scene that a results file was made from, every default written out. Throws ResultsError
 /// where what is stored is none.
-nlohmann::ordered_json stored_scene(const ResultsFile& file);
+Json stored_scene(const ResultsFile& file);
 
 Study study_of(const LoadedScene& loaded);
 

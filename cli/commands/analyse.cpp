@@ -82,8 +82,9 @@ class Output {
     for (const Table& table : tables) {
       any_ = any_ || is_made(table);
       if (arguments_.json) {
-        listed_.push_back(table_json(table));
-        listed_.back()["file"] = input;
+        Json listed = table_json(table);
+        listed["file"] = input;
+        listed_.push_back(std::move(listed));
       } else {
         print(fmt::format("{}\n", table_text(table, Detail::full)));
       }
@@ -94,7 +95,7 @@ class Output {
   /// Returns the exit code.
   int end(const Provenance& by) const {
     if (arguments_.json) {
-      const nlohmann::json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
+      const Json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
       print_json(object);
     }
     if (!arguments_.csv.empty()) write_text(arguments_.csv, csv_);
@@ -103,7 +104,7 @@ class Output {
 
  private:
   const AnalyseArguments& arguments_;
-  nlohmann::json listed_ = nlohmann::json::array();
+  Json listed_ = Json::array();
   std::string csv_;
   bool any_ = false;
 };

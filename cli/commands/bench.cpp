@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +14,6 @@
 
 namespace jostle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct BenchArguments {
   bool json = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -105,7 +104,7 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
 void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
   print(fmt::format("{}\n\n", loaded.resolved));
-  print(effects_text(nlohmann::ordered_json::parse(loaded.resolved)));
+  print(effects_text(Json::parse(loaded.resolved)));
   print_size(loaded, study_of(loaded));
   const std::vector<std::string> warnings = scene_warnings(loaded);
   if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));

@@ -90,8 +90,7 @@ std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const Loade
                     output));
   }
   const ResultsFile file(output);
-  const auto faults =
-      resume_faults(stored_scene(file), nlohmann::ordered_json::parse(pilot.resolved));
+  const auto faults = resume_faults(stored_scene(file), Json::parse(pilot.resolved));
   if (!faults.empty()) {
     throw BadInput(
         fmt::format("{} holds the pilot of another scene:\n{}", output, fault_lines(faults)));

@@ -111,15 +111,17 @@ FitManner manner_of(const FitArguments& arguments) {
                          .threads = arguments.threads > 0 ? arguments.threads : available_cpus()}};
 }
 
-nlohmann::json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
-  nlohmann::json object = {{"title", source.title}, {"fits", nlohmann::json::array()}};
+Json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+  Json object = {{"title", source.title}, {"fits", Json::array()}};
   if (source.point) {
     object["observable"] = source.observable;
     object["sweep_point"] = *source.point;
     object["label"] = source.label;
     object["realizations"] = std::max<std::size_t>(source.curve.n_realizations, 1);
   }
-  if (!source.curve.t.empty()) object["range"] = {source.curve.t.front(), source.curve.t.back()};
+  if (!source.curve.t.empty()) {
+    object["range"] = Json::array({source.curve.t.front(), source.curve.t.back()});
+  }
   for (const FitOutcome& outcome : outcomes) object["fits"].push_back(fit_json(outcome));
   return object;
 }
@@ -136,7 +138,7 @@ int run_fits(const FitArguments& arguments) {
   const ReportDetail detail = arguments.verbose ? ReportDetail::full : ReportDetail::brief;
   bool any = false;
   std::vector<Table> tables;
-  nlohmann::json curves = nlohmann::json::array();
+  Json curves = Json::array();
   for (const FitSource& source : sources) {
     const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
     for (const FitOutcome& outcome : outcomes) {
@@ -154,7 +156,7 @@ int run_fits(const FitArguments& arguments) {
     if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, outcomes));
   }
   if (arguments.json) {
-    const nlohmann::json object = {
+    const Json object = {
         {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
     print_json(object);
   }

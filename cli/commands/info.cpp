@@ -2,7 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/commands/commands.hpp"
@@ -18,8 +17,6 @@
 
 namespace jostle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const char* name(RunState state) {
   switch (state) {
@@ -63,10 +60,19 @@ Json realization_json(const RealizationSummary& one) {
   return json;
 }
 
+/// A text of the scene, empty where it has none.
+std::string text_of(const Json& scene, std::string_view key) {
+  const Json* member = scene.find(key);
+  return member ? member->text() : "";
+}
+
 /// A value of the sweep as the scene has it.
 Json json_or_text(const std::string& value) {
-  Json json = Json::parse(value, nullptr, false);
-  return json.is_discarded() ? Json(value) : json;
+  try {
+    return Json::parse(value);
+  } catch (const JsonError&) {
+    return value;
+  }
 }
 
 Json info_json(const ResultsFile& file, const RunStatus& status) {
@@ -115,8 +121,8 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
   const Study& study = file.study();
   const Json scene = stored_scene(file);
   std::string text =
-      fmt::format("{}: {}, {}\n", file.path(), scene.value("name", ""), state_of(status));
-  if (const std::string about = scene.value("description", ""); !about.empty()) {
+      fmt::format("{}: {}, {}\n", file.path(), text_of(scene, "name"), state_of(status));
+  if (const std::string about = text_of(scene, "description"); !about.empty()) {
     text += about + "\n";
   }
   const auto line = [&](const char* key, const std::string& value) {
@@ -166,7 +172,7 @@ void info(const InfoArguments& arguments) {
     } else {
       print(info_text(file, status));
     }
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     throw ResultsError(arguments.file,
                        "its scene (/scene/resolved) is not as jostle writes it; restore the file "
                        "from a copy");

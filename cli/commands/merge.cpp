@@ -51,7 +51,7 @@ std::optional<Study> joined_study(const std::vector<std::string>& inputs) {
     return file.study().resolved_scene == files.front().study().resolved_scene;
   };
   if (std::ranges::all_of(files, same)) return std::nullopt;
-  nlohmann::ordered_json scene = stored_scene(files.front());
+  Json scene = stored_scene(files.front());
   ParsedScene joined;
   for (const ResultsFile& file : files) {
     joined = join_sweeps(scene, stored_scene(file));

@@ -70,8 +70,7 @@ Seconds duration_argument(const std::string& option, const std::string& text) {
 /// What a resume would change, named; nothing else may differ from the file's scene.
 void require_same_scene(const std::string& output, const LoadedScene& loaded, const Shard& shard) {
   const ResultsFile file(output);
-  const auto faults =
-      resume_faults(stored_scene(file), nlohmann::ordered_json::parse(loaded.resolved));
+  const auto faults = resume_faults(stored_scene(file), Json::parse(loaded.resolved));
   if (!faults.empty()) {
     throw BadInput(
         fmt::format("{} was begun with another scene and cannot be resumed with this one:\n{}\n"

@@ -75,7 +75,7 @@ StructureSettings wanted(const StructureArguments& arguments, StructureSettings 
 /// Prints, and writes what is asked for. Returns whether any part was measured.
 bool show(const StructureArguments& arguments, const std::vector<Table>& tables,
           const Provenance& by) {
-  nlohmann::json listed = nlohmann::json::array();
+  Json listed = Json::array();
   std::string csv;
   bool any = false;
   for (const Table& table : tables) {
@@ -88,7 +88,7 @@ bool show(const StructureArguments& arguments, const std::vector<Table>& tables,
     csv += table_csv(table);
   }
   if (arguments.json) {
-    const nlohmann::json object = {{"tables", listed}, {"provenance", provenance_json(by)}};
+    const Json object = {{"tables", listed}, {"provenance", provenance_json(by)}};
     print_json(object);
   }
   if (!arguments.csv.empty()) write_text(arguments.csv, csv);

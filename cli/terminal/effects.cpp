@@ -2,27 +2,26 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 namespace jostle {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
 std::string in_words(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return value.text();
   if (!value.is_structured()) return value.dump();
   std::string words;
-  for (const auto& [key, member] : value.items()) {
-    const std::string text = in_words(member);
-    if (!words.empty()) words += value.is_array() ? "; " : ", ";
-    if (value.is_array()) {
-      words += text;
-    } else if (member.is_object()) {
-      words += member.empty() ? key : fmt::format("{} ({})", key, text);
+  if (value.is_array()) {
+    for (const Json& element : value.elements()) {
+      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(element));
+    }
+    return words;
+  }
+  for (const auto& [key, member] : value.members()) {
+    if (!words.empty()) words += ", ";
+    if (!member.is_object()) {
+      words += fmt::format("{} {}", key, in_words(member));
     } else {
-      words += fmt::format("{} {}", key, text);
+      words += member.empty() ? key : fmt::format("{} ({})", key, in_words(member));
     }
   }
   return words;
@@ -32,7 +31,7 @@ std::string in_words(const Json& value) {
 Json without_empty_lists(const Json& part) {
   if (!part.is_object()) return part;
   Json kept = Json::object();
-  for (const auto& [key, member] : part.items()) {
+  for (const auto& [key, member] : part.members()) {
     if (!member.is_array() || !member.empty()) kept[key] = member;
   }
   return kept;
@@ -50,7 +49,8 @@ std::string effects_text(const Json& resolved) {
   std::string on = "effects\n", off;
   for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots",
                            "sweep", "until", "fits", "analyse", "structure"}) {
-    const Json value = without_empty_lists(resolved.value(part, Json::object()));
+    const Json value =
+        without_empty_lists(resolved.contains(part) ? resolved.at(part) : Json::object());
     if (is_on(part, value)) {
       on += fmt::format("  {:<11}{}\n", part, in_words(value));
     } else {

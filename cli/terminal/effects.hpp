@@ -1,11 +1,12 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "config/json/json.hpp"
 
 namespace jostle {
 
 /// Which effects of a resolved scene are on, a line each, and the names of those that are off.
-std::string effects_text(const nlohmann::ordered_json& resolved);
+std::string effects_text(const Json& resolved);
 
 }  // namespace jostle

@@ -8,8 +8,6 @@ namespace jostle {
 
 namespace {
 
-using nlohmann::json;
-
 const char* name_of(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::fixed:
@@ -30,30 +28,30 @@ const char* name_of(Identifiability identifiability) {
   return "";
 }
 
-json number(double value) {
-  return std::isfinite(value) ? json(value) : json();
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
 }
 
-json interval_json(const Interval& interval) {
-  return json::array({number(interval.lower), number(interval.upper)});
+Json interval_json(const Interval& interval) {
+  return Json::array({number(interval.lower), number(interval.upper)});
 }
 
-json matrix_json(const Fit& fit, bool correlation) {
+Json matrix_json(const Fit& fit, bool correlation) {
   const auto& matrix = correlation ? fit.correlation : fit.covariance;
-  json rows = json::array();
+  Json rows = Json::array();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    json row = json::array();
+    Json row = Json::array();
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(number(matrix(i, j)));
     rows.push_back(row);
   }
   return rows;
 }
 
-json estimate_json(const Estimate& estimate) {
+Json estimate_json(const Estimate& estimate) {
   const bool known = estimate.has_value();
-  return {{"value", known ? number(estimate.value) : json()},
-          {"error", known ? number(estimate.error) : json()},
-          {"half_width_68", known ? number(estimate.half_width()) : json()},
+  return {{"value", known ? number(estimate.value) : Json()},
+          {"error", known ? number(estimate.error) : Json()},
+          {"half_width_68", known ? number(estimate.half_width()) : Json()},
           {"standard_error", number(estimate.standard_error)},
           {"interval_68", interval_json(estimate.intervals[0])},
           {"interval_95", interval_json(estimate.intervals[1])},
@@ -61,11 +59,11 @@ json estimate_json(const Estimate& estimate) {
           {"statement", estimate.statement}};
 }
 
-json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resampled) {
-  json parameters = json::object();
+Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resampled) {
+  Json parameters = Json::object();
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
-    json entry = estimate_json(estimate);
+    Json entry = estimate_json(estimate);
     if (resampled) {
       entry["resampled_error"] = number(resampled->errors[j]);
       if (!resampled->central.empty()) {
@@ -80,17 +78,17 @@ json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
 
 }  // namespace
 
-json fit_json(const FitOutcome& outcome) {
+Json fit_json(const FitOutcome& outcome) {
   if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
     return {{"model", outcome.model}, {"refused", refusal->message}};
   }
   const Fit& fit = std::get<Fit>(outcome.result);
-  json names = json::array(), combinations = json::object();
+  Json names = Json::array(), combinations = Json::object();
   for (const Estimate& found : fit.combinations) {
     combinations[found.parameter.name] = estimate_json(found);
   }
   for (const Estimate& estimate : fit.estimates) names.push_back(estimate.parameter.name);
-  json object = {{"model", fit.model},
+  Json object = {{"model", fit.model},
                  {"formula", fit.formula},
                  {"source", fit.source},
                  {"parameters", parameters_json(fit, outcome.resampled)},

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "config/json/json.hpp"
 #include "ensemble/statistics/resampled_fit.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/report.hpp"
@@ -21,7 +21,7 @@ struct FitOutcome {
 };
 
 /// Everything of a fit but residuals and fitted values; numbers that do not exist are null.
-nlohmann::json fit_json(const FitOutcome& outcome);
+Json fit_json(const FitOutcome& outcome);
 
 /// For people: the report of the fit with the resampled errors under it, or the refusal.
 std::string fit_text(const FitOutcome& outcome, ReportDetail detail);

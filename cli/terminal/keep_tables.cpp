@@ -32,7 +32,7 @@ void write_text(const std::string& path, const std::string& text) {
   write_all(path, stream.get(), bytes);
 }
 
-nlohmann::json provenance_json(const Provenance& by) {
+Json provenance_json(const Provenance& by) {
   return {{"version", by.version},
           {"git_revision", by.git_revision},
           {"command_line", by.command_line},

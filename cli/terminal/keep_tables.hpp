@@ -1,9 +1,9 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"
 
@@ -18,6 +18,6 @@ void keep_tables(const std::string& path, const std::string& group, std::span<co
 void write_text(const std::string& path, const std::string& text);
 
 /// Who made what is printed.
-nlohmann::json provenance_json(const Provenance& by);
+Json provenance_json(const Provenance& by);
 
 }  // namespace jostle

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "config/json/json.hpp"
+
 // What leaves the program on its standard streams: all of it goes through here.
 namespace jostle {
 
@@ -24,10 +26,7 @@ void print_exactly(std::string_view text);
 
 /// JSON, two blanks a level, and a newline. Names that are not UTF-8 show U+FFFD for the bytes that
 /// are none.
-template <class Json>
-void print_json(const Json& json) {
-  print_exactly(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-}
+void print_json(const Json& json);
 
 /// Whether something that was printed did not reach standard output: the exit code must say so.
 bool output_is_lost();

@@ -182,12 +182,11 @@ std::string left_out(const Block& block, const char* why) {
   return fmt::format("  {:<22} {}{}\n", counted(n_rows(block), "row") + " of " + along, why, names);
 }
 
-nlohmann::json nested(const Table& table, const Quantity& quantity, std::size_t axis,
-                      std::size_t& next) {
+Json nested(const Table& table, const Quantity& quantity, std::size_t axis, std::size_t& next) {
   if (axis == quantity.axes.size()) {
     const std::size_t index = next++;
     return std::visit(
-        [&](const auto& values) -> nlohmann::json {
+        [&](const auto& values) -> Json {
           if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<double>>) {
             if (!std::isfinite(values.at(index))) return nullptr;
           }
@@ -195,13 +194,13 @@ nlohmann::json nested(const Table& table, const Quantity& quantity, std::size_t 
         },
         quantity.values);
   }
-  auto list = nlohmann::json::array();
+  auto list = Json::array();
   const std::size_t n = n_values(axis_named(table, quantity.axes[axis]));
   for (std::size_t i = 0; i < n; ++i) list.push_back(nested(table, quantity, axis + 1, next));
   return list;
 }
 
-nlohmann::json quantity_json(const Table& table, const Quantity& quantity) {
+Json quantity_json(const Table& table, const Quantity& quantity) {
   std::size_t next = 0;
   return {{"values", nested(table, quantity, 0, next)},
           {"axes", quantity.axes},
@@ -245,11 +244,11 @@ std::string table_text(const Table& stored, Detail detail) {
   return text;
 }
 
-nlohmann::json table_json(const Table& table) {
-  nlohmann::json object = {{"name", table.name},
-                           {"notes", nlohmann::json::object()},
-                           {"axes", nlohmann::json::object()},
-                           {"quantities", nlohmann::json::object()}};
+Json table_json(const Table& table) {
+  Json object = {{"name", table.name},
+                 {"notes", Json::object()},
+                 {"axes", Json::object()},
+                 {"quantities", Json::object()}};
   for (const auto& [name, note] : table.notes) object["notes"][name] = note;
   for (const Quantity& axis : table.axes) object["axes"][axis.name] = quantity_json(table, axis);
   for (const Quantity& quantity : table.quantities) {

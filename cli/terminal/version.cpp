@@ -4,8 +4,8 @@
 #include <spdlog/version.h>
 #include <tbb/version.h>
 #include <CLI/Version.hpp>
-#include <nlohmann/json.hpp>
 
+#include "config/json/json.hpp"
 #include "results/study.hpp"
 
 namespace jostle {
@@ -23,11 +23,11 @@ std::string version_text() {
   return fmt::format(
       "jostle {} (git {})\n"
       "compiler {}\n"
-      "{}, oneTBB {}, nlohmann-json {}.{}.{}, CLI11 {}, fmt {}.{}.{}, spdlog {}.{}.{}",
+      "{}, oneTBB {}, nlohmann-json {}, CLI11 {}, fmt {}.{}.{}, spdlog {}.{}.{}",
       version(), git_revision(), compiler, provenance_of_this_machine().libraries,
-      TBB_runtime_version(), NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-      NLOHMANN_JSON_VERSION_PATCH, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-      FMT_VERSION % 100, SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR, SPDLOG_VER_PATCH);
+      TBB_runtime_version(), json_library_version(), CLI11_VERSION, FMT_VERSION / 10000,
+      FMT_VERSION / 100 % 100, FMT_VERSION % 100, SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR,
+      SPDLOG_VER_PATCH);
 }
 
 }  // namespace jostle

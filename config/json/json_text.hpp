@@ -1,17 +1,14 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/fault.hpp"
+#include "config/json/json.hpp"
 
 namespace jostle {
-
-/// Keys keep the order in which they are written.
-using Json = nlohmann::ordered_json;
 
 /// Lists and objects may be nested this deep.
 inline constexpr int deepest_nesting = 64;

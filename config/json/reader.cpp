@@ -30,7 +30,7 @@ std::string described(const Json& value) {
   if (value.is_object()) return value.empty() ? "an empty object" : "an object";
   if (value.is_array()) return value.empty() ? "an empty list" : "a list";
   if (value.is_null()) return "null";
-  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  if (value.is_boolean()) return value.boolean() ? "true" : "false";
   std::string text = value.dump();
   if (value.is_number()) return "the number " + text;
   return text.size() > longest_quote ? "a long string" : "the string " + text;
@@ -62,7 +62,7 @@ bool Reader::is_object_of(const std::vector<std::string>& keys) const {
     wrong_type(fmt::format("an object with the keys {}", listed(keys)));
     return false;
   }
-  for (const auto& [key, member] : value().items()) {
+  for (const auto& [key, member] : value().members()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     faults_->push_back({pointer_to(pointer_, key),
                         keys.empty() ? "unknown key: there is nothing to set here"
@@ -84,13 +84,12 @@ bool Reader::is_list(std::size_t least, std::size_t most, std::string_view of_wh
 }
 
 Reader Reader::element(std::size_t index) const {
-  return {value()[index], pointer_to(pointer_, index), *faults_};
+  return {value().at(index), pointer_to(pointer_, index), *faults_};
 }
 
 std::optional<Reader> Reader::find(const std::string& key) const {
-  if (!value().is_object()) return std::nullopt;
-  const auto member = value().find(key);
-  if (member == value().end()) return std::nullopt;
+  const Json* member = value().find(key);
+  if (member == nullptr) return std::nullopt;
   return Reader{*member, pointer_to(pointer_, key), *faults_};
 }
 
@@ -99,7 +98,7 @@ std::optional<double> Reader::number(Range range) const {
     wrong_type(fmt::format("a number {}", allowed(range)));
     return std::nullopt;
   }
-  const auto number = value().get<double>();
+  const auto number = value().number();
   const bool low_enough = range.high_included ? number <= range.high : number < range.high;
   const bool high_enough = range.low_included ? number >= range.low : number > range.low;
   if (low_enough && high_enough) return number;
@@ -114,27 +113,27 @@ std::optional<std::uint64_t> Reader::whole_number(std::uint64_t least, std::uint
     wrong_type(expected);
     return std::nullopt;
   }
-  const auto number = value().get<double>();
+  const auto number = value().number();
   if (number != std::trunc(number)) {
     fault(fmt::format("{} is not whole: expected {}", value().dump(), expected));
     return std::nullopt;
   }
   // 2^64 is the first double that no longer fits.
   const bool fits = number >= 0 && (value().is_number_integer() || number < 0x1p64);
-  const std::uint64_t whole = fits ? value().get<std::uint64_t>() : 0;
+  const std::uint64_t whole = fits ? value().whole_number() : 0;
   if (fits && whole >= least && whole <= most) return whole;
   fault(fmt::format("{} is out of range: expected {}", canonical_text(value()), expected));
   return std::nullopt;
 }
 
 std::optional<bool> Reader::boolean() const {
-  if (value().is_boolean()) return value().get<bool>();
+  if (value().is_boolean()) return value().boolean();
   wrong_type("true or false");
   return std::nullopt;
 }
 
 std::optional<std::string> Reader::text() const {
-  if (value().is_string()) return value().get<std::string>();
+  if (value().is_string()) return value().text();
   wrong_type("a string");
   return std::nullopt;
 }
@@ -144,7 +143,7 @@ std::optional<std::string> Reader::one_of(const std::vector<std::string>& names)
     wrong_type(fmt::format("one of the strings {}", listed(names)));
     return std::nullopt;
   }
-  auto written = value().get<std::string>();
+  auto written = value().text();
   if (std::find(names.begin(), names.end(), written) != names.end()) return written;
   fault(fmt::format("{} is unknown (allowed: {}).{}", described(value()), listed(names),
                     did_you_mean(written, names)));

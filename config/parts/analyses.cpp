@@ -119,7 +119,7 @@ Json written(const SpectrumSettings& settings) {
   out["window"] = name_in(windows, settings.window);
   out["detrend"] = name_in(detrendings, settings.detrending);
   if (settings.band) {
-    out["band"] = {plain_number(settings.band->lowest), plain_number(settings.band->highest)};
+    out["band"] = written_bounds(settings.band->lowest, settings.band->highest);
   }
   return out;
 }

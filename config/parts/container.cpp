@@ -71,7 +71,7 @@ Container read_box(const Reader& in) {
 }
 
 Json written_width(double x, double y) {
-  return x == y ? plain_number(x) : Json{plain_number(x), plain_number(y)};
+  return x == y ? plain_number(x) : written_bounds(x, y);
 }
 
 struct Writer {

@@ -11,11 +11,16 @@ namespace {
 constexpr std::size_t most_values = 100'000;
 
 /// Numbers as plain_number writes them, so that 8 and 8.0 are one value.
-Json with_plain_numbers(Json value) {
-  if (value.is_number_float()) return plain_number(value.get<double>());
+Json with_plain_numbers(const Json& value) {
+  if (value.is_number() && !value.is_number_integer()) return plain_number(value.number());
   if (!value.is_structured()) return value;
-  for (auto& member : value) member = with_plain_numbers(member);
-  return value;
+  Json plain = value.is_array() ? Json::array() : Json::object();
+  if (value.is_array()) {
+    for (const Json& element : value.elements()) plain.push_back(with_plain_numbers(element));
+  } else {
+    for (const auto& [key, member] : value.members()) plain[key] = with_plain_numbers(member);
+  }
+  return plain;
 }
 
 /// One pointer with its values, put at the end of an axis.
@@ -27,7 +32,7 @@ void read_column(const Reader& in, const std::string& pointer, SweepAxis& axis) 
   if (!in.is_list(1, most_values, "values")) return;
   auto& [name, values] = axis.columns.emplace_back();
   name = pointer;
-  for (const Json& value : in.value()) values.push_back(with_plain_numbers(value));
+  for (const Json& value : in.value().elements()) values.push_back(with_plain_numbers(value));
 }
 
 /// {"/a": [...], "/b": [...]}: lists of one length that vary together.
@@ -38,7 +43,7 @@ void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
     return;
   }
   SweepAxis axis;
-  for (const auto& [pointer, values] : in.value().items()) {
+  for (const auto& [pointer, values] : in.value().members()) {
     read_column(*in.find(pointer), pointer, axis);
   }
   const bool uneven =
@@ -64,7 +69,7 @@ std::vector<SweepAxis> read_sweep(const Reader& in) {
              described(in.value()));
     return sweep;
   }
-  for (const auto& [key, value] : in.value().items()) {
+  for (const auto& [key, value] : in.value().members()) {
     const Reader member = *in.find(key);
     if (key == "zip" && value.is_array()) {
       for (std::size_t i = 0; i < value.size(); ++i) read_zipped(member.element(i), sweep);

@@ -86,7 +86,7 @@ void check_path(const Reader& in, const std::string& path) {
 StartChoice read_file(const Reader& in) {
   PackingFile file;
   if (in.value().is_string()) {
-    file.path = in.value().get<std::string>();
+    file.path = in.value().text();
     check_path(in, file.path);
     return file;
   }

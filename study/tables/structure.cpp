@@ -120,11 +120,11 @@ std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ense
   const auto written = resolved(settings);
   std::vector<Table> tables = structure_tables(prefix, structure, settings);
   for (Table& table : tables) {
-    const auto part = written.find(table.name.substr(prefix.size()));
+    const Json* part = written.find(table.name.substr(prefix.size()));
     table.notes.emplace_back("settings", part->dump());
     table.notes.emplace_back(
         "region", settings.region
-                      ? written["region"].dump()
+                      ? written.at("region").dump()
                       : "of each packing: heights 1 to 10 but at most 2<Z> - 1, 1 from walls; all "
                         "of a fully periodic box");
   }

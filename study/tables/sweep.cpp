@@ -65,12 +65,12 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, c
     return;
   }
   const auto values = resolved(scene);
-  const Json::json_pointer place(against);
-  if (!values.contains(place)) throw BadInput(fmt::format("the scene has no value at {}", against));
-  const Json& value = values.at(place);
-  if (!value.is_number())
-    throw BadInput(fmt::format("{} is not a number: {}", against, value.dump()));
-  member.x = value.get<double>();
+  const Json* value = values.find_pointer(against);
+  if (value == nullptr) throw BadInput(fmt::format("the scene has no value at {}", against));
+  if (!value->is_number()) {
+    throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
+  }
+  member.x = value->number();
   member.swept = {against.substr(against.rfind('/') + 1), "1", against};
 }
 

@@ -26,7 +26,7 @@ RESERVED = {
     r"hdf5|H5\w*\.h": {"results"},
     r"openssl/": {"results"},
     r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/terminal/version.cpp"},
-    r"nlohmann/": {"config", "results", "study", "cli"},
+    r"nlohmann/": {"config/json/parse_and_print.cpp", "results/validate.cpp"},
     r"CLI/": {"cli"},
     r"Eigen/": {"fitting", "ensemble"},
     r"spdlog/": {"cli"},

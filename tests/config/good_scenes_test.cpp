@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "tests/config/scene_files.hpp"
 
@@ -130,7 +131,7 @@ TEST_CASE("A stop by mean height is relative or in diameters") {
   REQUIRE(scene.relax_start);
   CHECK(scene.relax_start->stop.rule == StopRule{HeightChangeStop{.change = 1}});
   const auto stop = resolved(scene)["relax"]["stop"]["mean_height"];
-  CHECK(stop["change"] == 2e-4);
+  CHECK(stop.at("change") == 2e-4);
   CHECK_FALSE(stop.contains("eta"));
 }
 

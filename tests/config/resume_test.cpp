@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "tests/config/scene_files.hpp"
 
@@ -6,7 +7,7 @@ namespace jostle {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using EditedScene = nlohmann::ordered_json;
 
 const char* const run = R"({
   "name": "run", "seed": 1, "realizations": 4,
@@ -20,7 +21,7 @@ const char* const run = R"({
 template <class Change>
 std::string faults_of(const Change& change) {
   const Json was = resolved(scene_of(run));
-  Json is = Json::parse(run);
+  EditedScene is = EditedScene::parse(run);
   change(is);
   return lines(resume_faults(was, resolved(scene_of(is.dump()))));
 }
@@ -28,21 +29,21 @@ std::string faults_of(const Change& change) {
 }  // namespace
 
 TEST_CASE("A resume takes the same scene, more taps, more realizations and another name") {
-  CHECK(faults_of([](Json&) {}).empty());
-  CHECK(faults_of([](Json& scene) { scene["realizations"] = 8; }).empty());
-  CHECK(faults_of([](Json& scene) {
+  CHECK(faults_of([](EditedScene&) {}).empty());
+  CHECK(faults_of([](EditedScene& scene) { scene["realizations"] = 8; }).empty());
+  CHECK(faults_of([](EditedScene& scene) {
           scene["name"] = "longer";
           scene["description"] = "The same, longer.";
         }).empty());
-  CHECK(faults_of([](Json& scene) {
-          scene["protocol"].push_back(Json::parse(R"({"tap": {"lift": 0.3}, "count": 5})"));
+  CHECK(faults_of([](EditedScene& scene) {
+          scene["protocol"].push_back(EditedScene::parse(R"({"tap": {"lift": 0.3}, "count": 5})"));
           scene["snapshots"]["taps"] = {0, 100, 131, 135};
         }).empty());
 }
 
 TEST_CASE("A resume compares what taps do, not how they are written") {
-  CHECK(faults_of([](Json& scene) {
-          scene["protocol"] = Json::parse(R"([
+  CHECK(faults_of([](EditedScene& scene) {
+          scene["protocol"] = EditedScene::parse(R"([
             {"tap": {"dilate": 0.02}, "count": 100}, {"tap": {"lift": 0.1}, "count": 10},
             {"tap": {"lift": 0.2}, "count": 3}, {"tap": {"lift": 0.2}, "count": 7},
             {"tap": {"lift": 0.3}, "count": 1000}])");
@@ -50,39 +51,41 @@ TEST_CASE("A resume compares what taps do, not how they are written") {
 }
 
 TEST_CASE("A resume refuses taps that changed, and names the first") {
-  CHECK(faults_of([](Json& scene) { scene["protocol"][1]["count"] = 11; }) ==
+  CHECK(faults_of([](EditedScene& scene) { scene["protocol"][1]["count"] = 11; }) ==
         "/protocol: tap 111 changed: taps can only be added after the last one, 130 (at the sweep "
         "point dilate = 0.01)\n");
-  CHECK(faults_of([](Json& scene) { scene["protocol"][1]["count"] = 9; }) ==
+  CHECK(faults_of([](EditedScene& scene) { scene["protocol"][1]["count"] = 9; }) ==
         "/protocol: had 130 taps, has 127: taps can be added at the end, not taken away (at the "
         "sweep point dilate = 0.01)\n");
-  CHECK(faults_of([](Json& scene) {
-          scene["protocol"][0] = Json::parse(R"({"tap": {"dilate": 0.02}, "count": 130})");
+  CHECK(faults_of([](EditedScene& scene) {
+          scene["protocol"][0] = EditedScene::parse(R"({"tap": {"dilate": 0.02}, "count": 130})");
         }) ==
         "/protocol: tap 101 changed: taps can only be added after the last one, 130 (at the sweep "
         "point dilate = 0.01)\n");
 }
 
 TEST_CASE("A resume refuses snapshots that changed within the taps of the run") {
-  CHECK(faults_of([](Json& scene) {
+  CHECK(faults_of([](EditedScene& scene) {
           scene["snapshots"]["taps"] = {0, 50, 100};
         }) ==
         "/snapshots/taps: a snapshot of tap 50 was added: only those after the last tap, 130, can "
         "be (at the sweep point dilate = 0.01)\n");
-  CHECK(faults_of([](Json& scene) { scene["snapshots"]["taps"] = {100}; }) ==
+  CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["taps"] = {100}; }) ==
         "/snapshots/taps: the snapshot of tap 0 was taken away (at the sweep point dilate = "
         "0.01)\n");
 }
 
 TEST_CASE("A resume keeps the sampler") {
-  CHECK(faults_of([](Json& scene) { scene["relax"] = {{"sampler", "exhaustive"}}; }).empty());
-  CHECK(faults_of([](Json& scene) {
+  CHECK(faults_of([](EditedScene& scene) {
+          scene["relax"] = {{"sampler", "exhaustive"}};
+        }).empty());
+  CHECK(faults_of([](EditedScene& scene) {
           scene["relax"] = {{"sampler", "skipping"}};
         }) == "/relax/sampler: was \"exhaustive\", is \"skipping\": a resumed run keeps it\n");
 }
 
 TEST_CASE("A resume names everything that changed") {
-  const std::string faults = faults_of([](Json& scene) {
+  const std::string faults = faults_of([](EditedScene& scene) {
     scene["seed"] = 2;
     scene["realizations"] = 3;
     scene["spheres"] = 500;
@@ -109,22 +112,22 @@ TEST_CASE("A resume names everything that changed") {
 }
 
 TEST_CASE("A resume takes more values of what is swept, in any order") {
-  CHECK(faults_of([](Json& scene) {
+  CHECK(faults_of([](EditedScene& scene) {
           scene["sweep"]["/protocol/0/tap/dilate"] = {0.005, 0.02, 0.03, 0.01};
         }).empty());
   // As another kind of axis, with equal points.
-  CHECK(faults_of([](Json& scene) {
+  CHECK(faults_of([](EditedScene& scene) {
           scene["sweep"] =
-              Json::parse(R"({"zip": {"/protocol/0/tap/dilate": [0.01, 0.02, 0.05]}})");
+              EditedScene::parse(R"({"zip": {"/protocol/0/tap/dilate": [0.01, 0.02, 0.05]}})");
         }).empty());
 }
 
 TEST_CASE("A resume takes nothing else that is swept, and tries the taps of all old points") {
   const char* const gone = "can be added to what is swept, not taken away";
-  CHECK_THAT(faults_of([](Json& scene) { scene["sweep"]["/spheres"] = {512}; }),
+  CHECK_THAT(faults_of([](EditedScene& scene) { scene["sweep"]["/spheres"] = {512}; }),
              Catch::Contains(gone));
-  CHECK_THAT(faults_of([](Json& scene) { scene.erase("sweep"); }), Catch::Contains(gone));
-  CHECK_THAT(faults_of([](Json& scene) {
+  CHECK_THAT(faults_of([](EditedScene& scene) { scene.erase("sweep"); }), Catch::Contains(gone));
+  CHECK_THAT(faults_of([](EditedScene& scene) {
                scene["sweep"]["/protocol/0/tap/dilate"].push_back(0.03);
                scene["protocol"][1]["count"] = 11;
              }),
@@ -133,12 +136,12 @@ TEST_CASE("A resume takes nothing else that is swept, and tries the taps of all 
 
 TEST_CASE("Scenes that differ in the values of their sweep join") {
   const auto with = [](const char* sweep, const char* name = "run") {
-    Json scene = Json::parse(run);
-    scene["sweep"] = Json::parse(sweep);
+    EditedScene scene = EditedScene::parse(run);
+    scene["sweep"] = EditedScene::parse(sweep);
     scene["name"] = name;
     return scene;
   };
-  const auto join = [](const Json& a, const Json& b) {
+  const auto join = [](const EditedScene& a, const EditedScene& b) {
     return join_sweeps(resolved(scene_of(a.dump())), resolved(scene_of(b.dump())));
   };
   const auto low = with(R"({"/protocol/0/tap/dilate": [0.02, 0.01], "/spheres": [512, 500]})");
@@ -154,12 +157,12 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
       join(with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 7]}})"),
            with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 9]}})"));
   REQUIRE(rows.scene);
-  CHECK(resolved(*rows.scene)["sweep"].dump() ==
+  CHECK(resolved(*rows.scene).at("sweep").dump() ==
         R"({"zip":[{"/spheres":[500,400,400],"/container/width":[8,7,9]}]})");
 
-  Json other = high;
+  EditedScene other = high;
   other["seed"] = 2;
-  other["relax"] = Json::parse(R"({"polar": {"theta0": 1}})");
+  other["relax"] = EditedScene::parse(R"({"polar": {"theta0": 1}})");
   CHECK(lines(join(low, other).faults) ==
         ": differs in /seed, /relax: only the values of a sweep may\n");
   CHECK_THAT(
@@ -167,7 +170,7 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
       Catch::Contains("/sweep: the same must be swept"));
   CHECK_FALSE(join(with("{}"), with("{}")).scene);
   // What the sweep replaces may differ.
-  Json base = low;
+  EditedScene base = low;
   base["spheres"] = 300;
   CHECK(join(base, high).scene);
 }

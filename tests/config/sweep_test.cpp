@@ -81,8 +81,8 @@ TEST_CASE("Values with the same name are labelled by their whole pointer") {
   CHECK(points[0].label == "bin_width = 0.1, contact_cut = 1.1");
   const Scene scene = scene_of(text_of(good_scenes / "hysteresis.json"));
   auto json = resolved(scene);
-  json["sweep"]["/protocol/0/count"] = {1};
-  json["sweep"]["/protocol/1/count"] = {2};
+  json["sweep"]["/protocol/0/count"] = Json::array({1});
+  json["sweep"]["/protocol/1/count"] = Json::array({2});
   CHECK(make_plans(scene_of(json.dump()), {})[0].label ==
         "/protocol/0/count = 1, /protocol/1/count = 2");
 }

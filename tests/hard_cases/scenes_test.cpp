@@ -5,7 +5,7 @@
 #include "tests/hard_cases/mutations.hpp"
 
 using namespace jostle;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -78,7 +78,7 @@ TEST_CASE("every shipped scene with its structure changed at random is refused b
   for (const auto& path : json_files(shipped_scenes)) {
     CAPTURE(path);
     RandomStream random = mutation_stream(++seed);
-    const Json scene = Json::parse(text_of(path));
+    const OrderedJson scene = OrderedJson::parse(text_of(path));
     for (int k = 0; k < 500; ++k) {
       const std::string mutated = mutated_structure(scene, random).dump();
       CAPTURE(mutated);
@@ -92,7 +92,7 @@ TEST_CASE("every shipped scene with its structure changed at random is refused b
 
 TEST_CASE("what is read of a small scene changed at random runs without overlap") {
   RandomStream random = mutation_stream(5000);
-  const Json scene = Json::parse(small_scene);
+  const OrderedJson scene = OrderedJson::parse(small_scene);
   REQUIRE(holds(small_scene));
   int run = 0;
   for (int k = 0; k < 3000; ++k) {

@@ -1,7 +1,6 @@
 #include "cli/terminal/effects.hpp"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include "tests/config/scene_files.hpp"
 

@@ -79,7 +79,7 @@ TEST_CASE("Rounding noise is seen beside the column it is in") {
 }
 
 TEST_CASE("A table for programs nests its axes, and has null for what is no number") {
-  const nlohmann::json json = table_json(example());
+  const Json json = table_json(example());
   CHECK(json.at("quantities").at("a").at("values").dump() == "[[1.0,2.0,3.0],[4.0,5.0,null]]");
   CHECK(json.at("quantities").at("tau").at("values") == 12.345678);
   CHECK(json.at("axes").at("lag").at("values").dump() == "[2,4,8]");
