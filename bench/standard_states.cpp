@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/random.hpp"
@@ -56,7 +57,7 @@ Packing grown(std::uint32_t n_spheres, double fraction) {
 double push_apart(const FullyPeriodicBox& box, std::vector<Vec3>& centres, double diameter) {
   CellGrid grid;
   const auto n = static_cast<std::uint32_t>(centres.size());
-  grid.build(box, 1.1 * diameter, n, [&](std::uint32_t i) { return centres[i]; });
+  grid.build(Boundary(box), 1.1 * diameter, n, [&](std::uint32_t i) { return centres[i]; });
   double deepest = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     grid.for_each_near(centres[i], [&](std::uint32_t j) {
@@ -177,7 +178,7 @@ Case standard_state(StandardState state, std::uint32_t n_spheres) {
   if (n_spheres <= most_made_whole) return made_whole(state, n_spheres);
   Case made = made_whole(state, tile_spheres);
   const double tiles = static_cast<double>(n_spheres) / tile_spheres;
-  const bool bulk = std::holds_alternative<FullyPeriodicBox>(made.packing.container);
+  const bool bulk = Boundary(made.packing.container).periodic_z;
   const auto copies =
       static_cast<std::uint32_t>(std::lround(bulk ? std::cbrt(tiles) : std::sqrt(tiles)));
   made.packing = repeated(made.packing, copies);

@@ -12,6 +12,7 @@
 #include "bench/standard_states.hpp"
 #include "bench/stopwatch.hpp"
 #include "bench/yardstick.hpp"
+#include "engine/bed/boundary.hpp"
 
 namespace jostle::bench {
 namespace {
@@ -22,17 +23,17 @@ Yardstick yardstick_for(StandardState state, const Case& made) {
   std::vector<std::array<double, 3>> centres;
   for (const Vec3& r : made.packing.centres) centres.push_back({r.x, r.y, r.z});
   const Container& container = made.packing.container;
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
+  const Boundary boundary(container);
   const bool polar = std::holds_alternative<PolarMove>(made.move);
-  const auto move = polar  ? YardstickMove::polar
-                    : bulk ? YardstickMove::metropolis_free
-                           : YardstickMove::metropolis_cold;
+  const auto move = polar                 ? YardstickMove::polar
+                    : boundary.periodic_z ? YardstickMove::metropolis_free
+                                          : YardstickMove::metropolis_cold;
   const double step = std::visit([](const auto& m) { return m.max_step; }, made.move);
   const bool fluid = state == StandardState::fluid_45 || state == StandardState::fluid_55;
   return {centres,
           width_x(container),
           width_y(container),
-          bulk ? bulk->height : 0,
+          boundary.periods().z,
           move,
           step,
           fluid ? YardstickLists::split : YardstickLists::sorted};

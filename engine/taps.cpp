@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
-#include "engine/bed/geometry.hpp"
 
 namespace jostle {
 
@@ -33,30 +33,29 @@ std::vector<std::uint32_t> random_order(std::size_t n, RandomStream& random) {
 // Lateral offsets, one sphere after another; each sees the spheres as they then stand.
 class LateralOffsets {
  public:
-  LateralOffsets(Packing& packing, const Shake& shake) : packing_(packing), shake_(shake) {
+  LateralOffsets(Packing& packing, const Shake& shake)
+      : packing_(packing), boundary_(packing.container), shake_(shake) {
     // Both spheres of a pair may have gone up to one radius of the disc since the grid was built.
-    grid_.build(packing.container, 1 + 2 * shake.lateral_radius,
+    grid_.build(boundary_, 1 + 2 * shake.lateral_radius,
                 static_cast<std::uint32_t>(packing.centres.size()),
                 [&](std::uint32_t i) { return packing.centres[i]; });
     origins_ = packing.centres;
   }
 
-  template <class Box>
-  std::uint64_t operator()(const Box& box, RandomStream& random) const {
+  std::uint64_t operator()(RandomStream& random) const {
     std::uint64_t dropped = 0;
     for (const std::uint32_t i : random_order(packing_.centres.size(), random)) {
-      dropped += !offset(box, i, random);
+      dropped += !offset(i, random);
     }
     return dropped;
   }
 
  private:
-  template <class Box>
-  bool offset(const Box& box, std::uint32_t i, RandomStream& random) const {
+  bool offset(std::uint32_t i, RandomStream& random) const {
     for (std::uint32_t attempt = 0; attempt <= shake_.retries; ++attempt) {
       const Vec3 offset = random_in_disc(shake_.lateral_radius, random);
-      const Vec3 target = wrapped(box, packing_.centres[i] + offset);
-      if (is_free(box, i, target)) {
+      const Vec3 target = wrapped(boundary_, packing_.centres[i] + offset);
+      if (is_free(i, target)) {
         packing_.centres[i] = target;
         return true;
       }
@@ -64,17 +63,17 @@ class LateralOffsets {
     return false;
   }
 
-  template <class Box>
-  bool is_free(const Box& box, std::uint32_t i, Vec3 target) const {
-    if (!clear_of_boundaries(box, target)) return false;
+  bool is_free(std::uint32_t i, Vec3 target) const {
+    if (!clear_of_boundaries(boundary_, target)) return false;
     bool free = true;
     grid_.for_each_near(origins_[i], [&](std::uint32_t j) {
-      if (j != i && overlaps(box, target, packing_.centres[j])) free = false;
+      if (j != i && overlaps(boundary_, target, packing_.centres[j])) free = false;
     });
     return free;
   }
 
   Packing& packing_;
+  Boundary boundary_;
   const Shake& shake_;
   CellGrid grid_;
   std::vector<Vec3> origins_;
@@ -99,8 +98,7 @@ struct Excite {
   }
   TapReport operator()(const Shake& tap) const {
     for (Vec3& centre : packing.centres) centre.z = centre.z * (1 + tap.lambda);
-    const LateralOffsets offsets(packing, tap);
-    return {std::visit([&](const auto& box) { return offsets(box, random); }, packing.container)};
+    return {LateralOffsets(packing, tap)(random)};
   }
 };
 

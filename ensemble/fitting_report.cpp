@@ -16,10 +16,10 @@ double corrected_fraction(const Packing& packing) {
   return Observer({CorrectedFraction{}}, packing)(packing).front();
 }
 
-double central_fraction(const WalledBox& box, const std::vector<Vec3>& centres,
+double central_fraction(const Container& box, const std::vector<Vec3>& centres,
                         HeightWindow window) {
   if (!(window.low < window.high)) return std::numeric_limits<double>::quiet_NaN();
-  const double width = std::min(box.width_x, box.width_y);
+  const double width = std::min(width_x(box), width_y(box));
   const std::array<double, 2> edges{std::min(7 * sphere_radius, 0.25 * width), 0.5 * width};
   return wall_profile({box, centres}, edges, window).values.front();
 }
@@ -37,10 +37,9 @@ FittingReport fitting_report(const Packing& poured, const Packing& fitted) {
   if (report.spheres_moved > 0) report.mean_rise /= report.spheres_moved;
   report.corrected_fraction_before = corrected_fraction(poured);
   report.corrected_fraction_after = corrected_fraction(fitted);
-  const auto& box = std::get<WalledBox>(fitted.container);
   const HeightWindow window = transverse_window(poured);
-  report.central_fraction_before = central_fraction(box, poured.centres, window);
-  report.central_fraction_after = central_fraction(box, fitted.centres, window);
+  report.central_fraction_before = central_fraction(fitted.container, poured.centres, window);
+  report.central_fraction_after = central_fraction(fitted.container, fitted.centres, window);
   return report;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/bed/boundary.hpp"
 #include "results/axes.hpp"
-#include "results/export/container_text.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/write.hpp"
 
@@ -15,15 +15,15 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 /// H5MD's box. An open top ends at the highest point any frame reaches.
 void write_box(hid_t group, const Container& container, double highest) {
-  const auto [kind, widths] = container_text(container);
-  const bool sides = kind == "periodic" || kind == "fully_periodic";
-  const std::string side = sides ? "periodic" : "none";
-  const std::string top = kind == "fully_periodic" ? "periodic" : "none";
+  const Boundary boundary(container);
+  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
   const Hdf5Handle box = create_group(group, "box");
   write_attribute(box, "dimension", std::uint32_t{3});
-  const std::array<std::string, 3> boundary = {side, side, top};
-  write_attribute(box, "boundary", boundary);
-  const std::vector<double> edges = {widths[0], widths[1], widths[2] > 0 ? widths[2] : highest};
+  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
+                                            word(boundary.periodic_z)};
+  write_attribute(box, "boundary", words);
+  const std::vector<double> edges = {boundary.width_x, boundary.width_y,
+                                     boundary.periodic_z ? boundary.height : highest};
   const Hdf5Handle dataset = write_numbers(box, "edges", edges);
   write_label(dataset, {"edges", "diameter", "", ""});
   const Hdf5Handle directions = write_bare_axis(box, "direction", 3);

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "engine/bed/boundary.hpp"
 #include "results/checkpoints/checksum.hpp"
 #include "results/record.hpp"
 
@@ -42,9 +43,10 @@ StudyPoint make_point(const Plan& plan) {
 /// Bins of n(z) up to the top of a bed that is looser than any that settles.
 std::uint64_t histogram_bins(const StudyPoint& point) {
   constexpr double loose_fraction = 0.4;
-  const auto* fluid = std::get_if<FullyPeriodicBox>(&point.container);
+  const Boundary boundary(point.container);
   const double volume = sphere_volume * point.n_spheres / loose_fraction;
-  const double depth = fluid ? fluid->height : volume / footprint_area(point.container) + 2;
+  const double depth =
+      boundary.periodic_z ? boundary.height : volume / footprint_area(point.container) + 2;
   return static_cast<std::uint64_t>(depth / point.snapshots.bin_width) + 1;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/order/neighbours.hpp"
@@ -40,7 +41,7 @@ void require_diameters(const Packing& packing) {
 std::string in_words(const Region& region, const Container& container) {
   std::string words = "heights " + std::to_string(region.low);
   words.append(" to ").append(std::to_string(region.high));
-  if (std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container)) {
+  if (Boundary(container).has_walls()) {
     words.append(", ").append(std::to_string(region.from_sides)).append(" from the walls");
   }
   return words;
@@ -49,11 +50,11 @@ std::string in_words(const Region& region, const Container& container) {
 /// Throws where nothing can be counted in the region.
 void require_region(const MeasuredPacking& in) {
   const Container& container = in.packing.container;
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
-  if (bulk != nullptr && (in.region.low < 0 || in.region.high > bulk->height)) {
+  const Boundary boundary(container);
+  if (boundary.periodic_z && (in.region.low < 0 || in.region.high > boundary.height)) {
     throw std::invalid_argument("the region, " + in_words(in.region, container) +
                                 ", must lie within the periodic box: heights 0 to " +
-                                std::to_string(bulk->height));
+                                std::to_string(boundary.height));
   }
   const bool empty = !(in.region.high > in.region.low) || !(in.region.volume(container) > 0);
   const auto inside = [&](const Vec3& r) { return in.region.contains(container, r); };
@@ -95,8 +96,8 @@ StructureSettings all_structure() {
 }
 
 Region bulk_of(const Packing& packing) {
-  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
-    return {0, bulk->height, 0};
+  if (const Boundary boundary(packing.container); boundary.periodic_z) {
+    return {0, boundary.height, 0};
   }
   Region region = pore_region;
   region.high = std::min(region.high, 2 * mean_height(packing) - 2 * sphere_radius);
@@ -123,10 +124,10 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
 }
 
 double fraction_of(const Packing& packing, const Region& region) {
-  if (has_gravity(packing.container)) return solids_fraction(packing, {region.low, region.high});
-  const auto& bulk = std::get<FullyPeriodicBox>(packing.container);
+  const Boundary boundary(packing.container);
+  if (boundary.floor) return solids_fraction(packing, {region.low, region.high});
   return static_cast<double>(packing.centres.size()) * sphere_volume /
-         (footprint_area(packing.container) * bulk.height);
+         (footprint_area(packing.container) * boundary.height);
 }
 
 void require_bins(double length, double width) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/density/gradient.hpp"
 #include "structure/density/profile_parts.hpp"
@@ -67,24 +68,23 @@ void add_mean_of_axes(const Packing& packing, Measurement& into) {
 
 void add_from_walls(const Packing& packing, HeightWindow window, const SidesSettings& settings,
                     Measurement& into) {
-  if (std::holds_alternative<WalledBox>(packing.container)) {
-    const double half = 0.5 * std::min(width_x(packing.container), width_y(packing.container));
+  const Boundary boundary(packing.container);
+  if (!boundary.has_walls()) return;
+  if (boundary.sides == Sides::walls) {
+    const double half = 0.5 * std::min(boundary.width_x, boundary.width_y);
     const Profile walls = wall_profile(packing, even_edges(0, half, settings.bin_width), window);
     into.places.push_back(
         {"wall_distance", middles(walls), "diameter", "distance to the nearest wall"});
     add_profile("wall_distance", walls, "phi_wall", "packing fraction against the nearest wall",
                 "Philippe & Bideau 2001, fig. 7", into);
-  } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
+  } else {
     const Profile rings =
-        radial_profile(packing, even_edges(0, 0.5 * tube->diameter, settings.bin_width), window);
+        radial_profile(packing, even_edges(0, boundary.axis(), settings.bin_width), window);
     into.places.push_back({"radius", middles(rings), "diameter", "distance from the axis"});
     add_profile("radius", rings, "phi_radial", "packing fraction of rings around the axis", "",
                 into);
-  } else {
-    return;
   }
-  if (width_x(packing.container) <= 2 * settings.reach ||
-      width_y(packing.container) <= 2 * settings.reach) {
+  if (boundary.width_x <= 2 * settings.reach || boundary.width_y <= 2 * settings.reach) {
     into.notes.emplace_back("lateral", "the walls are less than twice the reach apart");
     return;
   }
@@ -150,7 +150,7 @@ Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
   require_floor(in.packing);
   const HeightWindow window = settings.heights.value_or(transverse_window(in.packing));
   Measurement out;
-  if (!std::holds_alternative<Cylinder>(in.packing.container)) {
+  if (Boundary(in.packing.container).sides != Sides::cylinder) {
     add_along(Axis::x, in.packing, window, settings.bin_width, out);
     add_along(Axis::y, in.packing, window, settings.bin_width, out);
     add_mean_of_axes(in.packing, out);

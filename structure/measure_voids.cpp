@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/bed/boundary.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/voids/pores.hpp"
 
@@ -35,8 +36,8 @@ std::vector<double> density(std::span<const double> values, double bin_width, st
 }
 
 double volume_of(const Container& container, double height) {
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
-  return footprint_area(container) * (bulk != nullptr ? bulk->height : height);
+  const Boundary boundary(container);
+  return footprint_area(container) * (boundary.periodic_z ? boundary.height : height);
 }
 
 /// What is measured of the cells of a region.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "engine/bed/container.hpp"
+#include "engine/bed/boundary.hpp"
+#include "engine/bed/cell_axis.hpp"
 #include "engine/bed/vec3.hpp"
 
 namespace jostle {
@@ -21,9 +21,9 @@ class CellGrid {
   /// cutoff > 0, diameters. Cells are widened where space is so empty that they would outnumber
   /// the spheres by far.
   template <class Position>
-  void build(const Container& container, double cutoff, std::uint32_t n, Position&& position) {
-    set_shape(container, cutoff, n, position);
-    heads_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2], none);
+  void build(const Boundary& boundary, double cutoff, std::uint32_t n, Position&& position) {
+    set_shape(boundary, cutoff, n, position);
+    heads_.assign(static_cast<std::size_t>(axes_[0].count) * axes_[1].count * axes_[2].count, none);
     next_.resize(n);
     cell_of_.resize(n);
     for (std::uint32_t i = n; i-- > 0;) link(i, cell_at(position(i)));
@@ -42,10 +42,10 @@ class CellGrid {
   /// Calls visit(j) for every sphere in the cell of `r` and the cells around it.
   template <class Visit>
   void for_each_near(Vec3 r, Visit&& visit) const {
-    const std::array<int, 3> home = {index(r.x, 0), index(r.y, 1), index(r.z, 2)};
+    const std::array<double, 3> at = {r.x, r.y, r.z};
     std::array<std::array<int, 3>, 3> line;
     std::array<int, 3> length;
-    for (int axis = 0; axis < 3; ++axis) length[axis] = neighbours(home[axis], axis, line[axis]);
+    for (int k = 0; k < 3; ++k) length[k] = neighbours(axes_[k].own_cell(at[k]), axes_[k], line[k]);
     for_each_in(line, length, visit);
   }
 
@@ -55,13 +55,14 @@ class CellGrid {
   void for_each_within(Vec3 r, double reach, Visit&& visit) const {
     std::array<std::array<int, 3>, 3> line;
     std::array<int, 3> length;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double x = axis == 0 ? r.x : axis == 1 ? r.y : r.z;
-      const int home = index(x, axis);
+    const std::array<double, 3> at = {r.x, r.y, r.z};
+    for (int k = 0; k < 3; ++k) {
+      const CellAxis& axis = axes_[k];
+      const int home = axis.own_cell(at[k]);
       const bool inside =
-          (x - reach) * per_length_[axis] >= home && (x + reach) * per_length_[axis] < home + 1;
-      line[axis][0] = home;
-      length[axis] = inside ? 1 : neighbours(home, axis, line[axis]);
+          (at[k] - reach) * axis.per_length >= home && (at[k] + reach) * axis.per_length < home + 1;
+      line[k][0] = home;
+      length[k] = inside ? 1 : neighbours(home, axis, line[k]);
     }
     for_each_in(line, length, visit);
   }
@@ -93,57 +94,52 @@ class CellGrid {
   }
 
   template <class Position>
-  void set_shape(const Container& container, double cutoff, std::uint32_t n, Position& position) {
-    const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
-    periodic_ = {bulk || std::holds_alternative<PeriodicBox>(container),
-                 bulk || std::holds_alternative<PeriodicBox>(container), bulk != nullptr};
+  void set_shape(const Boundary& boundary, double cutoff, std::uint32_t n, Position& position) {
     double top = 1;
     for (std::uint32_t i = 0; i < n; ++i) top = std::max(top, position(i).z);
-    const std::array<double, 3> widths = {width_x(container), width_y(container),
-                                          bulk ? bulk->height : top};
+    const double height = boundary.periodic_z ? boundary.height : top;
+    const Vec3 periods = boundary.periods();
     double side = cutoff;
     do {
+      axes_ = {CellAxis::over(0, boundary.width_x, periods.x, side),
+               CellAxis::over(0, boundary.width_y, periods.y, side),
+               CellAxis::over(0, height, periods.z, side)};
       double cells = 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double fitting = std::max(1.0, std::floor(widths[axis] / side));
-        counts_[axis] = static_cast<int>(std::min(fitting, 1e9));
-        if (periodic_[axis] && counts_[axis] < 3) counts_[axis] = 1;
-        per_length_[axis] = counts_[axis] / widths[axis];
-        cells *= counts_[axis];
+      for (CellAxis& axis : axes_) {
+        if (axis.period != 0 && axis.count < 3) axis.set_count(1, axis.period);
+        cells *= axis.count;
       }
-      if (cells <= 1000 + 8.0 * n) break;
+      if (cells <= most_cells(n)) break;
       side *= 1.5;
     } while (true);
   }
 
-  int index(double x, int axis) const {
-    return std::clamp(static_cast<int>(x * per_length_[axis]), 0, counts_[axis] - 1);
-  }
   std::size_t cell_number(int ix, int iy, int iz) const {
-    return (static_cast<std::size_t>(iz) * counts_[1] + iy) * counts_[0] + ix;
+    return (static_cast<std::size_t>(iz) * axes_[1].count + iy) * axes_[0].count + ix;
   }
   std::uint32_t cell_at(Vec3 r) const {
-    return static_cast<std::uint32_t>(cell_number(index(r.x, 0), index(r.y, 1), index(r.z, 2)));
+    return static_cast<std::uint32_t>(
+        cell_number(axes_[0].own_cell(r.x), axes_[1].own_cell(r.y), axes_[2].own_cell(r.z)));
   }
-  int neighbours(int home, int axis, std::array<int, 3>& line) const {
-    int length = 0;
-    if (periodic_[axis]) {
-      if (counts_[axis] == 1) {
+  // The cells next to `home` and itself; returns how many.
+  static int neighbours(int home, const CellAxis& axis, std::array<int, 3>& line) {
+    const int count = axis.count;
+    if (axis.period != 0) {
+      if (count == 1) {
         line[0] = 0;
         return 1;
       }
-      line = {(home + counts_[axis] - 1) % counts_[axis], home, (home + 1) % counts_[axis]};
+      line = {(home + count - 1) % count, home, (home + 1) % count};
       return 3;
     }
-    for (int k = std::max(0, home - 1); k <= std::min(counts_[axis] - 1, home + 1); ++k) {
+    int length = 0;
+    for (int k = std::max(0, home - 1); k <= std::min(count - 1, home + 1); ++k) {
       line[length++] = k;
     }
     return length;
   }
 
-  std::array<bool, 3> periodic_{};
-  std::array<int, 3> counts_{1, 1, 1};
-  std::array<double, 3> per_length_{1, 1, 1};
+  std::array<CellAxis, 3> axes_{};
   std::vector<std::uint32_t> heads_;    // [n_cells], first sphere of each, or none
   std::vector<std::uint32_t> next_;     // [n], the next sphere of the same cell, or none
   std::vector<std::uint32_t> cell_of_;  // [n]

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 
 namespace {
@@ -49,26 +51,21 @@ std::optional<std::string> width_fault(const Container& container) {
 }
 
 double width_x(const Container& container) {
-  if (const auto* tube = std::get_if<Cylinder>(&container)) return tube->diameter;
-  if (const auto* box = std::get_if<PeriodicBox>(&container)) return box->width_x;
-  if (const auto* box = std::get_if<WalledBox>(&container)) return box->width_x;
-  return std::get<FullyPeriodicBox>(container).width_x;
+  return Boundary(container).width_x;
 }
 
 double width_y(const Container& container) {
-  if (const auto* tube = std::get_if<Cylinder>(&container)) return tube->diameter;
-  if (const auto* box = std::get_if<PeriodicBox>(&container)) return box->width_y;
-  if (const auto* box = std::get_if<WalledBox>(&container)) return box->width_y;
-  return std::get<FullyPeriodicBox>(container).width_y;
+  return Boundary(container).width_y;
 }
 
 double footprint_area(const Container& container) {
-  const double box = width_x(container) * width_y(container);
-  return std::holds_alternative<Cylinder>(container) ? 0.25 * std::numbers::pi * box : box;
+  const Boundary boundary(container);
+  const double box = boundary.width_x * boundary.width_y;
+  return boundary.sides == Sides::cylinder ? 0.25 * std::numbers::pi * box : box;
 }
 
 bool has_gravity(const Container& container) {
-  return !std::holds_alternative<FullyPeriodicBox>(container);
+  return Boundary(container).floor;
 }
 
 }  // namespace jostle

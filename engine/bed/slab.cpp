@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 
 namespace {
@@ -54,9 +56,9 @@ double solids_fraction(const Packing& packing, HeightWindow window) {
     }
   };
   add(0);
-  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
-    add(bulk->height);
-    add(-bulk->height);
+  if (const Boundary boundary(packing.container); boundary.periodic_z) {
+    add(boundary.height);
+    add(-boundary.height);
   }
   const double depth = is_cut ? 1 : window.high - window.low;
   return solid / (footprint_area(packing.container) * depth);

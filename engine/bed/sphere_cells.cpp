@@ -4,52 +4,33 @@
 
 namespace jostle {
 
-SphereCells::Axis SphereCells::axis(double width, double side, bool periodic) {
-  const double cells = std::max(1.0, std::floor(width / side));
-  return {width, cells / width, static_cast<long>(cells), periodic};
-}
-
 SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, double height)
-    : open_top_(has_gravity(container)) {
-  const auto* fluid = std::get_if<FullyPeriodicBox>(&container);
-  const bool periodic = fluid != nullptr || std::holds_alternative<PeriodicBox>(container);
-  if (fluid != nullptr) height = fluid->height;
+    : open_top_(Boundary(container).floor) {
+  const Boundary boundary(container);
+  if (!open_top_) height = boundary.height;
   const auto cells = [&](double side) {
-    return std::max(1.0, width_x(container) / side) * std::max(1.0, width_y(container) / side) *
+    return std::max(1.0, boundary.width_x / side) * std::max(1.0, boundary.width_y / side) *
            std::max(1.0, height / side);
   };
   double side = 1;
-  while (cells(side) > 1000 + 8.0 * n_spheres) side *= 1.5;
-  x_ = axis(width_x(container), side, periodic);
-  y_ = axis(width_y(container), side, periodic);
-  z_ = fluid != nullptr ? axis(height, side, true) : Axis{0, 1 / side, 1, false};
-  heads_.assign(static_cast<std::size_t>(x_.cells * y_.cells * z_.cells), -1);
-}
-
-long SphereCells::Axis::cell_of(double x) const {
-  return std::clamp(raw_cell(x), 0L, cells - 1);
-}
-
-SphereCells::Range SphereCells::Axis::range(double low, double high) const {
-  if (periodic) return {raw_cell(low), raw_cell(high)};
-  return {std::clamp(raw_cell(low), 0L, cells - 1), std::clamp(raw_cell(high), 0L, cells - 1)};
-}
-
-SphereCells::Image SphereCells::Axis::image(long raw) const {
-  if (!periodic || (raw >= 0 && raw < cells)) return {raw, 0};
-  const long period = raw >= 0 ? raw / cells : -((cells - 1 - raw) / cells);
-  return {raw - period * cells, static_cast<double>(period) * width};
+  while (cells(side) > most_cells(n_spheres)) side *= 1.5;
+  const Vec3 periods = boundary.periods();
+  x_ = CellAxis::over(0, boundary.width_x, periods.x, side);
+  y_ = CellAxis::over(0, boundary.width_y, periods.y, side);
+  z_ = CellAxis::over(0, open_top_ ? side : height, periods.z, side);
+  heads_.assign(static_cast<std::size_t>(x_.count) * y_.count * z_.count, -1);
 }
 
 std::size_t SphereCells::cell_of(Vec3 centre) const {
-  return static_cast<std::size_t>(
-      (z_.cell_of(centre.z) * y_.cells + y_.cell_of(centre.y)) * x_.cells + x_.cell_of(centre.x));
+  return (static_cast<std::size_t>(z_.own_cell(centre.z)) * y_.count + y_.own_cell(centre.y)) *
+             x_.count +
+         x_.own_cell(centre.x);
 }
 
 void SphereCells::make_room(double z) {
-  if (!open_top_ || z_.raw_cell(z) < z_.cells) return;
-  z_.cells = z_.raw_cell(z) + 1;
-  heads_.resize(static_cast<std::size_t>(x_.cells * y_.cells * z_.cells), -1);
+  if (!open_top_ || z_.cell(z) < z_.count) return;
+  z_.count = static_cast<int>(z_.cell(z)) + 1;  // more of the same width
+  heads_.resize(static_cast<std::size_t>(x_.count) * y_.count * z_.count, -1);
 }
 
 void SphereCells::link(std::uint32_t sphere) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "engine/bed/cell_axis.hpp"
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
@@ -30,16 +30,16 @@ class SphereCells {
   /// sphere's periodic image in the frame of the block.
   template <class Visit>
   bool any_in(Vec3 low, Vec3 high, Visit&& visit) const {
-    const Range x = x_.range(low.x, high.x), y = y_.range(low.y, high.y),
-                z = z_.range(low.z, high.z);
+    const CellAxis::Range x = x_.range(low.x, high.x), y = y_.range(low.y, high.y),
+                          z = z_.range(low.z, high.z);
     for (long k = z.first; k <= z.last; ++k) {
-      const Image layer = z_.image(k);
+      const CellAxis::Image layer = z_.image(k);
       for (long j = y.first; j <= y.last; ++j) {
-        const Image row = y_.image(j);
+        const CellAxis::Image row = y_.image(j);
         for (long i = x.first; i <= x.last; ++i) {
-          const Image cell = x_.image(i);
+          const CellAxis::Image cell = x_.image(i);
           const Vec3 shift = {cell.shift, row.shift, layer.shift};
-          const long at = (layer.cell * y_.cells + row.cell) * x_.cells + cell.cell;
+          const long at = (layer.cell * y_.count + row.cell) * x_.count + cell.cell;
           for (std::int32_t s = heads_[static_cast<std::size_t>(at)]; s >= 0;
                s = next_[static_cast<std::size_t>(s)]) {
             const auto sphere = static_cast<std::uint32_t>(s);
@@ -59,32 +59,11 @@ class SphereCells {
   }
 
  private:
-  struct Range {
-    long first, last;
-  };
-  struct Image {
-    long cell;
-    double shift;
-  };
-  // One direction: cells of equal width from 0 upwards.
-  struct Axis {
-    double width;  // of the container; unused where open
-    double per_length;
-    long cells;
-    bool periodic;
-
-    long raw_cell(double x) const { return static_cast<long>(std::floor(x * per_length)); }
-    long cell_of(double x) const;
-    Range range(double low, double high) const;
-    Image image(long raw) const;
-  };
-  static Axis axis(double width, double side, bool periodic);
-
   std::size_t cell_of(Vec3 centre) const;
   void make_room(double z);
   void link(std::uint32_t sphere);
 
-  Axis x_, y_, z_;
+  CellAxis x_, y_, z_;
   bool open_top_;
   std::vector<std::int32_t> heads_;  // [cells], first sphere or -1
   std::vector<std::int32_t> next_;   // [spheres], next in the same cell or -1

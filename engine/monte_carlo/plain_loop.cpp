@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/elementary.hpp"
-#include "engine/bed/geometry.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
 namespace jostle {
@@ -37,21 +37,16 @@ void PlainLoop::run(std::uint64_t n_trials) {
 }
 
 bool PlainLoop::passes(std::uint32_t sphere, Vec3 step) {
-  return std::visit(
-      [&](const auto& box) {
-        const Vec3 target = wrapped(box, packing_.centres[sphere] + step);
-        if (!clear_of_boundaries(box, target)) return false;
-        for (std::size_t j = 0; j < packing_.centres.size(); ++j) {
-          if (j != sphere && overlaps(box, target, packing_.centres[j])) return false;
-        }
-        const auto* metropolis = std::get_if<MetropolisMove>(&move_);
-        if (metropolis && has_gravity(packing_.container) && !rise_passes(*metropolis, step.z)) {
-          return false;
-        }
-        packing_.centres[sphere] = target;
-        return true;
-      },
-      packing_.container);
+  const Boundary boundary(packing_.container);
+  const Vec3 target = wrapped(boundary, packing_.centres[sphere] + step);
+  if (!clear_of_boundaries(boundary, target)) return false;
+  for (std::size_t j = 0; j < packing_.centres.size(); ++j) {
+    if (j != sphere && overlaps(boundary, target, packing_.centres[j])) return false;
+  }
+  const auto* metropolis = std::get_if<MetropolisMove>(&move_);
+  if (metropolis && boundary.floor && !rise_passes(*metropolis, step.z)) return false;
+  packing_.centres[sphere] = target;
+  return true;
 }
 
 bool PlainLoop::rise_passes(const MetropolisMove& move, double dz) const {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/starts/parts.hpp"
 
 namespace jostle {
@@ -95,8 +95,8 @@ std::string footprint(double x, double y) {
                    " diameters: take one of them, or stretch the rows");
 }
 
-CrystalPlan plan_periodic(const Crystal& crystal, const Container& container) {
-  const double x = width_x(container), y = width_y(container);
+CrystalPlan plan_periodic(const Crystal& crystal, const Boundary& boundary) {
+  const double x = boundary.width_x, y = boundary.width_y;
   const RowFit across = fit_rows(x, 1, 1);
   const RowFit rows =
       fit_rows(y, row_spacing(crystal.lattice), crystal.lattice == Lattice::hcp ? 2 : 1);
@@ -108,23 +108,22 @@ CrystalPlan plan_periodic(const Crystal& crystal, const Container& container) {
 
 // Between walls the lattice is the perfect one, with a row along the walls x = 0 and y = 0, or with
 // a site on the axis of a tube; sites too near a wall are left out.
-CrystalPlan plan_between_walls(const Crystal& crystal, const Container& container) {
+CrystalPlan plan_between_walls(const Crystal& crystal, const Boundary& boundary) {
   if (crystal.stretch) {
     throw StartError(std::string(name(crystal.lattice)) +
                      ": stretch spaces rows out to a period, and there is none between walls; "
                      "leave it out or use periodic sides");
   }
-  const Rows across = {static_cast<long>(width_x(container)) + 2, 1};
-  const Rows rows = {static_cast<long>(width_y(container) / row_spacing(crystal.lattice)) + 2,
+  const Rows across = {static_cast<long>(boundary.width_x) + 2, 1};
+  const Rows rows = {static_cast<long>(boundary.width_y / row_spacing(crystal.lattice)) + 2,
                      row_spacing(crystal.lattice)};
   return plan_layers(crystal.lattice, across, rows);
 }
 
 // The sites of layer 0 or 1, row by row, at height 0.
-std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Container& container, bool shifted) {
-  const bool walled = std::holds_alternative<WalledBox>(container);
-  const bool tube = std::holds_alternative<Cylinder>(container);
-  const double corner = walled ? sphere_radius : tube ? 0.5 * width_x(container) : 0;
+std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Boundary& boundary, bool shifted) {
+  const bool tube = boundary.sides == Sides::cylinder;
+  const double corner = tube ? boundary.axis() : boundary.side_margin();
   const long first_row = tube ? -plan.rows.count : 0, first = tube ? -plan.across.count : 0;
   std::vector<Vec3> sites;
   for (long j = first_row; j < plan.rows.count; ++j) {
@@ -133,25 +132,20 @@ std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Container& containe
                        (j % 2 != 0 ? plan.row_shift : 0) + (shifted ? plan.layer_shift_x : 0);
       const double y =
           static_cast<double>(j) * plan.rows.spacing + (shifted ? plan.layer_shift_y : 0);
-      const Vec3 site = {corner + x, corner + y, sphere_radius};
-      std::visit(
-          [&](const auto& box) {
-            const Vec3 inside = wrapped(box, site);
-            if (clear_of_boundaries(box, inside)) sites.push_back(inside);
-          },
-          container);
+      const Vec3 site = wrapped(boundary, {corner + x, corner + y, sphere_radius});
+      if (clear_of_boundaries(boundary, site)) sites.push_back(site);
     }
   }
   return sites;
 }
 
 // How many layers a fully periodic box holds.
-long fit_layers(const Crystal& crystal, CrystalPlan& plan, const FullyPeriodicBox& box) {
-  const RowFit layers = fit_rows(box.height, plan.layer_spacing, 2);
+long fit_layers(const Crystal& crystal, CrystalPlan& plan, double height) {
+  const RowFit layers = fit_rows(height, plan.layer_spacing, 2);
   if (layers.rows.count == 0 || !(layers.whole || crystal.stretch)) {
     throw StartError(
         std::string(name(crystal.lattice)) + ": whole layers do not fill the height " +
-        number(box.height) + "; the nearest that they fill are " +
+        number(height) + "; the nearest that they fill are " +
         (layers.smaller > least_periodic_width ? number(layers.smaller) + " and " : "") +
         number(layers.larger) + " diameters: take one of them, or stretch the layers");
   }
@@ -163,19 +157,18 @@ long fit_layers(const Crystal& crystal, CrystalPlan& plan, const FullyPeriodicBo
 
 std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
                                 std::uint32_t n_spheres) {
-  const auto* fluid = std::get_if<FullyPeriodicBox>(&container);
-  const bool periodic = fluid != nullptr || std::holds_alternative<PeriodicBox>(container);
-  CrystalPlan plan =
-      periodic ? plan_periodic(crystal, container) : plan_between_walls(crystal, container);
-  const std::vector<Vec3> kinds[2] = {layer_sites(plan, container, false),
-                                      layer_sites(plan, container, true)};
+  const Boundary boundary(container);
+  CrystalPlan plan = boundary.has_walls() ? plan_between_walls(crystal, boundary)
+                                          : plan_periodic(crystal, boundary);
+  const std::vector<Vec3> kinds[2] = {layer_sites(plan, boundary, false),
+                                      layer_sites(plan, boundary, true)};
   if (kinds[0].empty() || kinds[1].empty()) {
     throw StartError(std::string(name(crystal.lattice)) +
                      ": the container is too narrow for one of the two kinds of layers to have a "
                      "site; widen it, or pour the spheres");
   }
-  if (fluid != nullptr) {
-    const long layers = fit_layers(crystal, plan, *fluid);
+  if (boundary.periodic_z) {
+    const long layers = fit_layers(crystal, plan, boundary.height);
     const auto capacity = static_cast<std::size_t>(layers) * kinds[0].size();
     if (n_spheres > capacity) {
       throw StartError(std::string(name(crystal.lattice)) + ": the box has " +
@@ -189,9 +182,7 @@ std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& contain
     const double z = sphere_radius + static_cast<double>(layer) * plan.layer_spacing;
     for (const Vec3& site : kinds[layer % 2]) {
       if (centres.size() == n_spheres) break;
-      Vec3 r = {site.x, site.y, z};
-      if (fluid != nullptr) r = wrapped(*fluid, r);
-      centres.push_back(r);
+      centres.push_back(wrapped(boundary, {site.x, site.y, z}));
     }
   }
   return centres;

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/starts/parts.hpp"
 
 namespace jostle {
@@ -15,13 +15,10 @@ double into_period(double x, double width) {
   return wrap_coordinate(x - std::floor(x / width) * width, width);
 }
 
-Vec3 into_box(const Container& container, Vec3 r) {
-  const auto* fluid = std::get_if<FullyPeriodicBox>(&container);
-  if (fluid != nullptr) r.z = into_period(r.z, fluid->height);
-  if (fluid != nullptr || std::holds_alternative<PeriodicBox>(container)) {
-    r.x = into_period(r.x, width_x(container));
-    r.y = into_period(r.y, width_y(container));
-  }
+Vec3 into_box(const Boundary& boundary, Vec3 r) {
+  if (boundary.periodic_x) r.x = into_period(r.x, boundary.width_x);
+  if (boundary.periodic_y) r.y = into_period(r.y, boundary.width_y);
+  if (boundary.periodic_z) r.z = into_period(r.z, boundary.height);
   return r;
 }
 
@@ -58,6 +55,7 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
   // Far outside the container a coordinate is no rounding: refused here, before any neighbours are
   // sought.
   constexpr double far_outside = 1;
+  const Boundary boundary(container);
   Packing packing{container, {}};
   packing.centres.reserve(n_spheres);
   for (const Vec3& centre : *given.centres) {
@@ -65,9 +63,9 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
       refuse(name + " has a coordinate that is not a finite number; mend the file");
     }
-    const Vec3 r = into_box(container, centre);
+    const Vec3 r = into_box(boundary, centre);
     if (r.z < -far_outside || r.x < -far_outside || r.y < -far_outside ||
-        r.x > width_x(container) + far_outside || r.y > width_y(container) + far_outside) {
+        r.x > boundary.width_x + far_outside || r.y > boundary.width_y + far_outside) {
       refuse(name + " lies outside the container; check that its lengths are in diameters and " +
              "that it was made in this container");
     }

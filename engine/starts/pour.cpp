@@ -1,5 +1,6 @@
 #include <string>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/starts/parts.hpp"
 #include "engine/starts/pour_bed.hpp"
 #include "engine/starts/pour_descent.hpp"
@@ -32,7 +33,7 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, Po
 
 std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
                        const StopAsked& stop, PourTally* tally) {
-  if (!has_gravity(container)) {
+  if (!Boundary(container).floor) {
     throw StartError(
         "steepest-descent pour: a fully periodic box has no floor to pour on; use the start grow "
         "or a crystal");

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/bed/geometry.hpp"
-
 namespace jostle {
 
 namespace {
@@ -45,20 +43,19 @@ Vec3 outward(const Obstacle& obstacle, Vec3 p) {
 }
 
 PourBed::PourBed(const Container& container, std::uint32_t n_spheres)
-    : container_(container), cells_(container, n_spheres, 0) {
-  const auto* cylinder = std::get_if<Cylinder>(&container);
-  const double reach = cylinder != nullptr ? 0.5 * cylinder->diameter - sphere_radius : 0;
-  if (reach >= least_room) {
-    const double axis = 0.5 * cylinder->diameter;
+    : boundary_(container), cells_(container, n_spheres, 0) {
+  const bool cylinder = boundary_.sides == Sides::cylinder;
+  const double axis = boundary_.axis(), reach = axis - sphere_radius;
+  if (cylinder && reach >= least_room) {
     tube_ = Obstacle{Obstacle::Kind::tube, {axis, axis, 0}, reach};
-  } else if (!std::holds_alternative<PeriodicBox>(container)) {
-    add_walls(walls_, {1, 0, 0}, width_x(container), cylinder != nullptr);
-    add_walls(walls_, {0, 1, 0}, width_y(container), cylinder != nullptr);
+  } else if (boundary_.has_walls()) {
+    add_walls(walls_, {1, 0, 0}, boundary_.width_x, cylinder);
+    add_walls(walls_, {0, 1, 0}, boundary_.width_y, cylinder);
   }
 }
 
 Vec3 PourBed::wrapped(Vec3 p) const {
-  return std::visit([&](const auto& box) { return jostle::wrapped(box, p); }, container_);
+  return jostle::wrapped(boundary_, p);
 }
 
 void PourBed::gather(Vec3 p, double distance, std::vector<Obstacle>& found) const {
@@ -98,23 +95,19 @@ void PourBed::keep_between_walls(Vec3& p) const {
 
 // One round of projections on the half-spaces that the overlapped spheres leave open.
 bool PourBed::push_out(Vec3& p) const {
-  return std::visit(
-      [&](const auto& box) {
-        p = jostle::wrapped(box, p);
-        const double beyond_rounding = 2.3e-16 * (1 + p.x + p.y + p.z);
-        const Vec3 probe = p;
-        bool pushed = false;
-        cells_.any_near(probe, 1 + 1e-9, [&](std::uint32_t sphere, Vec3) {
-          const Vec3 apart = separation(box, p, cells_.centres()[sphere]);
-          const double squared = norm_squared(apart);
-          if (squared >= 1) return false;
-          p = p + (1 - std::sqrt(squared) + beyond_rounding) * apart;
-          pushed = true;
-          return false;
-        });
-        return pushed || !clear_of_boundaries(box, p);
-      },
-      container_);
+  p = wrapped(p);
+  const double beyond_rounding = 2.3e-16 * (1 + p.x + p.y + p.z);
+  const Vec3 probe = p;
+  bool pushed = false;
+  cells_.any_near(probe, 1 + 1e-9, [&](std::uint32_t sphere, Vec3) {
+    const Vec3 apart = separation(boundary_, p, cells_.centres()[sphere]);
+    const double squared = norm_squared(apart);
+    if (squared >= 1) return false;
+    p = p + (1 - std::sqrt(squared) + beyond_rounding) * apart;
+    pushed = true;
+    return false;
+  });
+  return pushed || !clear_of_boundaries(boundary_, p);
 }
 
 bool PourBed::clear(Vec3& p, double tolerance) const {
@@ -136,9 +129,9 @@ bool PourBed::clear(Vec3& p, double tolerance) const {
 }
 
 std::optional<Vec3> PourBed::above(double share_x, double share_y) const {
-  const double margin = std::holds_alternative<PeriodicBox>(container_) ? 0 : sphere_radius;
-  Vec3 p = {margin + share_x * (width_x(container_) - 2 * margin),
-            margin + share_y * (width_y(container_) - 2 * margin), top_ + 2};
+  const double margin = boundary_.side_margin();
+  Vec3 p = {margin + share_x * (boundary_.width_x - 2 * margin),
+            margin + share_y * (boundary_.width_y - 2 * margin), top_ + 2};
   keep_between_walls(p);
   if (tube_ && gap(*tube_, p) < 0) return std::nullopt;
   return wrapped(p);

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/bed/container.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/sphere_cells.hpp"
 
 // What a poured sphere can touch. Its centre is a point; it must stay outside the unit balls around
@@ -55,7 +55,7 @@ class PourBed {
   bool push_out(Vec3& p) const;
   void keep_between_walls(Vec3& p) const;
 
-  Container container_;
+  Boundary boundary_;
   SphereCells cells_;
   std::vector<Obstacle> walls_;
   std::optional<Obstacle> tube_;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/sphere_cells.hpp"
 #include "engine/starts/parts.hpp"
 
@@ -11,7 +11,8 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
                           std::uint32_t n_spheres, RandomStream& random) {
   constexpr double most_dilute_fraction = 0.25;
   constexpr int max_draws = 20'000;  // of one sphere
-  if (!has_gravity(container)) {
+  const Boundary boundary(container);
+  if (!boundary.floor) {
     throw StartError(
         "random settle: a fully periodic box has no gravity to settle in; use the start grow or a "
         "crystal");
@@ -23,38 +24,33 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
   }
   const double height =
       n_spheres * sphere_volume / (footprint_area(container) * settle.dilute_fraction);
-  const double margin = std::holds_alternative<PeriodicBox>(container) ? 0 : sphere_radius;
-  const double room_x = width_x(container) - 2 * margin, room_y = width_y(container) - 2 * margin;
+  const double margin = boundary.side_margin();
+  const double room_x = boundary.width_x - 2 * margin, room_y = boundary.width_y - 2 * margin;
   SphereCells cells(container, n_spheres, height);
-  std::visit(
-      [&](const auto& box) {
-        const auto fits = [&](Vec3 p) {
-          return clear_of_boundaries(box, p) &&
-                 !cells.any_near(p, 1 + 1e-9, [&](std::uint32_t other, Vec3) {
-                   return overlaps(box, p, cells.centres()[other]);
-                 });
-        };
-        for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
-          bool placed = false;
-          for (int draw = 0; draw < max_draws && !placed; ++draw) {
-            const double x = margin + random.uniform() * room_x;
-            const double y = margin + random.uniform() * room_y;
-            const double z = sphere_radius + random.uniform() * height;
-            const Vec3 p = wrapped(box, {x, y, z});
-            placed = fits(p);
-            if (placed) cells.insert(p);
-          }
-          if (!placed) {
-            throw StartError("random settle: no free place for sphere " + std::to_string(sphere) +
-                             " of " + std::to_string(n_spheres) + " in " +
-                             std::to_string(max_draws) +
-                             " draws, the container is too narrow for this solids fraction; lower "
-                             "dilute_fraction (now " +
-                             std::to_string(settle.dilute_fraction) + ")");
-          }
-        }
-      },
-      container);
+  const auto fits = [&](Vec3 p) {
+    return clear_of_boundaries(boundary, p) &&
+           !cells.any_near(p, 1 + 1e-9, [&](std::uint32_t other, Vec3) {
+             return overlaps(boundary, p, cells.centres()[other]);
+           });
+  };
+  for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
+    bool placed = false;
+    for (int draw = 0; draw < max_draws && !placed; ++draw) {
+      const double x = margin + random.uniform() * room_x;
+      const double y = margin + random.uniform() * room_y;
+      const double z = sphere_radius + random.uniform() * height;
+      const Vec3 p = wrapped(boundary, {x, y, z});
+      placed = fits(p);
+      if (placed) cells.insert(p);
+    }
+    if (!placed) {
+      throw StartError("random settle: no free place for sphere " + std::to_string(sphere) +
+                       " of " + std::to_string(n_spheres) + " in " + std::to_string(max_draws) +
+                       " draws, the container is too narrow for this solids fraction; lower "
+                       "dilute_fraction (now " +
+                       std::to_string(settle.dilute_fraction) + ")");
+    }
+  }
   return cells.centres();
 }
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 #include "structure/order/bond_order.hpp"
 #include "structure/order/crystal_order.hpp"
 #include "structure/snapshot_statistics.hpp"
@@ -29,13 +29,12 @@ std::uint32_t type_number(CrystalOrder order) {
 
 Packing wrapped_inside(const Packing& packing) {
   Packing moved = packing;
+  const Boundary boundary(packing.container);
   for (std::size_t i = 0; i < moved.centres.size(); ++i) {
     Vec3& r = moved.centres[i];
-    r = std::visit([&](const auto& box) { return wrapped(box, r); }, packing.container);
-    const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
-    const bool within = r.x >= 0 && r.x <= width_x(packing.container) && r.y >= 0 &&
-                        r.y <= width_y(packing.container) && r.z >= 0 &&
-                        (bulk == nullptr || r.z <= bulk->height);
+    r = wrapped(boundary, r);
+    const bool within = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
+                        r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height;
     if (!within) {
       throw std::invalid_argument(
           fmt::format("sphere {} lies outside the container, at {}, {}, {}", i, r.x, r.y, r.z));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 
 namespace {
@@ -74,7 +76,8 @@ Profile smoothed(const Profile& profile, double width) {
 
 GradientRange gradient_range(const Container& container) {
   GradientRange range;
-  if (std::holds_alternative<PeriodicBox>(container)) range.high = 26 * sphere_radius;
+  const Boundary boundary(container);
+  if (boundary.periodic_sides() && boundary.floor) range.high = 26 * sphere_radius;
   return range;
 }
 

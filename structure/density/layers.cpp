@@ -6,6 +6,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 
 namespace {
@@ -14,14 +16,13 @@ const double spacing = std::sqrt(2.0 / 3);
 
 // Where centres can be.
 double reachable_area(const Container& container) {
-  if (std::holds_alternative<WalledBox>(container)) {
-    return (width_x(container) - 1) * (width_y(container) - 1);
-  }
-  if (const auto* tube = std::get_if<Cylinder>(&container)) {
-    const double reach = 0.5 * tube->diameter - sphere_radius;
+  const Boundary boundary(container);
+  if (boundary.sides == Sides::cylinder) {
+    const double reach = boundary.axis() - sphere_radius;
     return std::numbers::pi * reach * reach;
   }
-  return footprint_area(container);
+  const double margin = boundary.side_margin();
+  return (boundary.width_x - 2 * margin) * (boundary.width_y - 2 * margin);
 }
 
 // Spheres of a full layer: at least one, as in a tube no wider than a sphere.
@@ -57,7 +58,7 @@ double hcp_layer_height(std::size_t k) {
 }
 
 std::vector<Layer> layers(const Packing& packing, double tolerance) {
-  if (!has_gravity(packing.container)) {
+  if (!Boundary(packing.container).floor) {
     throw std::invalid_argument(
         "layers: a fully periodic box has no floor for layers to grow from; take another "
         "container");

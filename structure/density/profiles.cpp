@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/density/profile_parts.hpp"
 #include "structure/density/sphere_cuts.hpp"
@@ -44,7 +45,7 @@ HeightWindow transverse_window(const Packing& packing) {
 }
 
 void require_floor(const Packing& packing) {
-  if (!has_gravity(packing.container)) {
+  if (!Boundary(packing.container).floor) {
     throw std::invalid_argument(
         "profile: a fully periodic box has no floor, top or walls to measure from; take another "
         "container");

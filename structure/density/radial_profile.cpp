@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/bed/boundary.hpp"
 #include "structure/density/profile_parts.hpp"
 #include "structure/density/profiles.hpp"
 #include "structure/density/sphere_cuts.hpp"
@@ -20,12 +21,12 @@ namespace {
 }  // namespace
 
 Profile radial_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
-  const auto* tube = std::get_if<Cylinder>(&packing.container);
-  if (tube == nullptr) {
+  const Boundary boundary(packing.container);
+  if (boundary.sides != Sides::cylinder) {
     throw std::invalid_argument("profile: distances from the axis need a cylinder");
   }
   require_window(window);
-  const double axis = 0.5 * tube->diameter, depth = window.high - window.low;
+  const double axis = boundary.axis(), depth = window.high - window.low;
   Profile profile = empty_profile(edges, 0, axis, [&](double distance) {
     return std::numbers::pi * distance * distance * depth;
   });
@@ -44,19 +45,20 @@ Profile radial_profile(const Packing& packing, std::span<const double> edges, He
 }
 
 LateralCentral lateral_and_central(const Packing& packing, HeightWindow window, double reach) {
-  if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
-    const double wall = 0.5 * tube->diameter;
+  const Boundary boundary(packing.container);
+  if (boundary.sides == Sides::cylinder) {
+    const double wall = boundary.axis();
     if (!(wall > reach)) refuse_reach(reach);
     const double edges[] = {0, wall - reach, wall};
     const Profile profile = radial_profile(packing, edges, window);
     return {profile.values[1], profile.values[0]};
   }
-  if (!std::holds_alternative<WalledBox>(packing.container)) {
+  if (boundary.sides != Sides::walls) {
     throw std::invalid_argument("profile: lateral and central fractions need walls");
   }
   LateralCentral mean;
   for (const Axis axis : {Axis::x, Axis::y}) {
-    const double width = axis == Axis::x ? width_x(packing.container) : width_y(packing.container);
+    const double width = axis == Axis::x ? boundary.width_x : boundary.width_y;
     if (!(width > 2 * reach)) refuse_reach(reach);
     const double edges[] = {0, reach, width - reach, width};
     const Profile profile = transverse_profile(packing, axis, edges, window);

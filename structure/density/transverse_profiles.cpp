@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/density/profile_parts.hpp"
 #include "structure/density/profiles.hpp"
@@ -19,22 +20,23 @@ struct Footprint {
 
 Footprint footprint(const Packing& packing, Axis axis) {
   require_floor(packing);
-  if (std::holds_alternative<Cylinder>(packing.container)) {
+  const Boundary boundary(packing.container);
+  if (boundary.sides == Sides::cylinder) {
     throw std::invalid_argument(
         "profile: a cylinder has no sides along x and y; take its radial profile");
   }
-  const double x = width_x(packing.container), y = width_y(packing.container);
+  const double x = boundary.width_x, y = boundary.width_y;
   return {axis == Axis::x ? x : y, axis == Axis::x ? y : x,
-          std::holds_alternative<PeriodicBox>(packing.container)};
+          axis == Axis::x ? boundary.periodic_x : boundary.periodic_y};
 }
 
-const WalledBox& walls_of(const Packing& packing) {
-  const auto* box = std::get_if<WalledBox>(&packing.container);
-  if (box == nullptr) {
+Boundary walls_of(const Packing& packing) {
+  const Boundary boundary(packing.container);
+  if (boundary.sides != Sides::walls) {
     throw std::invalid_argument(
         "profile: distances to the nearest of four walls need a walled box");
   }
-  return *box;
+  return boundary;
 }
 
 // Calls act(place) for the sphere along the axis and, where it reaches through a seam, its image.
@@ -109,7 +111,7 @@ std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
 }
 
 Profile wall_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
-  const WalledBox& box = walls_of(packing);
+  const Boundary box = walls_of(packing);
   require_window(window);
   const double deepest = 0.5 * std::min(box.width_x, box.width_y);
   const double depth = window.high - window.low;

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 namespace {
 
@@ -14,41 +16,22 @@ bool nearer(const Neighbour& a, const Neighbour& b) {
   return a.sphere < b.sphere;
 }
 
-// Periods in x, y and z; 0 where the container is not periodic.
-Vec3 periods(const Container& container) {
-  if (const auto* box = std::get_if<PeriodicBox>(&container)) {
-    return {box->width_x, box->width_y, 0};
-  }
-  if (const auto* box = std::get_if<FullyPeriodicBox>(&container)) {
-    return {box->width_x, box->width_y, box->height};
-  }
-  return {};
-}
-
 // Beyond it no further centre is found; infinite where there are images.
 double farthest_reach(const Packing& packing) {
-  if (!(periods(packing.container) == Vec3{})) return std::numeric_limits<double>::infinity();
-  const double x = width_x(packing.container), y = width_y(packing.container);
-  return x + y + top_height(packing);
+  const Boundary boundary(packing.container);
+  if (!(boundary.periods() == Vec3{})) return std::numeric_limits<double>::infinity();
+  return boundary.width_x + boundary.width_y + top_height(packing);
 }
 
 }  // namespace
-
-NeighbourFinder::Axis NeighbourFinder::make_axis(double origin, double length, double period,
-                                                 double least_side) {
-  Axis axis{.origin = origin, .period = period};
-  axis.count = static_cast<int>(std::clamp(std::floor(length / least_side), 1.0, 1e6));
-  axis.side = length / axis.count;
-  axis.per_length = axis.count / length;
-  return axis;
-}
 
 NeighbourFinder::NeighbourFinder(const Packing& packing, double cut)
     : cut_squared_(cut * cut), reach_(cut * (1 + 1e-9) + 1e-9) {
   assert(cut > 0);
   const std::vector<Vec3>& centres = packing.centres;
   const auto n = static_cast<std::uint32_t>(centres.size());
-  const Vec3 period = periods(packing.container);
+  const Boundary boundary(packing.container);
+  const Vec3 period = boundary.periods();
   double low = 0, height = period.z;
   if (period.z == 0 && n > 0) {
     const auto [lowest, highest] = std::minmax_element(
@@ -60,20 +43,19 @@ NeighbourFinder::NeighbourFinder(const Packing& packing, double cut)
   // Small cells leave out most of what lies beyond the cut, if each still holds about a sphere.
   double side = std::max(0.8, cut / 3);
   do {
-    x_ = make_axis(0, width_x(packing.container), period.x, side);
-    y_ = make_axis(0, width_y(packing.container), period.y, side);
-    z_ = make_axis(low, height, period.z, side);
+    x_ = CellAxis::over(0, boundary.width_x, period.x, side);
+    y_ = CellAxis::over(0, boundary.width_y, period.y, side);
+    z_ = CellAxis::over(low, height, period.z, side);
     side *= 1.5;
-  } while (1.0 * x_.count * y_.count * z_.count > 1000 + 8.0 * n);
+  } while (1.0 * x_.count * y_.count * z_.count > most_cells(n));
 
-  const auto own_cell = [](const Axis& axis, double x) {
-    return static_cast<std::size_t>(std::clamp(axis.cell(x), 0L, axis.count - 1L));
-  };
   std::vector<std::size_t> cell_of(n);
   starts_.assign(static_cast<std::size_t>(x_.count) * y_.count * z_.count + 1, 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3 r = centres[i];
-    cell_of[i] = (own_cell(z_, r.z) * y_.count + own_cell(y_, r.y)) * x_.count + own_cell(x_, r.x);
+    cell_of[i] =
+        (static_cast<std::size_t>(z_.own_cell(r.z)) * y_.count + y_.own_cell(r.y)) * x_.count +
+        x_.own_cell(r.x);
     ++starts_[cell_of[i] + 1];
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());

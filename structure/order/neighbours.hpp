@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/bed/cell_axis.hpp"
 #include "engine/bed/packing.hpp"
 
 // Which centres are near which, in any container. Lengths in diameters.
@@ -25,21 +26,23 @@ class NeighbourFinder {
   void around(std::uint32_t i, Visit&& visit) const {
     const std::uint32_t own_place = place_of_[i];
     const Vec3 r = centres_[own_place];
-    const Cells z_cells = z_.within(r.z, reach_);
+    const CellAxis::Range z_cells = z_.range(r.z - reach_, r.z + reach_);
     for (long k = z_cells.first; k <= z_cells.last; ++k) {
-      const Image layer = z_.image(k);
+      const CellAxis::Image layer = z_.image(k);
       const double layer_gap = z_.gap(k, r.z), beside = reach_ * reach_ - layer_gap * layer_gap;
       if (beside < 0) continue;
-      const Cells y_cells = y_.within(r.y, std::sqrt(beside));
+      const double half_y = std::sqrt(beside);
+      const CellAxis::Range y_cells = y_.range(r.y - half_y, r.y + half_y);
       for (long j = y_cells.first; j <= y_cells.last; ++j) {
-        const Image row = y_.image(j);
+        const CellAxis::Image row = y_.image(j);
         const double row_gap = y_.gap(j, r.y), along = beside - row_gap * row_gap;
         if (along < 0) continue;
         const std::size_t begin = (static_cast<std::size_t>(layer.cell) * y_.count + row.cell) *
                                   static_cast<std::size_t>(x_.count);
-        const Cells x_cells = x_.within(r.x, std::sqrt(along));
+        const double half_x = std::sqrt(along);
+        const CellAxis::Range x_cells = x_.range(r.x - half_x, r.x + half_x);
         for (long first = x_cells.first; first <= x_cells.last;) {
-          const Image cell = x_.image(first);
+          const CellAxis::Image cell = x_.image(first);
           const long n = std::min(x_cells.last - first + 1, long{x_.count} - cell.cell);
           const Vec3 shift{cell.shift, row.shift, layer.shift};
           visit_places(starts_[begin + cell.cell], starts_[begin + cell.cell + n], r, shift,
@@ -55,42 +58,6 @@ class NeighbourFinder {
  private:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  struct Cells {
-    long first, last;
-  };
-  struct Image {
-    long cell;
-    double shift;  // from the cell to this image of it
-  };
-
-  // The cells along one direction; beyond the box of a periodic one they go on as images.
-  struct Axis {
-    double origin = 0, side = 1, per_length = 1, period = 0;  // period 0: not periodic
-    int count = 1;
-
-    long cell(double x) const { return static_cast<long>(std::floor((x - origin) * per_length)); }
-    Cells within(double x, double reach) const {
-      Cells cells{cell(x - reach), cell(x + reach)};
-      if (period == 0) {
-        cells.first = std::clamp(cells.first, 0L, count - 1L);
-        cells.last = std::clamp(cells.last, 0L, count - 1L);
-      }
-      return cells;
-    }
-    Image image(long k) const {
-      if (k >= 0 && k < count) return {k, 0};
-      const long turn = k >= 0 ? k / count : -((count - 1 - k) / count);
-      return {k - turn * count, static_cast<double>(turn) * period};
-    }
-    // How far x is from cell k: 0 inside.
-    double gap(long k, double x) const {
-      const double low = origin + static_cast<double>(k) * side;
-      return std::max(0.0, std::max(low - x, x - (low + side)));
-    }
-  };
-
-  static Axis make_axis(double origin, double length, double period, double least_side);
-
   template <class Visit>
   void visit_places(std::uint32_t begin, std::uint32_t end, Vec3 from, Vec3 shift,
                     std::uint32_t own_place, Visit& visit) const {
@@ -105,7 +72,7 @@ class NeighbourFinder {
 
   double cut_squared_;
   double reach_;  // a little more than the cut, for the rounding of cells' bounds
-  Axis x_, y_, z_;
+  CellAxis x_, y_, z_;
   std::vector<std::uint32_t> starts_;    // [n_cells + 1], into the places
   std::vector<Vec3> centres_;            // [n], by place: cell after cell
   std::vector<std::uint32_t> spheres_;   // [n], by place

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/order/neighbours.hpp"
 
@@ -18,7 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // Heights where centres may be.
 HeightWindow centre_heights(const Packing& packing) {
-  if (!has_gravity(packing.container)) return {-infinite, infinite};
+  if (!Boundary(packing.container).floor) return {-infinite, infinite};
   return {sphere_radius, top_height(packing)};
 }
 
@@ -29,30 +30,27 @@ double half_ball_volume(double radius, double cut) {
   return std::numbers::pi * cut * (radius * radius - cut * cut / 3);
 }
 
-bool has_walls(const Container& container) {
-  return std::holds_alternative<WalledBox>(container) ||
-         std::holds_alternative<Cylinder>(container);
-}
-
-double narrowest_period(const Container& container) {
-  if (has_walls(container)) return infinite;
-  const double across = std::min(width_x(container), width_y(container));
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
-  return bulk != nullptr ? std::min(across, bulk->height) : across;
+double narrowest_period(const Boundary& boundary) {
+  const Vec3 periods = boundary.periods();
+  double narrowest = infinite;
+  for (const double period : {periods.x, periods.y, periods.z}) {
+    if (period > 0) narrowest = std::min(narrowest, period);
+  }
+  return narrowest;
 }
 
 void check(const Packing& packing, const Region& region, double r_max) {
-  if (r_max > 0.5 * narrowest_period(packing.container)) {
+  const Boundary boundary(packing.container);
+  if (r_max > 0.5 * narrowest_period(boundary)) {
     throw std::invalid_argument(
         "g(r): r_max is more than half a period of the box, where images repeat: take a smaller "
         "r_max");
   }
-  if (has_walls(packing.container) && region.from_sides < r_max + sphere_radius) {
+  if (boundary.has_walls() && region.from_sides < r_max + sphere_radius) {
     throw std::invalid_argument(
         "g(r): shells of r_max reach the walls: keep the region r_max + 1/2 away from them");
   }
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
-  if (bulk != nullptr && (region.low < 0 || region.high > bulk->height)) {
+  if (boundary.periodic_z && (region.low < 0 || region.high > boundary.height)) {
     throw std::invalid_argument("g(r): the region must lie within the box: heights 0 to its own");
   }
   if (region.high <= region.low || region.volume(packing.container) <= 0) {
@@ -68,15 +66,15 @@ double number_density(const Packing& packing, const Region& region) {
   if (slab.high <= slab.low) {
     throw std::invalid_argument("g(r): the region lies outside the heights of the bed");
   }
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container);
+  const Boundary boundary(packing.container);
   const Region column{-infinite, infinite, region.from_sides};
   double solid = 0;
   for (const Vec3& r : packing.centres) {
     if (!column.contains(packing.container, r)) continue;
     solid += sphere_volume_in_slab(r.z, slab.low, slab.high);
-    if (bulk != nullptr) {
-      solid += sphere_volume_in_slab(r.z - bulk->height, slab.low, slab.high) +
-               sphere_volume_in_slab(r.z + bulk->height, slab.low, slab.high);
+    if (boundary.periodic_z) {
+      solid += sphere_volume_in_slab(r.z - boundary.height, slab.low, slab.high) +
+               sphere_volume_in_slab(r.z + boundary.height, slab.low, slab.high);
     }
   }
   return solid / (sphere_volume * slab.volume(packing.container));
@@ -113,15 +111,16 @@ class CubicFit {
 
 double widest_pairs(const Container& container) {
   constexpr double usual = 4, tenth = 0.1;
-  const double across = std::min(width_x(container), width_y(container));
+  const Boundary boundary(container);
+  const double across = std::min(boundary.width_x, boundary.width_y);
   const double widest =
-      has_walls(container) ? across / 2 - sphere_radius - 0.5 : narrowest_period(container) / 2;
+      boundary.has_walls() ? across / 2 - sphere_radius - 0.5 : narrowest_period(boundary) / 2;
   return std::clamp(std::floor(widest / tenth + 1e-9) * tenth, 1.0, usual);
 }
 
 Region bulk_region(const Packing& packing, double r_max) {
-  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&packing.container)) {
-    return {0, bulk->height, 0};
+  if (const Boundary boundary(packing.container); boundary.periodic_z) {
+    return {0, boundary.height, 0};
   }
   const double floor = sphere_radius, surface = 2 * mean_height(packing);
   const double depth = surface - floor;

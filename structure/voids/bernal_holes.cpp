@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/geometry.hpp"
 #include "structure/voids/delaunay.hpp"
 #include "structure/voids/hole_candidates.hpp"
@@ -98,21 +99,18 @@ class HoleFiller {
 
   void take(HoleKind kind, const std::vector<std::uint32_t>& spheres,
             const std::vector<std::uint32_t>& within) {
+    const Boundary boundary(packing_.container);
     BernalHole hole{kind, spheres, 0, {}};
     const Vec3 origin = tetrahedra_[within.front()].centroid;
     Vec3 moment;
     for (const std::uint32_t t : within) {
       taken_[t] = true;
       const DelaunayTetrahedron& one = tetrahedra_[t];
-      const auto from_origin = [&](const auto& box) {
-        return separation(box, one.centroid, origin);
-      };
-      moment = moment + one.volume * std::visit(from_origin, packing_.container);
+      moment = moment + one.volume * separation(boundary, one.centroid, origin);
       hole.volume += one.volume;
     }
     const Vec3 centroid = origin + (hole.volume > 0 ? 1 / hole.volume : 0) * moment;
-    hole.centroid =
-        std::visit([&](const auto& box) { return wrapped(box, centroid); }, packing_.container);
+    hole.centroid = wrapped(boundary, centroid);
     holes_.push_back(std::move(hole));
   }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/random.hpp"
 
 namespace jostle {
@@ -15,10 +15,9 @@ namespace {
 
 void require_wide(const Container& container) {
   constexpr double least = 4;
-  const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
-  if (bulk == nullptr && !std::holds_alternative<PeriodicBox>(container)) return;
-  if (width_x(container) < least || width_y(container) < least ||
-      (bulk != nullptr && bulk->height < least)) {
+  const Vec3 periods = Boundary(container).periods();
+  for (const double period : {periods.x, periods.y, periods.z}) {
+    if (period == 0 || period >= least) continue;
     throw std::invalid_argument(
         "Delaunay tetrahedra need periodic widths of at least 4 diameters, so that a sphere meets "
         "none of its own images");
@@ -29,28 +28,26 @@ void require_wide(const Container& container) {
 Packing in_general_position(Packing packing) {
   constexpr double shift = 1e-6;
   RandomStream random(stream_key(0, 0, 0, Purpose::resampling));
+  const Boundary boundary(packing.container);
   for (Vec3& r : packing.centres) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
     const Vec3 moved = r + shift * Vec3{2 * x - 1, 2 * y - 1, 2 * z - 1};
-    r = std::visit([&](const auto& box) { return wrapped(box, moved); }, packing.container);
+    r = wrapped(boundary, moved);
   }
   return packing;
 }
 
 DelaunayTetrahedron tetrahedron(const Packing& packing, const std::array<std::uint32_t, 4>& spheres,
                                 Vec3 vertex) {
+  const Boundary boundary(packing.container);
+  const Vec3 inside = wrapped(boundary, vertex);
   std::array<Vec3, 4> corners;  // seen from the vertex
-  const auto place = [&](const auto& box) {
-    for (std::size_t k = 0; k < 4; ++k)
-      corners[k] = separation(box, packing.centres[spheres[k]], wrapped(box, vertex));
-  };
-  std::visit(place, packing.container);
+  for (std::size_t k = 0; k < 4; ++k) {
+    corners[k] = separation(boundary, packing.centres[spheres[k]], inside);
+  }
   const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
   const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-  return {spheres,
-          std::visit([&](const auto& box) { return wrapped(box, wrapped(box, vertex) + middle); },
-                     packing.container),
-          std::abs(dot(a, cross(b, c))) / 6};
+  return {spheres, wrapped(boundary, inside + middle), std::abs(dot(a, cross(b, c))) / 6};
 }
 
 // The spheres of a vertex of cell i, ascending, if it is the middle of a tetrahedron.

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "engine/bed/geometry.hpp"
+#include "engine/bed/boundary.hpp"
 
 namespace jostle {
 namespace {
@@ -16,11 +16,8 @@ namespace {
 using Square = std::array<std::uint32_t, 4>;  // around it
 
 double distance_squared(const Packing& packing, std::uint32_t i, std::uint32_t j) {
-  return std::visit(
-      [&](const auto& box) {
-        return norm_squared(separation(box, packing.centres[i], packing.centres[j]));
-      },
-      packing.container);
+  return norm_squared(
+      separation(Boundary(packing.container), packing.centres[i], packing.centres[j]));
 }
 
 // The same square from whichever corner and whichever way round.

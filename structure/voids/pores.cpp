@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
-#include "engine/bed/geometry.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
@@ -29,6 +29,7 @@ struct Sighting {
 // Every vertex from every cell that has it: at degenerate ones the cells that meet do not all see
 // one another, and only together they name all the spheres around it.
 std::vector<Sighting> sightings(const Packing& packing, const VoronoiCells& cells) {
+  const Boundary boundary(packing.container);
   std::vector<Sighting> found;
   found.reserve(cells.vertices.size());
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
@@ -36,26 +37,21 @@ std::vector<Sighting> sightings(const Packing& packing, const VoronoiCells& cell
       if (vertex.on_boundary) continue;
       const Vec3 r = vertex.position;
       const double radius = std::sqrt(norm_squared(r - packing.centres[i])) - sphere_radius;
-      found.push_back(
-          {std::visit([&](const auto& box) { return wrapped(box, r); }, packing.container), radius,
-           i, &vertex});
+      found.push_back({wrapped(boundary, r), radius, i, &vertex});
     }
   }
   return found;
 }
 
 // `owners` is room to work in.
-Pore merged(const Container& container, const VoronoiCells& cells,
-            const std::vector<Sighting>& found, const std::vector<std::uint32_t>& cluster,
-            std::vector<std::uint32_t>& owners) {
+Pore merged(const Boundary& boundary, const VoronoiCells& cells, const std::vector<Sighting>& found,
+            const std::vector<std::uint32_t>& cluster, std::vector<std::uint32_t>& owners) {
   const Vec3 first = found[cluster.front()].centre;
   Vec3 shift;
   double radius = 0;
   owners.clear();
   for (const std::uint32_t k : cluster) {
-    shift =
-        shift + std::visit([&](const auto& box) { return separation(box, found[k].centre, first); },
-                           container);
+    shift = shift + separation(boundary, found[k].centre, first);
     radius += found[k].radius;
     const auto others = cells.owners_of(*found[k].vertex);
     owners.insert(owners.end(), others.begin(), others.end());
@@ -63,50 +59,34 @@ Pore merged(const Container& container, const VoronoiCells& cells,
   }
   std::ranges::sort(owners);
   const double part = 1.0 / static_cast<double>(cluster.size());
-  return {
-      std::visit([&](const auto& box) { return wrapped(box, first + part * shift); }, container),
-      part * radius,
-      {owners.begin(), std::ranges::unique(owners).begin()}};
+  return {wrapped(boundary, first + part * shift),
+          part * radius,
+          {owners.begin(), std::ranges::unique(owners).begin()}};
 }
 
-double squared_distance(const Container& container, Vec3 a, Vec3 b) {
-  return std::visit([&](const auto& box) { return norm_squared(separation(box, a, b)); },
-                    container);
+double squared_distance(const Boundary& boundary, Vec3 a, Vec3 b) {
+  return norm_squared(separation(boundary, a, b));
 }
 
-// What a sphere of radius R around `r` fills of a region between periodic sides.
-double filled_by(const PeriodicBox&, const Region& region, Vec3 r) {
-  return sphere_volume_in_slab(r.z, region.low, region.high);
-}
-double filled_by(const FullyPeriodicBox& box, const Region& region, Vec3 r) {
+// What a sphere of radius R around `r` fills of a region.
+double filled_by(const Boundary& boundary, const Region& region, Vec3 r) {
+  if (boundary.sides == Sides::walls) {
+    const Vec3 low{region.from_sides, region.from_sides, region.low};
+    const Vec3 high{boundary.width_x - region.from_sides, boundary.width_y - region.from_sides,
+                    region.high};
+    return sphere_volume_in_box(low - r, high - r);
+  }
+  if (boundary.sides == Sides::cylinder) {
+    const double axis = boundary.axis(), x = r.x - axis, y = r.y - axis;
+    return sphere_volume_in_tube(std::sqrt(x * x + y * y), axis - region.from_sides,
+                                 region.low - r.z, region.high - r.z);
+  }
+  if (!boundary.periodic_z) return sphere_volume_in_slab(r.z, region.low, region.high);
   double filled = 0;
-  for (const double z : {r.z - box.height, r.z, r.z + box.height}) {
+  for (const double z : {r.z - boundary.height, r.z, r.z + boundary.height}) {
     filled += sphere_volume_in_slab(z, region.low, region.high);
   }
   return filled;
-}
-double filled_by(const WalledBox& box, const Region& region, Vec3 r) {
-  const Vec3 low{region.from_sides, region.from_sides, region.low};
-  const Vec3 high{box.width_x - region.from_sides, box.width_y - region.from_sides, region.high};
-  return sphere_volume_in_box(low - r, high - r);
-}
-double filled_by(const Cylinder& tube, const Region& region, Vec3 r) {
-  const double axis = 0.5 * tube.diameter, x = r.x - axis, y = r.y - axis;
-  return sphere_volume_in_tube(std::sqrt(x * x + y * y), axis - region.from_sides, region.low - r.z,
-                               region.high - r.z);
-}
-
-PeriodicBox scaled(const PeriodicBox& box, double by) {
-  return {by * box.width_x, by * box.width_y};
-}
-FullyPeriodicBox scaled(const FullyPeriodicBox& box, double by) {
-  return {by * box.width_x, by * box.width_y, by * box.height};
-}
-WalledBox scaled(const WalledBox& box, double by) {
-  return {by * box.width_x, by * box.width_y};
-}
-Cylinder scaled(const Cylinder& tube, double by) {
-  return {by * tube.diameter};
 }
 
 // The part of the region that spheres of radius sigma R around the centres fill, sigma <= 1: as
@@ -115,24 +95,21 @@ double filled_part(const Packing& packing, const Region& region, double sigma) {
   if (sigma == 0) return 0;
   const double by = 1 / sigma;
   const Region larger{by * region.low, by * region.high, by * region.from_sides};
-  const double filled = std::visit(
-      [&](const auto& container) {
-        const auto room = scaled(container, by);
-        double sum = 0;
-        for (const Vec3& r : packing.centres) sum += filled_by(room, larger, by * r);
-        return sum;
-      },
-      packing.container);
+  Boundary room(packing.container);
+  room.width_x *= by;
+  room.width_y *= by;
+  room.height *= by;
+  double filled = 0;
+  for (const Vec3& r : packing.centres) filled += filled_by(room, larger, by * r);
   return filled * sigma * sigma * sigma / region.volume(packing.container);
 }
 
 Vec3 random_point(const Container& container, const Region& region, RandomStream& random) {
-  const bool walled =
-      std::holds_alternative<WalledBox>(container) || std::holds_alternative<Cylinder>(container);
-  const double off = walled ? region.from_sides : 0;
+  const Boundary boundary(container);
+  const double off = boundary.has_walls() ? region.from_sides : 0;
   while (true) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    const Vec3 r{off + (width_x(container) - 2 * off) * x, off + (width_y(container) - 2 * off) * y,
+    const Vec3 r{off + (boundary.width_x - 2 * off) * x, off + (boundary.width_y - 2 * off) * y,
                  region.low + (region.high - region.low) * z};
     if (region.contains(container, r)) return r;
   }
@@ -143,9 +120,9 @@ Vec3 random_point(const Container& container, const Region& region, RandomStream
 std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
   const std::vector<Sighting> found = sightings(packing, cells);
   const auto n = static_cast<std::uint32_t>(found.size());
+  const Boundary boundary(packing.container);
   CellGrid grid;
-  grid.build(packing.container, std::max(merge, 1e-3), n,
-             [&](std::uint32_t k) { return found[k].centre; });
+  grid.build(boundary, std::max(merge, 1e-3), n, [&](std::uint32_t k) { return found[k].centre; });
   std::vector<bool> taken(n, false);
   std::vector<Pore> all;
   std::vector<std::uint32_t> cluster, owners;
@@ -157,12 +134,12 @@ std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, doubl
       const Vec3 here = found[cluster[at]].centre;
       grid.for_each_within(here, merge, [&](std::uint32_t j) {
         if (taken[j]) return;
-        if (squared_distance(packing.container, here, found[j].centre) > merge * merge) return;
+        if (squared_distance(boundary, here, found[j].centre) > merge * merge) return;
         taken[j] = true;
         cluster.push_back(j);
       });
     }
-    all.push_back(merged(packing.container, cells, found, cluster, owners));
+    all.push_back(merged(boundary, cells, found, cluster, owners));
   }
   return all;
 }
@@ -211,9 +188,10 @@ double mean_pore_volume(std::span<const Pore> pores) {
 VoidProbability void_probability(const Packing& packing, const Region& region,
                                  std::span<const double> sigma, std::uint64_t points,
                                  StreamKey key) {
+  const Boundary boundary(packing.container);
   const double longest = sphere_radius * (sigma.empty() ? 1 : std::ranges::max(sigma));
   CellGrid grid;
-  grid.build(packing.container, std::max(longest, sphere_radius),
+  grid.build(boundary, std::max(longest, sphere_radius),
              static_cast<std::uint32_t>(packing.centres.size()),
              [&](std::uint32_t i) { return packing.centres[i]; });
   std::vector<double> reaches;  // squared, ascending
@@ -225,7 +203,7 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
     const Vec3 r = random_point(packing.container, region, random);
     double nearest = std::numeric_limits<double>::infinity();
     grid.for_each_near(r, [&](std::uint32_t i) {
-      nearest = std::min(nearest, squared_distance(packing.container, r, packing.centres[i]));
+      nearest = std::min(nearest, squared_distance(boundary, r, packing.centres[i]));
     });
     ++reached[static_cast<std::size_t>(std::ranges::upper_bound(reaches, nearest) -
                                        reaches.begin())];

@@ -6,28 +6,19 @@
 #include <utility>
 #include <voro++/voro++.hh>
 
+#include "engine/bed/boundary.hpp"
+
 namespace jostle {
 namespace {
 
-struct Extent {
-  double width_x, width_y, height;
-  bool periodic_sides, periodic_z;
-};
-
-Extent extent_of(const Packing& packing, std::optional<double> lid) {
-  const Container& container = packing.container;
-  Extent extent{width_x(container), width_y(container), 0,
-                std::holds_alternative<PeriodicBox>(container), false};
-  if (const auto* bulk = std::get_if<FullyPeriodicBox>(&container)) {
-    extent.height = bulk->height;
-    extent.periodic_sides = extent.periodic_z = true;
-    return extent;
-  }
-  double top = 0;
-  for (const Vec3& r : packing.centres) top = std::max(top, r.z);
-  extent.height = lid.value_or(top + sphere_radius);
-  if (extent.height <= top) throw std::invalid_argument("the lid must lie above every centre");
-  return extent;
+// The container, with a lid where its top is open.
+Boundary closed_boundary(const Packing& packing, std::optional<double> lid) {
+  Boundary boundary(packing.container);
+  if (boundary.periodic_z) return boundary;
+  const double top = top_height(packing);
+  boundary.height = lid.value_or(top + sphere_radius);
+  if (boundary.height <= top) throw std::invalid_argument("the lid must lie above every centre");
+  return boundary;
 }
 
 int n_blocks(double length, double per_length) {
@@ -74,8 +65,9 @@ class CellReader {
         normal = normal +
                  cross(corner(face_vertices_[k - 1]) - first, corner(face_vertices_[k]) - first);
       at += n_corners;
-      found_.faces.push_back({neighbour < 0 ? boundary : static_cast<std::uint32_t>(neighbour),
-                              0.5 * std::sqrt(norm_squared(normal))});
+      found_.faces.push_back(
+          {neighbour < 0 ? container_side : static_cast<std::uint32_t>(neighbour),
+           0.5 * std::sqrt(norm_squared(normal))});
       volume += std::abs(dot(first, normal)) / 6;
     }
     return volume;
@@ -125,7 +117,7 @@ class CellReader {
     bool cut = false;
     for (std::size_t f = found_.first_face.back(); f < found_.faces.size(); ++f) {
       surface += found_.faces[f].area;
-      cut = cut || found_.faces[f].neighbour == boundary;
+      cut = cut || found_.faces[f].neighbour == container_side;
     }
     found_.volumes.push_back(volume);
     found_.surfaces.push_back(surface);
@@ -141,18 +133,18 @@ class CellReader {
 };
 
 // In units of which a diameter is `scale`, a power of two.
-VoronoiCells cells_at_scale(const Packing& packing, const Extent& box, double scale) {
+VoronoiCells cells_at_scale(const Packing& packing, const Boundary& box, double scale) {
   const std::size_t n = packing.centres.size();
   constexpr double per_block = 2;  // centres: faster in deposits than the 5 to 6 voro++ advises
   const double per_length =
       std::cbrt(static_cast<double>(n) / (per_block * box.width_x * box.width_y * box.height));
   voro::container container(0, scale * box.width_x, 0, scale * box.width_y, 0, scale * box.height,
                             n_blocks(box.width_x, per_length), n_blocks(box.width_y, per_length),
-                            n_blocks(box.height, per_length), box.periodic_sides,
-                            box.periodic_sides, box.periodic_z, 8);
+                            n_blocks(box.height, per_length), box.periodic_x, box.periodic_y,
+                            box.periodic_z, 8);
   std::optional<voro::wall_cylinder> tube;
-  if (const auto* cylinder = std::get_if<Cylinder>(&packing.container)) {
-    const double radius = 0.5 * scale * cylinder->diameter;
+  if (box.sides == Sides::cylinder) {
+    const double radius = 0.5 * scale * box.width_x;
     tube.emplace(radius, radius, 0, 0, 0, 1, radius);
     container.add_wall(*tube);
   }
@@ -190,8 +182,8 @@ std::uint32_t count_inconsistent(const VoronoiCells& cells) {
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     count += cells.volumes[i] <= 0 || std::ranges::any_of(cells.faces_of(i), [&](const auto& face) {
                const std::uint32_t j = face.neighbour;
-               return j != boundary && std::abs(area_towards(i, j) - area_towards(j, i)) >
-                                           tolerance * cells.surfaces[i];
+               return j != container_side && std::abs(area_towards(i, j) - area_towards(j, i)) >
+                                                 tolerance * cells.surfaces[i];
              });
   }
   return count;
@@ -204,7 +196,7 @@ VoronoiCells voronoi_cells(const Packing& packing, std::optional<double> lid) {
   // corners of nearly degenerate cells are about that far apart. In other units they are not.
   VoronoiCells best;
   for (const double scale : {1.0, 1.0 / 64, 64.0}) {
-    VoronoiCells cells = cells_at_scale(packing, extent_of(packing, lid), scale);
+    VoronoiCells cells = cells_at_scale(packing, closed_boundary(packing, lid), scale);
     cells.inconsistent = count_inconsistent(cells);
     if (scale == 1 || cells.inconsistent < best.inconsistent) best = std::move(cells);
     if (best.inconsistent == 0) break;

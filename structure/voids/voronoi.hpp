@@ -12,11 +12,11 @@
 namespace jostle {
 
 /// What a face of a cell is shared with: a sphere, or one of these.
-inline constexpr std::uint32_t boundary = 0xffffffff;
+inline constexpr std::uint32_t container_side = 0xffffffff;
 
 struct VoronoiFace {
-  std::uint32_t neighbour = boundary;  // index of a sphere, or `boundary`
-  double area = 0;                     // diameters squared
+  std::uint32_t neighbour = container_side;  // or the index of a sphere
+  double area = 0;                           // diameters squared
 };
 
 /// A corner of a cell, and the spheres that meet there besides the cell's own.

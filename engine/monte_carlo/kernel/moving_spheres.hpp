@@ -42,7 +42,7 @@ class MovingSpheres {
   /// Renews the lists.
   void renew() {
     const auto n = static_cast<std::uint32_t>(centres_.size());
-    grid_.build(Container{box_}, cutoff, n, [&](std::uint32_t i) { return centres_[i]; });
+    grid_.build(Boundary(box_), cutoff, n, [&](std::uint32_t i) { return centres_[i]; });
     origins_ = centres_;
     first_.resize(n + 1);
     entries_.clear();

@@ -30,7 +30,7 @@ class NeighbourLists {
     skin_ = skin;
     drift_ = drift;
     origins_.assign(centres.begin(), centres.end());
-    grid_.build(Container{box}, 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
+    grid_.build(Boundary(box), 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
     for (bool all_fit = false; !all_fit; stride_ *= 2) {
       rows_.assign(static_cast<std::size_t>(n) * stride_, 0);
       all_fit = true;

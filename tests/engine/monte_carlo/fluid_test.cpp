@@ -21,7 +21,7 @@ constexpr double bin_width = 0.005;
 void count_pairs(const Packing& packing, std::array<double, n_bins>& counts) {
   const auto& box = std::get<FullyPeriodicBox>(packing.container);
   CellGrid grid;
-  grid.build(packing.container, 1 + n_bins * bin_width, n_spheres,
+  grid.build(Boundary(packing.container), 1 + n_bins * bin_width, n_spheres,
              [&](std::uint32_t i) { return packing.centres[i]; });
   for (std::uint32_t i = 0; i < n_spheres; ++i) {
     grid.for_each_near(packing.centres[i], [&](std::uint32_t j) {

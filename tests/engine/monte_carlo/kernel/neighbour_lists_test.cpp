@@ -144,7 +144,8 @@ TEST_CASE("a search by cells misses nothing within its cutoff and meets nothing 
     for (const double cutoff : {0.3, 1.0, 1.7, 5.0}) {
       const Packing packing = points(container, 150, 12, 6);
       CellGrid grid;
-      grid.build(container, cutoff, 150, [&](std::uint32_t i) { return packing.centres[i]; });
+      grid.build(Boundary(container), cutoff, 150,
+                 [&](std::uint32_t i) { return packing.centres[i]; });
       for (std::uint32_t i = 0; i < 150; ++i) {
         std::multiset<std::uint32_t> met;
         grid.for_each_near(packing.centres[i], [&](std::uint32_t j) { met.insert(j); });

@@ -1,0 +1,83 @@
+#include "engine/bed/boundary.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "engine/bed/random.hpp"
+
+using namespace jostle;
+
+namespace {
+
+std::vector<Container> containers() {
+  return {PeriodicBox{4, 5.1}, WalledBox{4, 3.3}, Cylinder{4.7}, FullyPeriodicBox{4, 5.1, 6.3}};
+}
+
+}  // namespace
+
+TEST_CASE("A boundary says of each container where it ends") {
+  const Boundary periodic(PeriodicBox{4, 5});
+  CHECK(periodic.periodic_sides());
+  CHECK(periodic.floor);
+  CHECK_FALSE(periodic.has_walls());
+  CHECK(periodic.periods() == Vec3{4, 5, 0});
+  CHECK(std::isinf(periodic.height));
+  CHECK(periodic.side_margin() == 0);
+
+  const Boundary walled(WalledBox{4, 5});
+  CHECK(walled.sides == Sides::walls);
+  CHECK(walled.floor);
+  CHECK(walled.periods() == Vec3{});
+  CHECK(walled.width_y == 5);
+  CHECK(walled.side_margin() == sphere_radius);
+
+  const Boundary tube(Cylinder{7});
+  CHECK(tube.sides == Sides::cylinder);
+  CHECK(tube.floor);
+  CHECK(tube.periods() == Vec3{});
+  CHECK(tube.axis() == 3.5);
+  CHECK(tube.width_y == 7);
+
+  const Boundary bulk(FullyPeriodicBox{4, 5, 6});
+  CHECK_FALSE(bulk.floor);
+  CHECK_FALSE(bulk.has_walls());
+  CHECK(bulk.periods() == Vec3{4, 5, 6});
+  CHECK(bulk.height == 6);
+}
+
+TEST_CASE("A boundary wraps, compares and clears as the container's own functions, bit for bit") {
+  RandomStream random(stream_key(81, 0, 0, Purpose::start));
+  for (const Container& container : containers()) {
+    CAPTURE(container.index());
+    const Boundary boundary(container);
+    int clear = 0, blocked = 0;
+    std::visit(
+        [&](const auto& box) {
+          for (int draw = 0; draw < 20'000; ++draw) {
+            const auto point = [&] {
+              const auto within = [&](double width) { return width * (3 * random.uniform() - 1); };
+              const double x = within(boundary.width_x), y = within(boundary.width_y);
+              return Vec3{x, y, within(6.3)};
+            };
+            const Vec3 r = wrapped(box, point()), other = wrapped(box, point());
+            REQUIRE(wrapped(boundary, r) == r);
+            const Vec3 moved = r + Vec3{0.3, -0.3, 0.2};
+            REQUIRE(wrapped(boundary, moved) == wrapped(box, moved));
+            REQUIRE(separation(boundary, r, other) == separation(box, r, other));
+            REQUIRE(clear_of_boundaries(boundary, r) == clear_of_boundaries(box, r));
+            if (boundary.periodic_z) {
+              REQUIRE(boundary_depth(boundary, r) == 0);
+            } else {
+              // Within rounding of touching either may be said.
+              const double depth = boundary_depth(boundary, r);
+              if (std::abs(depth) > 1e-12) REQUIRE((depth > 0) != clear_of_boundaries(box, r));
+            }
+            ++(clear_of_boundaries(boundary, r) ? clear : blocked);
+          }
+        },
+        container);
+    CHECK(clear > 100);
+    if (boundary.floor) CHECK(blocked > 100);
+  }
+}
