@@ -1,4 +1,4 @@
-// Seconds a tap with the exhaustive and with the skipping sampler, in turn from the same excited
+// Seconds a tap with the exhaustive and the rejection-free sampler, in turn from the same excited
 // beds, with pass or miss.
 #include <fmt/format.h>
 
@@ -37,10 +37,10 @@ const std::array courses = {
     Course{"polar, periodic", PeriodicBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-6, 5},
     Course{"polar, walls", WalledBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-5, 0},
     Course{"polar, walls", WalledBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-6, 0},
-    Course{"cold Metropolis, walls", WalledBox{16, 16}, 4096, Lift{0.25}, MetropolisMove{}, 1e-5,
-           2},
-    Course{"cold Metropolis, walls", WalledBox{16, 16}, 4096, Lift{0.25}, MetropolisMove{}, 1e-6,
-           5},
+    Course{"Metropolis at T = 0, walls", WalledBox{16, 16}, 4096, Lift{0.25}, MetropolisMove{},
+           1e-5, 2},
+    Course{"Metropolis at T = 0, walls", WalledBox{16, 16}, 4096, Lift{0.25}, MetropolisMove{},
+           1e-6, 5},
 };
 
 // The taps of one sampler, one after another.
@@ -72,12 +72,12 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-void report(const Course& course, const Side& exhaustive, const Side& skipping) {
+void report(const Course& course, const Side& exhaustive, const Side& rejection_free) {
   const auto taps = static_cast<double>(exhaustive.seconds.size());
-  const double ratio = sum(exhaustive.seconds) / sum(skipping.seconds);
+  const double ratio = sum(exhaustive.seconds) / sum(rejection_free.seconds);
   std::vector<double> ratios;
   for (std::size_t k = 0; k < exhaustive.seconds.size(); ++k) {
-    ratios.push_back(exhaustive.seconds[k] / skipping.seconds[k]);
+    ratios.push_back(exhaustive.seconds[k] / rejection_free.seconds[k]);
   }
   const auto [least, most] = std::ranges::minmax(ratios);
   const std::string verdict =
@@ -86,9 +86,9 @@ void report(const Course& course, const Side& exhaustive, const Side& skipping) 
           : fmt::format("target {}: {}", course.target, ratio >= course.target ? "pass" : "MISS");
   fmt::print(
       "{:<23} eta {:.0e}: {:.3f} against {:.3f} s a tap: {:.2f} times ({:.2f} to {:.2f}), {}\n",
-      course.name, course.eta, sum(skipping.seconds) / taps, sum(exhaustive.seconds) / taps, ratio,
-      least, most, verdict);
-  for (const Side* side : {&exhaustive, &skipping}) {
+      course.name, course.eta, sum(rejection_free.seconds) / taps, sum(exhaustive.seconds) / taps,
+      ratio, least, most, verdict);
+  for (const Side* side : {&exhaustive, &rejection_free}) {
     const TrialTally& tally = side->loop->tally();
     const auto accepted = static_cast<double>(tally.accepted);
     fmt::print(
@@ -97,7 +97,7 @@ void report(const Course& course, const Side& exhaustive, const Side& skipping) 
         side == &exhaustive ? "exhaustive" : "skipping",
         static_cast<double>(tally.trials) / sum(side->seconds) / 1e6, side->sweeps / taps,
         side->height / taps, accepted / static_cast<double>(tally.trials));
-    if (side == &skipping) {
+    if (side == &rejection_free) {
       fmt::print(", {:.2f} candidates and {:.2f} rows of bounds an accepted step",
                  static_cast<double>(tally.candidates) / accepted,
                  static_cast<double>(tally.bound_rows) / accepted);
@@ -112,15 +112,15 @@ void compare(const Course& course, int taps) {
   RandomStream tap_random(stream_key(seed, 0, 0, Purpose::tap));
   Packing bed = make_start(SteepestDescentPour{}, course.container, course.n_spheres, start_random);
   Side exhaustive = side_of(course, Sampler::exhaustive);
-  Side skipping = side_of(course, Sampler::skipping);
+  Side rejection_free = side_of(course, Sampler::skipping);
   const Stop stop{MeanHeightStop{.eta = course.eta, .every_sweeps = 100}, 100'000'000};
   for (int k = 0; k < taps; ++k) {
     excite(bed, course.tap, tap_random);
     exhaustive.relax_tap(bed, stop);
-    skipping.relax_tap(bed, stop);
+    rejection_free.relax_tap(bed, stop);
     exhaustive.loop->store(bed);
   }
-  report(course, exhaustive, skipping);
+  report(course, exhaustive, rejection_free);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace jostle {
 
 /// What the trial loop must agree with bit for bit: one trial after another, each held against all
-/// spheres, without lists, cells or shields. It shares with the trial loop the proposals alone, and
+/// spheres, without lists, cells or caches. It shares with the trial loop the proposals alone, and
 /// those of the baseline instruction set. For checks: O(n) a trial, and the step never adapts.
 class PlainLoop {
  public:

@@ -2,7 +2,7 @@
 
 #include <limits>
 #include <stdexcept>
-#include <type_traits>
+#include <utility>
 
 #include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
@@ -12,7 +12,7 @@ namespace jostle {
 
 namespace {
 
-void refuse_skipping_rises(const Container& container, const Move& move) {
+void require_no_rises(const Container& container, const Move& move) {
   if (!has_gravity(container)) {
     throw std::invalid_argument(
         "the skipping sampler needs gravity, which a fully periodic box has not: use the "
@@ -32,29 +32,33 @@ void refuse_skipping_rises(const Container& container, const Move& move) {
   }
 }
 
-// Calls act(box, policy) with the container and the move as the loop is compiled for them.
+// Calls act(box, policy) with the container and the move as the loop is compiled for them: a move
+// without a policy does not compile.
 template <class Act>
-std::unique_ptr<TrialLoop> with_types(const Container& container, const Move& move, StreamKey key,
-                                      const Act& act) {
-  return std::visit(
-      [&](const auto& box) -> std::unique_ptr<TrialLoop> {
-        const auto* polar = std::get_if<PolarMove>(&move);
-        if constexpr (std::is_same_v<std::decay_t<decltype(box)>, FullyPeriodicBox>) {
-          if (polar == nullptr) return act(box, WithoutGravity(std::get<MetropolisMove>(move)));
-          throw std::invalid_argument(
-              "the polar move only goes down and a fully periodic box has no down: use the "
-              "Metropolis move");
-        } else {
-          if (polar != nullptr) return act(box, Polar(*polar));
-          const auto& metropolis = std::get<MetropolisMove>(move);
-          if (metropolis.beta == std::numeric_limits<double>::infinity()) {
-            return act(box, ZeroTemperature(metropolis));
-          }
-          return act(box, Metropolis(metropolis, key));
-        }
-      },
-      container);
-}
+struct WithTypes {
+  StreamKey key;
+  const Act& act;
+
+  template <class Box>
+  std::unique_ptr<TrialLoop> operator()(const Box& box, const PolarMove& move) const {
+    return act(box, Polar(move));
+  }
+  template <class Box>
+  std::unique_ptr<TrialLoop> operator()(const Box& box, const MetropolisMove& move) const {
+    if (move.beta != std::numeric_limits<double>::infinity())
+      return act(box, Metropolis(move, key));
+    return act(box, ZeroTemperature(move));
+  }
+  std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox&, const PolarMove&) const {
+    throw std::invalid_argument(
+        "the polar move only goes down and a fully periodic box has no down: use the Metropolis "
+        "move");
+  }
+  std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox& box,
+                                        const MetropolisMove& move) const {
+    return act(box, WithoutGravity(move));
+  }
+};
 
 struct MakeExhaustive {
   StreamKey key;
@@ -82,7 +86,7 @@ struct MakeRejectionFree {
   }
   template <class Box, class Policy>
   std::unique_ptr<TrialLoop> operator()(const Box&, const Policy&) const {
-    return nullptr;  // refused before
+    return nullptr;  // a fault, thrown before
   }
 };
 
@@ -92,10 +96,12 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
                                            StreamKey key, InstructionSet set, Sampler sampler) {
   const Kernels kernels = kernels_for(set);
   if (sampler == Sampler::skipping) {
-    refuse_skipping_rises(container, move);
-    return with_types(container, move, key, MakeRejectionFree{key, kernels});
+    require_no_rises(container, move);
+    const MakeRejectionFree make{key, kernels};
+    return std::visit(WithTypes<MakeRejectionFree>{key, make}, container, move);
   }
-  return with_types(container, move, key, MakeExhaustive{key, kernels.proposals});
+  const MakeExhaustive make{key, kernels.proposals};
+  return std::visit(WithTypes<MakeExhaustive>{key, make}, container, move);
 }
 
 }  // namespace jostle

@@ -20,7 +20,7 @@ std::vector<Vec3> fit_pour(const WalledBox& box, std::vector<Vec3> poured, Rando
     }
   }
   for (const std::uint32_t sphere : misfits) {
-    heed(stop);
+    throw_if_stopped(stop);
     poured[sphere] = pour_one(bed, sphere, random);
     bed.add(poured[sphere]);
   }

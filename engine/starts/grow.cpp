@@ -97,7 +97,7 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint
   double max_step = longest_step;
   for (std::uint64_t sweep = 0; sweep < start.max_sweeps && spheres.full_grown() < n_spheres;
        ++sweep) {
-    heed(stop);
+    throw_if_stopped(stop);
     const double limit = growth_limit(spheres.least_diameter());
     if (sweep % renewal == 0) spheres.renew_lists();
     const std::uint64_t accepted = spheres.accepted();

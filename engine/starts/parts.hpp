@@ -18,7 +18,7 @@ struct PourTally {
 };
 
 /// Throws StartStopped once a stop is asked for.
-inline void heed(const StopAsked& stop) {
+inline void throw_if_stopped(const StopAsked& stop) {
   if (stop && stop()) throw StartStopped();
 }
 

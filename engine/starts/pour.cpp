@@ -40,7 +40,7 @@ std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, Rand
   }
   PourBed bed(container, n_spheres);
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
-    heed(stop);
+    throw_if_stopped(stop);
     bed.add(pour_one(bed, sphere, random, tally));
   }
   return bed.centres();

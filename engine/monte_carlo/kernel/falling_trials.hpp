@@ -9,7 +9,7 @@
 
 namespace jostle {
 
-/// The trials of a batch that do not rise, in order: in the cold the others are refused unseen.
+/// The trials of a batch that do not rise, in order: at zero temperature the others are rejected.
 class FallingTrials {
  public:
   void list(const ProposalBatch& batch) {

@@ -12,9 +12,9 @@ namespace jostle {
 /// is that of the move (engine/monte_carlo/theta_table.hpp).
 DirectionBins<polar_sectors> polar_bins(const std::vector<double>& theta_table, double max_step);
 
-/// Bins of the cold Metropolis move. Rings are stretches of the cosine, so that probability is
-/// solid angle on the lower hemisphere. A bin's cap covers the cube |x|, |y|, |z| <= step; what
-/// lies beyond the cube is no trial.
+/// Bins of the Metropolis move at zero temperature. Rings are stretches of the cosine, so that
+/// probability is solid angle on the lower hemisphere. A bin's cap covers the cube |x|, |y|, |z| <=
+/// step; what lies beyond the cube is no trial.
 DirectionBins<cubic_sectors> cubic_bins(double step);
 
 /// The angle from the downward vertical at coordinate u in (0, 1) of a ring, uniform in

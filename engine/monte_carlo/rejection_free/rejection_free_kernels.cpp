@@ -37,7 +37,7 @@ struct Coefficients {
 
 // A step along a direction with component s of r enters the sphere at L = c / h(s), with
 // c = |r|^2 - 1 and h = s + sqrt(s^2 - c), and leaves it at h. From s = (longest + c / longest) / 2
-// on, where the longest step enters or leaves the sphere, every step beyond L is refused. There h
+// on, where the longest step enters or leaves the sphere, every step beyond L is rejected. There h
 // is the greater of longest and c / longest; it is concave, so it is above the straight line from
 // there to norm + 1 at any norm >= |r|. A line from c / longest, which is lower, needs no onset:
 // for a lesser s it gives a bound beyond the longest step.

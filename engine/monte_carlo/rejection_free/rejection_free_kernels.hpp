@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-// The vectorised parts of the skipping sampler: how far a sphere may go in every direction, and the
-// random numbers of candidates. Every instruction set makes the same bits.
+// The vectorised parts of rejection-free sampling: how far a sphere may go in every direction, and
+// the random numbers of candidates. Every instruction set makes the same bits.
 namespace jostle {
 
 /// Directions are sorted into rings of the angle from the downward vertical, each cut into sectors
@@ -32,7 +32,7 @@ struct DirectionBins {
 };
 
 /// A bound is kept as the weight it gives its bin: the length beyond which a step is certainly
-/// refused over the longest, or the cube of this ratio, in units of 1 / whole_weight, rounded up.
+/// rejected over the longest, or the cube of this ratio, in units of 1 / whole_weight, rounded up.
 inline constexpr int whole_weight = 65535;
 
 /// What stands in a sphere's way, as seen from its centre.

@@ -53,7 +53,7 @@ void relax_and_measure(TrialLoop& loop, const Packing& excited, const Course& co
 
 // The chain of beds goes on from other relaxations; both samplers start from each excited bed.
 void compare_taps(Packing bed, const Course& course, int taps) {
-  TapSamples exhaustive, skipping;
+  TapSamples exhaustive, rejection_free;
   const auto all = loop_of(bed, course.move, Sampler::exhaustive, 1);
   const auto few = loop_of(bed, course.move, Sampler::skipping, 1);
   const auto chain = loop_of(bed, course.move, Sampler::exhaustive, 2);
@@ -61,7 +61,7 @@ void compare_taps(Packing bed, const Course& course, int taps) {
   for (int tap = 0; tap < taps; ++tap) {
     excite(bed, course.tap, random);
     relax_and_measure(*all, bed, course, exhaustive);
-    relax_and_measure(*few, bed, course, skipping);
+    relax_and_measure(*few, bed, course, rejection_free);
     chain->load(bed);
     chain->begin_tap();
     RelaxationProgress progress;
@@ -70,11 +70,11 @@ void compare_taps(Packing bed, const Course& course, int taps) {
   }
   CHECK(few->tally().candidates > 0);
   CHECK(few->tally().candidates < few->tally().trials / 10);
-  check_same_law("sweeps", exhaustive.sweeps, skipping.sweeps);
-  check_same_law("mean height", exhaustive.height, skipping.height);
-  check_same_law("bottom fraction", exhaustive.bottom, skipping.bottom);
-  check_same_law("bulk fraction", exhaustive.bulk, skipping.bulk);
-  check_same_law("acceptance", exhaustive.acceptance, skipping.acceptance);
+  check_same_law("sweeps", exhaustive.sweeps, rejection_free.sweeps);
+  check_same_law("mean height", exhaustive.height, rejection_free.height);
+  check_same_law("bottom fraction", exhaustive.bottom, rejection_free.bottom);
+  check_same_law("bulk fraction", exhaustive.bulk, rejection_free.bulk);
+  check_same_law("acceptance", exhaustive.acceptance, rejection_free.acceptance);
 }
 
 Packing settled(const Container& container, std::uint32_t n, const Move& move,
@@ -122,14 +122,16 @@ StepSamples steps_from(const Packing& bed, const Move& move, Sampler sampler, in
 
 }  // namespace
 
-TEST_CASE("skipping has the law of looking at every trial: polar taps", "[statistics]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: polar taps",
+          "[statistics]") {
   const PeriodicBox box{4, 4};
   compare_taps(settled(box, 100, PolarMove{}),
                {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
                200);
 }
 
-TEST_CASE("skipping has the law of looking at every trial: Metropolis taps", "[statistics]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: Metropolis taps",
+          "[statistics]") {
   MetropolisMove move{0.1};
   move.adaptation = StepAdaptation{0.99, 10'000, 0.5, AcceptanceBase::all_trials, true};
   const WalledBox box{4.5, 4.5};
@@ -137,7 +139,8 @@ TEST_CASE("skipping has the law of looking at every trial: Metropolis taps", "[s
                {move, Lift{0.25}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}}, 200);
 }
 
-TEST_CASE("skipping has the law of looking at every trial: taps in a tube", "[statistics]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: taps in a tube",
+          "[statistics]") {
   const Cylinder tube{5};
   compare_taps(settled(tube, 100, PolarMove{}),
                {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
@@ -147,19 +150,20 @@ TEST_CASE("skipping has the law of looking at every trial: taps in a tube", "[st
                200);
 }
 
-TEST_CASE("skipping has the law of looking at every trial: accepted steps", "[statistics]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: accepted steps",
+          "[statistics]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
     const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
     const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 5000);
-    const StepSamples skipping = steps_from(bed, move, Sampler::skipping, 5000);
+    const StepSamples rejection_free = steps_from(bed, move, Sampler::skipping, 5000);
     CHECK(exhaustive.length.size() > 1000);
-    check_same_law("length", exhaustive.length, skipping.length);
-    check_same_law("fall", exhaustive.fall, skipping.fall);
-    check_same_law("moved spheres", exhaustive.count, skipping.count);
+    check_same_law("length", exhaustive.length, rejection_free.length);
+    check_same_law("fall", exhaustive.fall, rejection_free.fall);
+    check_same_law("moved spheres", exhaustive.count, rejection_free.count);
   }
 }
 
-TEST_CASE("skipping has the law of looking at every trial: 4096 spheres", "[slow]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: 4096 spheres", "[slow]") {
   std::ifstream file(std::string(TEST_DATA) + "/dep_L32_N4096_s1.dat");
   file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   const PeriodicBox box{16, 16};

@@ -11,8 +11,8 @@ namespace {
 
 const StreamKey key = stream_key(61, 0, 0, Purpose::trials);
 
-std::unique_ptr<TrialLoop> skipping_loop(const Packing& packing, const Move& move,
-                                         InstructionSet set = best_instruction_set()) {
+std::unique_ptr<TrialLoop> rejection_free_loop(const Packing& packing, const Move& move,
+                                               InstructionSet set = best_instruction_set()) {
   auto loop = make_trial_loop(packing.container, move, key, set, Sampler::skipping);
   loop->load(packing);
   loop->begin_tap();
@@ -32,12 +32,12 @@ Packing stored(const TrialLoop& loop, Packing packing) {
 
 }  // namespace
 
-TEST_CASE("skipping makes no overlap, and looks at few trials") {
+TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
   for (const Container& container :
        {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}}, Container{Cylinder{5}}}) {
     for (const Move& move : moves()) {
       const Packing start = random_packing(container, 60, 12, 5);
-      const auto loop = skipping_loop(start, move);
+      const auto loop = rejection_free_loop(start, move);
       const double before = loop->mean_height();
       constexpr std::uint64_t trials = 1'000'000;
       loop->run(trials);
@@ -54,10 +54,11 @@ TEST_CASE("skipping makes no overlap, and looks at few trials") {
   }
 }
 
-TEST_CASE("skipping does not depend on how trials are split over calls") {
+TEST_CASE("rejection-free sampling does not depend on how trials are split over calls") {
   for (const Move& move : moves()) {
     const Packing start = random_packing(PeriodicBox{4, 4}, 60, 12, 6);
-    const auto straight = skipping_loop(start, move), sliced = skipping_loop(start, move);
+    const auto straight = rejection_free_loop(start, move),
+               sliced = rejection_free_loop(start, move);
     constexpr std::uint64_t trials = 600'000;
     straight->run(trials);
     for (std::uint64_t done = 0, slice = 1; done < trials; slice = slice * 5 / 3 % 3001 + 1) {
@@ -73,10 +74,10 @@ TEST_CASE("skipping does not depend on how trials are split over calls") {
   }
 }
 
-TEST_CASE("skipping resumed from its state goes on bit for bit") {
+TEST_CASE("rejection-free sampling resumed from its state goes on bit for bit") {
   for (const Move& move : moves()) {
     const Packing start = random_packing(Cylinder{5}, 70, 12, 7);
-    const auto straight = skipping_loop(start, move);
+    const auto straight = rejection_free_loop(start, move);
     bool skipped = false;
     for (const std::uint64_t trials : {1'000, 3'333, 100'000, 300'001, 77'777}) {
       straight->run(trials);
@@ -95,14 +96,14 @@ TEST_CASE("skipping resumed from its state goes on bit for bit") {
   }
 }
 
-TEST_CASE("skipping makes the same trajectory on every instruction set") {
+TEST_CASE("rejection-free sampling makes the same trajectory on every instruction set") {
   for (const Move& move : moves()) {
     const Packing start = random_packing(WalledBox{5, 4}, 60, 12, 8);
     std::vector<Packing> ends;
     for (const InstructionSet set :
          {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
       if (set > best_instruction_set()) continue;
-      const auto loop = skipping_loop(start, move, set);
+      const auto loop = rejection_free_loop(start, move, set);
       loop->run(500'000);
       CHECK(loop->tally().candidates > 0);
       loop->store(ends.emplace_back(start));
@@ -111,12 +112,12 @@ TEST_CASE("skipping makes the same trajectory on every instruction set") {
   }
 }
 
-TEST_CASE("a relaxation that skips, cut into slices, takes the same course tap after tap") {
+TEST_CASE("a rejection-free relaxation, cut into slices, takes the same course tap after tap") {
   const Packing start = random_packing(PeriodicBox{4, 4}, 60, 12, 9);
   const Stop stop{MeanHeightStop{1e-4, 50}, 100'000};
   const auto course = [&](std::uint64_t budget) {
     Packing packing = start;
-    auto loop = skipping_loop(packing, PolarMove{});
+    auto loop = rejection_free_loop(packing, PolarMove{});
     RandomStream random(stream_key(62, 0, 0, Purpose::tap));
     std::vector<double> heights;
     for (int tap = 0; tap < 3; ++tap) {
@@ -127,7 +128,7 @@ TEST_CASE("a relaxation that skips, cut into slices, takes the same course tap a
         if (slice % 16 != 0) continue;
         const MoveState move = loop->state();
         const SamplerState sampler = loop->sampler_state();
-        loop = skipping_loop(packing, PolarMove{});
+        loop = rejection_free_loop(packing, PolarMove{});
         loop->restore(move, sampler);
       }
       heights.push_back(static_cast<double>(progress.trials));
@@ -146,14 +147,14 @@ TEST_CASE("a relaxation that skips, cut into slices, takes the same course tap a
 
 TEST_CASE("a lone sphere on the floor stays there") {
   const Packing lone{PeriodicBox{4, 4}, {{1, 1, 0.5}}};
-  const auto loop = skipping_loop(lone, PolarMove{});
+  const auto loop = rejection_free_loop(lone, PolarMove{});
   loop->run(1'000'000);
   CHECK(loop->state().next_trial == 1'000'000);
   CHECK(loop->mean_height() == 0.5);
   CHECK(loop->tally().accepted == 0);
 }
 
-TEST_CASE("skipping is refused where trials may rise") {
+TEST_CASE("rejection-free sampling is an error where trials may rise") {
   const auto make = [](const Container& container, const Move& move) {
     make_trial_loop(container, move, key, best_instruction_set(), Sampler::skipping);
   };
