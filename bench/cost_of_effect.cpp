@@ -82,7 +82,7 @@ bool make_taps(std::uint64_t count) {
   plan.n_spheres = cost_spheres;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{cost_tap, count}};
-  plan.relax.stop = {.rule = SweepsStop{cost_sweeps}};
+  plan.engine = MonteCarlo{.relax = {.move = PolarMove{}, .stop = {SweepsStop{cost_sweeps}}}};
   Realization realization(plan, 0);
   std::uint64_t rows = 0;
   while (!realization.finished()) rows += realization.advance(100'000'000).row.has_value();

@@ -74,8 +74,7 @@ void ensemble(benchmark::State& run, int threads) {
   plan.n_spheres = static_cast<std::uint32_t>(bed.packing.centres.size());
   plan.start = GivenPacking{std::make_shared<const std::vector<Vec3>>(bed.packing.centres)};
   plan.protocol = {{Dilate{0.02}, 2}};
-  plan.relax.move = bed.move;
-  plan.relax.stop = {SweepsStop{1000}};
+  plan.engine = MonteCarlo{.relax = {.move = bed.move, .stop = {SweepsStop{1000}}}};
   plan.observables = {MeanHeight{}, BottomFraction{}};
   std::vector<RealizationId> realizations;
   for (std::uint32_t k = 0; k < 8; ++k) realizations.push_back({0, k});

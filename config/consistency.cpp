@@ -82,7 +82,8 @@ class Check {
   void observables_have_names() {
     // What every sweep point has beside the observables.
     std::map<std::string, std::string> taken;
-    for (const std::string column : relaxation_columns) taken[column] = "a column of every series";
+    for (const Column& column : columns(MonteCarlo{scene_.relax, scene_.relax_start}))
+      taken[column.name] = "a column of every series";
     for (const std::string beside : names_beside_series)
       taken[beside] = "what is stored beside the observables";
     for (std::size_t i = 0; i < scene_.observables.size(); ++i) {

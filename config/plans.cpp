@@ -76,8 +76,7 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
     plan.n_spheres = here.n_spheres;
     plan.start = make_start_of(here.start, here.n_spheres);
     plan.protocol = stages(here.protocol);
-    plan.relax = here.relax;
-    plan.relax_start = here.relax_start;
+    plan.engine = MonteCarlo{here.relax, here.relax_start};
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots);
     plans.push_back(std::move(plan));

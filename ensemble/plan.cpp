@@ -10,11 +10,6 @@ std::uint64_t total_taps(const Plan& plan) {
   return total;
 }
 
-const Relaxation* relaxation_of_start(const Plan& plan) {
-  if (plan.relax_start) return &*plan.relax_start;
-  return std::holds_alternative<RandomSettle>(plan.start) ? &plan.relax : nullptr;
-}
-
 const Tap& tap_number(const Plan& plan, std::uint64_t t) {
   assert(t >= 1 && t <= total_taps(plan));
   auto stage = plan.protocol.begin();

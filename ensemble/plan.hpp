@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "engine/bed/container.hpp"
-#include "engine/monte_carlo/moves.hpp"
-#include "engine/monte_carlo/stops.hpp"
-#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/engines.hpp"
 #include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
 #include "structure/observables.hpp"
@@ -39,14 +37,6 @@ struct Snapshots {
 /// after taps always draw the point's own.
 enum class Streams { independent, matched };
 
-/// How a bed comes to rest: the moves, how they are found and when they end.
-struct Relaxation {
-  Move move;
-  Stop stop;
-  Sampler sampler = Sampler::exhaustive;
-  bool operator==(const Relaxation&) const = default;
-};
-
 /// All that one sweep point of a study needs: what is simulated, what is measured, which numbers
 /// are drawn. Realizations differ only in their index.
 struct Plan {
@@ -60,8 +50,7 @@ struct Plan {
   std::uint32_t n_spheres = 0;
   Start start;
   std::vector<Stage> protocol;
-  Relaxation relax;                                      // after every tap
-  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself
+  EngineSettings engine;
 
   std::vector<Observable> observables;
   Snapshots snapshots;
@@ -69,10 +58,6 @@ struct Plan {
 
 /// Taps of the whole protocol.
 std::uint64_t total_taps(const Plan& plan);
-
-/// How the start is relaxed before tap 0 is recorded: as the plan's `relax_start` says; without it
-/// a random settle as after a tap, any other start not at all (null).
-const Relaxation* relaxation_of_start(const Plan& plan);
 
 /// The tap with number t in 1 .. total_taps(plan).
 const Tap& tap_number(const Plan& plan, std::uint64_t t);

@@ -82,7 +82,7 @@ bool Realization::start(const StopAsked& stop) {
     return false;
   }
   if (!poured.centres.empty()) state_.fitting = fitting_report(poured, packing_);
-  if (relaxation_of_start(plan_) == nullptr) return true;
+  if (relaxation_of_start(engine(), plan_.start) == nullptr) return true;
   state_.stop_window = start_stop_window(relaxation().stop, packing_);
   begin_relaxation();
   return true;
@@ -115,14 +115,14 @@ void Realization::relax_for(std::uint64_t trials, Slice& slice) {
 
 void Realization::record(Slice& slice) {
   if (state_.rows == 0) resolve_windows();
-  slice.row = TapRow{state_.rows, (*observer_)(packing_), relaxation_record()};
+  slice.row = TapRow{state_.rows, (*observer_)(packing_), diagnostics()};
   if (std::ranges::binary_search(plan_.snapshots.taps, state_.rows)) {
     slice.snapshot = snapshot_of_row();
   }
   ++state_.rows;
   state_.dropped_offsets = 0;
   if (state_.rows == 1 && loop_) {  // the start was relaxed: from here on, the taps' trials
-    const bool by_one_rule = !plan_.relax_start || *plan_.relax_start == plan_.relax;
+    const bool by_one_rule = !engine().relax_start || *engine().relax_start == engine().relax;
     state_.move = by_one_rule ? loop_->state() : MoveState{};
     state_.sampler = by_one_rule ? loop_->sampler_state() : SamplerState{};
     loop_.reset();
@@ -133,18 +133,18 @@ void Realization::record(Slice& slice) {
 void Realization::resolve_windows() {
   observer_.emplace(plan_.observables, packing_);
   state_.observable_windows = observer_->windows();
-  state_.stop_window = stop_window(plan_.relax.stop, packing_);
+  state_.stop_window = stop_window(engine().relax.stop, packing_);
 }
 
-RelaxationRecord Realization::relaxation_record() const {
+std::vector<double> Realization::diagnostics() const {
   const RelaxationProgress& relaxation = state_.relaxation;
+  const auto n = static_cast<double>(packing_.centres.size());
   const auto trials = static_cast<double>(relaxation.trials);
-  return {.sweeps = trials / static_cast<double>(packing_.centres.size()),
-          .acceptance = relaxation.trials > 0 ? static_cast<double>(relaxation.accepted) / trials
-                                              : std::numeric_limits<double>::quiet_NaN(),
-          .capped = relaxation.status == RelaxationStatus::capped ? 1.0 : 0.0,
-          .dropped_offsets = static_cast<double>(state_.dropped_offsets) /
-                             static_cast<double>(packing_.centres.size())};
+  return {trials / n,
+          relaxation.trials > 0 ? static_cast<double>(relaxation.accepted) / trials
+                                : std::numeric_limits<double>::quiet_NaN(),
+          relaxation.status == RelaxationStatus::capped ? 1.0 : 0.0,
+          static_cast<double>(state_.dropped_offsets) / n};
 }
 
 SnapshotRecord Realization::snapshot_of_row() const {
@@ -171,9 +171,13 @@ RealizationState Realization::state() const {
   return state;
 }
 
+const MonteCarlo& Realization::engine() const {
+  return std::get<MonteCarlo>(plan_.engine);
+}
+
 const Relaxation& Realization::relaxation() const {
-  const Relaxation* of_start = relaxation_of_start(plan_);
-  return state_.rows == 0 && of_start != nullptr ? *of_start : plan_.relax;
+  const Relaxation* of_start = relaxation_of_start(engine(), plan_.start);
+  return state_.rows == 0 && of_start != nullptr ? *of_start : engine().relax;
 }
 
 // A new loop is a resumed one: it takes over the centres and where the trials stand.

@@ -55,8 +55,9 @@ class Realization {
   void relax_for(std::uint64_t trials, Slice& slice);
   void record(Slice& slice);
   void resolve_windows();
-  RelaxationRecord relaxation_record() const;
+  std::vector<double> diagnostics() const;
   SnapshotRecord snapshot_of_row() const;
+  const MonteCarlo& engine() const;
   const Relaxation& relaxation() const;  // the one that is on, or comes next
   TrialLoop& loop();
 

@@ -20,16 +20,6 @@ struct RealizationId {
   auto operator<=>(const RealizationId&) const = default;
 };
 
-/// What is recorded after every tap besides the observables.
-struct RelaxationRecord {
-  double sweeps = 0;           // of the relaxation; a multiple of 1 / n_spheres
-  double acceptance = 0;       // accepted trials / trials; NaN without trials
-  double capped = 0;           // 1 where the cap ended the relaxation
-  double dropped_offsets = 0;  // of a shake: lateral offsets that found no room / n_spheres
-};
-/// The names under which the fields above are stored beside the observables, in order.
-inline constexpr const char* relaxation_columns[] = {"sweeps", "acceptance", "capped",
-                                                     "dropped_offsets"};
 /// What else is stored beside the observables of a sweep point: none of them may be called so.
 inline constexpr const char* names_beside_series[] = {"tap",    "realization", "status",
                                                       "reason", "rows",        "trial_key"};
@@ -38,7 +28,7 @@ inline constexpr const char* names_beside_series[] = {"tap",    "realization", "
 struct TapRow {
   std::uint64_t tap = 0;
   std::vector<double> observables;  // [n_observables of the plan]
-  RelaxationRecord relaxation;
+  std::vector<double> diagnostics;  // of the engine, along columns(plan.engine)
 };
 
 struct SnapshotRecord {

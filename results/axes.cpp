@@ -27,7 +27,7 @@ Hdf5Handle write_counting_axis(hid_t group, const char* name, Number n, const ch
 
 template <class Number>
 RowsDataset<Number> labelled_column(hid_t group, const Hdf5Handle& taps, std::uint64_t n_taps,
-                                    const ObservableLabel& label) {
+                                    const Column& label) {
   RowsDataset<Number> column(group, label.name, {n_taps}, chunk_along_first({n_taps}));
   write_label(column.dataset(), label);
   const Hdf5Handle* const axes[] = {&taps};
@@ -82,7 +82,7 @@ Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations) {
                                             "index of the realization");
 }
 
-void write_label(hid_t dataset, const ObservableLabel& label) {
+void write_label(hid_t dataset, const Column& label) {
   if (!label.units.empty()) write_attribute(dataset, "units", label.units);
   if (!label.long_name.empty()) write_attribute(dataset, "long_name", label.long_name);
   if (!label.source.empty()) write_attribute(dataset, "source", label.source);
@@ -104,8 +104,8 @@ std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns) 
   return std::max<std::uint64_t>(bytes_a_block / bytes_a_row / chunk, 1) * chunk;
 }
 
-EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<ObservableLabel>& labels,
-                               std::uint64_t n_taps, std::uint32_t n_realizations)
+EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<Column>& labels, std::uint64_t n_taps,
+                               std::uint32_t n_realizations)
     : n_realizations_(n_realizations) {
   const Hdf5Handle taps = write_tap_axis(group, n_taps);
   for (const auto& [name, units, long_name, source] : labels) {

@@ -19,7 +19,7 @@ Hdf5Handle write_tap_axis(hid_t group, std::uint64_t n_taps);
 Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations);
 
 /// units, long_name and source; a label's empty text leaves its attribute out.
-void write_label(hid_t dataset, const ObservableLabel& label);
+void write_label(hid_t dataset, const Column& label);
 
 /// Chunks of about 65536 numbers that span all dimensions but the first.
 Shape chunk_along_first(const Shape& shape);
@@ -28,7 +28,7 @@ Shape chunk_along_first(const Shape& shape);
 /// a time.
 class EnsembleWriter {
  public:
-  EnsembleWriter(hid_t group, const std::vector<ObservableLabel>& labels, std::uint64_t n_taps,
+  EnsembleWriter(hid_t group, const std::vector<Column>& labels, std::uint64_t n_taps,
                  std::uint32_t n_realizations);
   /// The taps from `first` on. `columns`: [n_columns] of [n, n_realizations], folded in the order
   /// of realizations.

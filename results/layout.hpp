@@ -4,7 +4,10 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "engine/engines.hpp"
 #include "ensemble/sink.hpp"
 #include "results/study.hpp"
 
@@ -23,6 +26,14 @@ inline std::string realization_name(std::uint32_t realization) {
 inline std::string particles_name(RealizationId id) {
   return point_name(id.point) + "_" + realization_name(id.realization);
 }
+
+/// The columns of the engine are named in the file where they are not those of Monte Carlo, which
+/// every file without names has.
+inline constexpr const char *diagnostics_name = "diagnostics", *diagnostics_prefix = "diagnostics_";
+inline std::vector<Column> unnamed_diagnostics() {
+  return columns(MonteCarlo{});
+}
+inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share"};  // of Shown
 
 /// What fitting did to the pours of points that start from one.
 inline constexpr const char* fitting_folder = "fitting";

@@ -80,8 +80,7 @@ ResultsFile joined_once(const std::string& results_path, const std::string& know
   const auto realization = [&](RealizationId id) {
     auto base = file.realization(id, content);
     if (!std::ranges::binary_search(with_parts, id)) return base;
-    const std::size_t n_columns =
-        file.study().points[id.point].observables.size() + n_relaxation_columns;
+    const std::size_t n_columns = file.study().points[id.point].n_columns();
     return continued(std::move(base), results_path, {file.run_id(), id}, n_columns, content);
   };
   const TemporaryFolder folder;

@@ -35,25 +35,12 @@ void create_point_folders(hid_t file) {
     create_group(file, folder);
 }
 
-std::vector<ObservableLabel> column_labels(const StudyPoint& point) {
-  std::vector<ObservableLabel> labels = point.observables;
-  labels.push_back(
-      {relaxation_columns[0], "1", "sweeps of the relaxation after the tap", "jostle"});
-  labels.push_back(
-      {relaxation_columns[1], "1", "accepted trials / trials of the relaxation", "jostle"});
-  labels.push_back({relaxation_columns[2], "1", "1 where the cap ended the relaxation", "jostle"});
-  labels.push_back({relaxation_columns[3], "1",
-                    "lateral offsets of the tap that found no room / number of spheres", "jostle"});
-  static_assert(n_relaxation_columns == 4);
-  return labels;
-}
-
 PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
     : file_(file),
       point_(study.points[point]),
       number_(point),
       n_realizations_(study.realizations),
-      labels_(column_labels(point_)),
+      labels_(point_.columns()),
       coordination_(point_.snapshots.taps.size() * n_realizations_, nan) {
   for (const char* folder : {"observables", "ensemble", "snapshots", "restart", "timing"})
     create_group(file_, std::string(folder) + "/" + point_name(number_));
@@ -120,7 +107,7 @@ void PointWriter::write_series(hid_t group, const Hdf5Handle& taps,
   const Shape shape{n_taps, n_realizations_};
   const Hdf5Handle* const both[] = {&taps, &realizations};
   std::vector<RowsDataset<double>> series;
-  for (const ObservableLabel& label : labels_) {
+  for (const Column& label : labels_) {
     series.emplace_back(group, label.name, shape, chunk_along_first(shape));
     write_label(series.back().dataset(), label);
     attach_axes(series.back().dataset(), both);
@@ -206,7 +193,7 @@ void PointWriter::write_timing() {
   const Hdf5Handle group = group_under("timing");
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
   const Hdf5Handle* const axes[] = {&realizations};
-  const auto write = [&]<class Number>(Number Work::*member, const ObservableLabel& label) {
+  const auto write = [&]<class Number>(Number Work::*member, const Column& label) {
     std::vector<Number> numbers;
     for (const Work& work : work_) numbers.push_back(work.*member);
     const Hdf5Handle written = write_numbers(group, label.name.c_str(), numbers);

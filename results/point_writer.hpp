@@ -14,9 +14,6 @@ namespace jostle {
 /// Makes the groups that hold a group a point: /observables, /ensemble, /snapshots, ...
 void create_point_folders(hid_t file);
 
-/// The labels of all columns of a point's series: its observables, then the relaxation columns.
-std::vector<ObservableLabel> column_labels(const StudyPoint& point);
-
 /// Writes all that is stored of one sweep point, piece by piece: neither its series nor its
 /// positions are held in memory.
 class PointWriter {
@@ -43,7 +40,7 @@ class PointWriter {
   const StudyPoint& point_;
   std::uint32_t number_;
   std::uint32_t n_realizations_;
-  std::vector<ObservableLabel> labels_;
+  std::vector<Column> labels_;
   std::vector<std::unique_ptr<StoredRealization>> realizations_;  // added
   std::vector<std::uint8_t> statuses_;
   std::vector<std::uint64_t> rows_;

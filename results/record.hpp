@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,8 +8,6 @@
 #include "ensemble/sink.hpp"
 
 namespace jostle {
-
-inline constexpr std::size_t n_relaxation_columns = std::size(relaxation_columns);
 
 /// What is stored of one realization but for its series and its snapshots.
 struct RealizationHead {
@@ -22,7 +19,7 @@ struct RealizationHead {
 
 /// All that is stored of one realization.
 struct RealizationRecord : RealizationHead {
-  std::vector<double> rows;  // [n_rows, n_observables + n_relaxation_columns], NaN where undefined
+  std::vector<double> rows;               // [n_rows, StudyPoint::n_columns], NaN where undefined
   std::vector<SnapshotRecord> snapshots;  // ascending taps
 };
 

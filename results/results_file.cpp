@@ -134,7 +134,7 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
 std::vector<Series> ResultsFile::series(std::uint32_t point) const {
   std::vector<Series> all;
   const std::uint64_t n_taps = n_stored_rows(point);
-  for (const ObservableLabel& label : columns(point))
+  for (const Column& label : columns(point))
     all.push_back({label, n_taps, study().realizations,
                    block(point, label.name, {0, n_taps}, {0, study().realizations})});
   return all;
@@ -147,8 +147,8 @@ std::uint64_t ResultsFile::n_stored_rows(std::uint32_t point) const {
   });
 }
 
-std::vector<ObservableLabel> ResultsFile::columns(std::uint32_t point) const {
-  return column_labels(study().points.at(point));
+std::vector<Column> ResultsFile::columns(std::uint32_t point) const {
+  return study().points.at(point).columns();
 }
 
 std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& column,
@@ -175,7 +175,7 @@ std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
     std::vector<EnsembleSeries> all;
     const Shape taps{
         impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point)};
-    for (const ObservableLabel& label : column_labels(study().points.at(point)))
+    for (const Column& label : study().points.at(point).columns())
       all.push_back({label, read_numbers<double>(group, label.name + "_mean", &taps),
                      read_numbers<double>(group, label.name + "_sigma", &taps),
                      read_numbers<double>(group, label.name + "_error", &taps),

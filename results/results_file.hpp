@@ -19,7 +19,7 @@ enum class RunState { running, interrupted, complete };
 
 /// One column of the series at one sweep point, over all realizations.
 struct Series {
-  ObservableLabel label;
+  Column label;
   std::uint64_t n_taps = 0;  // rows: taps 0 .. n_taps - 1
   std::uint32_t n_realizations = 0;
   std::vector<double> values;  // [n_taps, n_realizations]; NaN where there is none
@@ -40,14 +40,14 @@ struct RealizationRange {
 
 /// The same over the ensemble, [n_taps] each.
 struct EnsembleSeries {
-  ObservableLabel label;
+  Column label;
   std::vector<double> mean, sigma, error;  // sigma has 1/M; NaN where undefined
   std::vector<std::uint32_t> count;        // realizations that have a value
 };
 
 /// A number a realization: [n_realizations], NaN where there is none.
 struct RealizationValues {
-  ObservableLabel label;
+  Column label;
   std::vector<double> values;
 };
 /// What of a realization is wanted.
@@ -82,10 +82,10 @@ class ResultsFile {
 
   /// Every (point, realization), points outermost.
   std::vector<RealizationSummary> realizations() const;
-  /// The observables, then the relaxation columns.
+  /// The observables, then the diagnostics of the engine.
   std::vector<Series> series(std::uint32_t point) const;
   /// Labels of the same.
-  std::vector<ObservableLabel> columns(std::uint32_t point) const;
+  std::vector<Column> columns(std::uint32_t point) const;
   /// A part of one column, for series too long to hold: [taps, realizations], NaN where there is
   /// no value. Throws where there is no such column.
   std::vector<double> block(std::uint32_t point, const std::string& column, const TapRange& taps,

@@ -13,7 +13,6 @@
 #include "results/hdf5/read.hpp"
 #include "results/layout.hpp"
 #include "results/particles.hpp"
-#include "results/point_writer.hpp"
 #include "results/recently_used.hpp"
 #include "results/results_file.hpp"
 #include "results/study_writer.hpp"
@@ -60,7 +59,7 @@ class ResultsFile::Impl {
       const std::uint64_t rows = stored_rows(observables, point);
       const std::uint64_t n = std::min(block_rows(point), rows - std::min(first, rows));
       std::vector<std::vector<double>> columns;
-      for (const ObservableLabel& label : column_labels(study.points.at(point))) {
+      for (const Column& label : study.points.at(point).columns()) {
         require_shape(observables, label.name, {rows, study.realizations});
         columns.push_back(read_block(observables, label.name, {first, 0}, {n, study.realizations}));
       }
@@ -70,9 +69,7 @@ class ResultsFile::Impl {
   std::uint64_t block_rows(std::uint32_t point) const {
     return rows_a_block(study.realizations, n_columns(point));
   }
-  std::size_t n_columns(std::uint32_t point) const {
-    return study.points.at(point).observables.size() + n_relaxation_columns;
-  }
+  std::size_t n_columns(std::uint32_t point) const { return study.points.at(point).n_columns(); }
 
   /// A snapshot's height histogram, with the zeros that pad it; empty where none was kept.
   std::span<const double> histogram(RealizationId id, std::size_t snapshot) {

@@ -167,7 +167,7 @@ void RunStore::Impl::fold(const StoringProgress& progress) {
 }
 
 std::size_t RunStore::Impl::n_columns(RealizationId id) const {
-  return study.points[id.point].observables.size() + n_relaxation_columns;
+  return study.points[id.point].n_columns();
 }
 
 RealizationSummary RunStore::Impl::summary(RealizationId id) const {

@@ -13,7 +13,6 @@
 
 #include "engine/bed/boundary.hpp"
 #include "results/checkpoints/checksum.hpp"
-#include "results/record.hpp"
 
 namespace jostle {
 namespace {
@@ -33,6 +32,7 @@ StudyPoint make_point(const Plan& plan) {
                    .n_spheres = plan.n_spheres,
                    .taps = total_taps(plan),
                    .observables = {},
+                   .diagnostics = columns(plan.engine),
                    .snapshots = plan.snapshots,
                    .start_sum = sum_of_given(plan.start)};
   for (const Observable& observable : plan.observables)
@@ -51,13 +51,12 @@ std::uint64_t histogram_bins(const StudyPoint& point) {
 }
 
 std::uint64_t bytes_of_realization(const StudyPoint& point) {
-  const std::uint64_t columns = point.observables.size() + n_relaxation_columns;
   const std::uint64_t positions = point.n_spheres * sizeof(Vec3);
   const std::uint64_t a_snapshot =
       (point.snapshots.positions ? positions : 0) +
       (point.snapshots.height_histogram ? histogram_bins(point) * sizeof(double) : 0) + 64;
-  return (point.taps + 1) * columns * sizeof(double) + point.snapshots.taps.size() * a_snapshot +
-         positions + 4096;
+  return (point.taps + 1) * point.n_columns() * sizeof(double) +
+         point.snapshots.taps.size() * a_snapshot + positions + 4096;
 }
 
 std::string processor_model() {
@@ -82,6 +81,12 @@ std::string utc_now() {
 }
 
 }  // namespace
+
+std::vector<Column> StudyPoint::columns() const {
+  std::vector<Column> all = observables;
+  all.insert(all.end(), diagnostics.begin(), diagnostics.end());
+  return all;
+}
 
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations) {

@@ -23,10 +23,15 @@ struct StudyPoint {
   std::uint64_t seed = 0;
   Container container;
   std::uint32_t n_spheres = 0;
-  std::uint64_t taps = 0;                    // the series have taps + 1 rows: tap 0 is the start
-  std::vector<ObservableLabel> observables;  // as the scene lists them
+  std::uint64_t taps = 0;           // the series have taps + 1 rows: tap 0 is the start
+  std::vector<Column> observables;  // as the scene lists them
+  std::vector<Column> diagnostics;  // the engine's
   Snapshots snapshots;
   std::string start_sum{};  // SHA-256 of the centres of a start from a file; else empty
+
+  /// All columns of the series: the observables, then the diagnostics.
+  std::vector<Column> columns() const;
+  std::size_t n_columns() const { return observables.size() + diagnostics.size(); }
 };
 
 /// A whole study: every sweep point times `realizations`.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "results/export/container_text.hpp"
 #include "results/hdf5/read.hpp"
@@ -27,13 +28,44 @@ Container read_container(hid_t group) {
   throw Hdf5Error("unknown container \"" + kind + "\"");
 }
 
-std::vector<ObservableLabel> read_observables(hid_t group) {
-  const auto names = read_texts(group, "observables"), units = read_texts(group, "units");
-  const auto long_names = read_texts(group, "long_names"), sources = read_texts(group, "sources");
-  std::vector<ObservableLabel> observables;
+std::vector<Column> read_labels(hid_t group, const char* named, const std::string& prefix) {
+  const auto names = read_texts(group, named), units = read_texts(group, prefix + "units");
+  const auto long_names = read_texts(group, prefix + "long_names"),
+             sources = read_texts(group, prefix + "sources");
+  std::vector<Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i)
-    observables.push_back({names[i], units.at(i), long_names.at(i), sources.at(i)});
-  return observables;
+    columns.push_back({names[i], units.at(i), long_names.at(i), sources.at(i)});
+  return columns;
+}
+
+Shown shown_named(const std::string& name) {
+  const auto found = std::ranges::find(shown_names, name);
+  if (found == std::end(shown_names))
+    throw Hdf5Error("unknown way to show a column: \"" + name + "\"");
+  return static_cast<Shown>(found - std::begin(shown_names));
+}
+
+int decimals_from(const std::string& text) {
+  int decimals = -1;
+  std::from_chars(text.data(), text.data() + text.size(), decimals);
+  return decimals;
+}
+
+std::vector<Column> read_diagnostics(hid_t group) {
+  if (!exists(group, diagnostics_name)) return unnamed_diagnostics();
+  const std::string prefix = diagnostics_prefix;
+  std::vector<Column> columns = read_labels(group, diagnostics_name, prefix);
+  const auto shown = read_texts(group, prefix + "shown"),
+             decimals = read_texts(group, prefix + "decimals"),
+             if_any = read_texts(group, prefix + "if_any"),
+             if_none = read_texts(group, prefix + "if_none");
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    columns[i].shown = shown_named(shown.at(i));
+    columns[i].decimals = decimals_from(decimals.at(i));
+    columns[i].if_any = if_any.at(i);
+    columns[i].if_none = if_none.at(i);
+  }
+  return columns;
 }
 
 Snapshots read_snapshot_settings(hid_t group) {
@@ -58,7 +90,8 @@ StudyPoint read_point(hid_t sweep, std::uint32_t number) {
   const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
   for (std::size_t i = 0; i < pointers.size(); ++i)
     point.sweep_values.emplace_back(pointers[i], values.at(i));
-  point.observables = read_observables(group);
+  point.observables = read_labels(group, "observables", "");
+  point.diagnostics = read_diagnostics(group);
   point.snapshots = read_snapshot_settings(group);
   if (checked(H5Aexists(group, "start_sha256")) > 0)
     point.start_sum = read_text_attribute(group, "start_sha256");

@@ -31,13 +31,6 @@ std::string value_at(const StudyPoint& point, const std::string& pointer) {
   return "";
 }
 
-template <class Get>
-Texts texts_of(const StudyPoint& point, Get get) {
-  Texts texts;
-  for (const ObservableLabel& observable : point.observables) texts.push_back(get(observable));
-  return texts;
-}
-
 using NamedTexts = std::vector<std::pair<std::string, Texts>>;
 
 /// Texts of one length; the first are the axis of the others.
@@ -49,6 +42,34 @@ void write_texts_along(hid_t group, const NamedTexts& columns) {
   make_axis(axis, columns.front().first);
   const Hdf5Handle* const along[] = {&axis};
   for (std::size_t i = 1; i < columns.size(); ++i) attach_axes(write(columns[i]), along);
+}
+
+void write_columns(hid_t group, const StudyPoint& point) {
+  const auto texts = [](const std::vector<Column>& columns, auto get) {
+    Texts all;
+    for (const Column& column : columns) all.push_back(get(column));
+    return all;
+  };
+  const auto labels = [&](const std::vector<Column>& columns, const char* names,
+                          const std::string& prefix) -> NamedTexts {
+    return {
+        {names, texts(columns, [](const Column& one) { return one.name; })},
+        {prefix + "units", texts(columns, [](const Column& one) { return one.units; })},
+        {prefix + "long_names", texts(columns, [](const Column& one) { return one.long_name; })},
+        {prefix + "sources", texts(columns, [](const Column& one) { return one.source; })}};
+  };
+  write_texts_along(group, labels(point.observables, "observables", ""));
+  if (point.diagnostics == unnamed_diagnostics()) return;
+  NamedTexts own = labels(point.diagnostics, diagnostics_name, diagnostics_prefix);
+  const auto add = [&](const char* name, auto get) {
+    own.emplace_back(std::string(diagnostics_prefix) + name, texts(point.diagnostics, get));
+  };
+  add("shown",
+      [](const Column& one) { return std::string(shown_names[static_cast<int>(one.shown)]); });
+  add("decimals", [](const Column& one) { return fmt::to_string(one.decimals); });
+  add("if_any", [](const Column& one) { return one.if_any; });
+  add("if_none", [](const Column& one) { return one.if_none; });
+  write_texts_along(group, own);
 }
 
 void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
@@ -67,11 +88,7 @@ void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
     values.push_back(value);
   }
   write_texts_along(group, {{"pointers", pointers}, {"values", values}});
-  write_texts_along(group,
-                    {{"observables", texts_of(point, [](auto& one) { return one.name; })},
-                     {"units", texts_of(point, [](auto& one) { return one.units; })},
-                     {"long_names", texts_of(point, [](auto& one) { return one.long_name; })},
-                     {"sources", texts_of(point, [](auto& one) { return one.source; })}});
+  write_columns(group, point);
   make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
   const std::array<std::uint8_t, 3> kept = {point.snapshots.positions, point.snapshots.coordination,
                                             point.snapshots.height_histogram};

@@ -11,7 +11,6 @@
 #include "results/export/container_text.hpp"
 #include "results/export/printable.hpp"
 #include "results/hdf5/handle.hpp"
-#include "results/point_writer.hpp"
 
 namespace jostle {
 namespace {
@@ -35,12 +34,14 @@ bool is_name(const std::string& name) {
 
 void validate_labels(const StudyPoint& point, const std::string& name) {
   std::set<std::string> names(std::begin(names_beside_series), std::end(names_beside_series));
-  for (const ObservableLabel& label : column_labels(point)) {
+  for (const Column& label : point.columns()) {
     require(is_name(label.name) && names.insert(label.name).second,
             name + " has an observable \"" + label.name + "\"");
-    require(
-        std::max({label.units.size(), label.long_name.size(), label.source.size()}) <= longest_text,
-        name + " has a label of an observable that is too long");
+    require(std::max({label.units.size(), label.long_name.size(), label.source.size(),
+                      label.if_any.size(), label.if_none.size()}) <= longest_text,
+            name + " has a label of an observable that is too long");
+    require(label.decimals >= 0 && label.decimals <= 17,
+            name + " has a column of " + std::to_string(label.decimals) + " decimals");
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
-#include "engine/monte_carlo/stops.hpp"
+#include "engine/bed/window.hpp"
 #include "structure/density/layers.hpp"
 #include "structure/measurement.hpp"
 #include "structure/region.hpp"

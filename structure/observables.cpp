@@ -11,20 +11,20 @@ namespace jostle {
 namespace {
 
 struct Label {
-  ObservableLabel operator()(const MeanHeight&) const {
+  Column operator()(const MeanHeight&) const {
     return {"mean_height", "diameter", "mean height of the sphere centres <Z>",
             "Philippe & Bideau 2001, sec. II"};
   }
-  ObservableLabel operator()(const BottomFraction&) const {
+  Column operator()(const BottomFraction&) const {
     return {"bottom_fraction", "1", "solids fraction Phi_b between the floor and 2 d",
             "Philippe & Bideau 2001, sec. III"};
   }
-  ObservableLabel operator()(const CorrectedFraction&) const {
+  Column operator()(const CorrectedFraction&) const {
     return {"corrected_fraction", "1",
             "solids fraction <Phi_c> of most of the packing, corrected for the floor",
             "Philippe & Bideau 2001, sec. III"};
   }
-  ObservableLabel operator()(const BulkFraction& bulk) const {
+  Column operator()(const BulkFraction& bulk) const {
     return {bulk.name, "1", "solids fraction of the bulk, between two heights fixed for the run",
             "Rosato et al. 2010, sec. II"};
   }
@@ -60,7 +60,7 @@ struct Measure {
 
 }  // namespace
 
-ObservableLabel label(const Observable& observable) {
+Column label(const Observable& observable) {
   return std::visit(Label{}, observable);
 }
 

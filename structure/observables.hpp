@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
-#include "engine/monte_carlo/stops.hpp"
+#include "engine/bed/window.hpp"
+#include "engine/column.hpp"
 
 // What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
 // list of them is all that is computed.
@@ -42,11 +43,8 @@ struct BulkFraction {
 
 using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction>;
 
-/// How an observable is stored: name (also in scenes), units, a sentence, and its source.
-struct ObservableLabel {
-  std::string name, units, long_name, source;
-};
-ObservableLabel label(const Observable& observable);
+/// How an observable is stored; its name is also that in scenes.
+Column label(const Observable& observable);
 
 /// The observables of a scene with their windows resolved once, on the starting packing.
 class Observer {

@@ -22,7 +22,7 @@ std::string points_with(const ResultsFile& file, const std::string& observable) 
   std::vector<std::string> points;
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
     const auto labels = file.columns(point);
-    if (std::ranges::find(labels, observable, &ObservableLabel::name) != labels.end()) {
+    if (std::ranges::find(labels, observable, &Column::name) != labels.end()) {
       points.push_back(fmt::to_string(point));
     }
   }
@@ -30,13 +30,12 @@ std::string points_with(const ResultsFile& file, const std::string& observable) 
   return (points.size() == 1 ? "sweep point " : "sweep points ") + joined(points, ", ");
 }
 
-ObservableLabel label_named(const ResultsFile& file, std::uint32_t point,
-                            const std::string& observable) {
-  const std::vector<ObservableLabel> labels = file.columns(point);
-  const auto found = std::ranges::find(labels, observable, &ObservableLabel::name);
+Column label_named(const ResultsFile& file, std::uint32_t point, const std::string& observable) {
+  const std::vector<Column> labels = file.columns(point);
+  const auto found = std::ranges::find(labels, observable, &Column::name);
   if (found != labels.end()) return *found;
   std::vector<std::string> names;
-  for (const ObservableLabel& label : labels) names.push_back(label.name);
+  for (const Column& label : labels) names.push_back(label.name);
   const std::string others = points_with(file, observable);
   if (others.empty()) {
     throw BadInput(fmt::format("--observable {}: there is none; {} has {}.{}", observable,

@@ -18,7 +18,7 @@ class ObservableSeries {
   /// Throws BadInput naming the observables there are. `file` must outlive this.
   ObservableSeries(const ResultsFile& file, std::uint32_t point, const std::string& observable);
 
-  const ObservableLabel& label() const { return label_; }
+  const Column& label() const { return label_; }
   /// Taps 0 .. n_rows() - 1 are there; 0 where there is no realization.
   std::uint64_t n_rows() const { return n_rows_; }
   std::uint32_t n_realizations() const { return static_cast<std::uint32_t>(used_.size()); }
@@ -40,7 +40,7 @@ class ObservableSeries {
  private:
   const ResultsFile& file_;
   std::uint32_t point_;
-  ObservableLabel label_;
+  Column label_;
   std::vector<std::uint32_t> used_;  // realizations
   std::uint64_t n_rows_ = 0;
 };

@@ -21,8 +21,7 @@ constexpr double much_disk = 1e12;                          // bytes
 class Warnings {
  public:
   void look_at(const Plan& plan) {
-    look_at("/relax", plan.relax);
-    if (plan.relax_start) look_at("/relax_start", *plan.relax_start);
+    std::visit([this](const auto& engine) { look_at_engine(engine); }, plan.engine);
     for (const Stage& stage : plan.protocol) {
       std::visit([this](const auto& tap) { look_at_tap(tap); }, stage.tap);
     }
@@ -33,6 +32,10 @@ class Warnings {
   std::vector<std::string> texts() && { return std::move(texts_); }
 
  private:
+  void look_at_engine(const MonteCarlo& engine) {
+    look_at("/relax", engine.relax);
+    if (engine.relax_start) look_at("/relax_start", *engine.relax_start);
+  }
   void look_at(const char* key, const Relaxation& relax) {
     const auto* move = std::get_if<PolarMove>(&relax.move);
     if (move == nullptr || move->theta0 <= largest_angle || move->theta0 > largest_degrees) return;

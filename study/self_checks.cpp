@@ -42,15 +42,19 @@ std::vector<Plan> small_plans() {
   plan.n_spheres = 60;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{Dilate{0.05}, 10}, {Lift{0.2}, 5}};
-  plan.relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 20}, .max_sweeps = 2000};
+  MonteCarlo engine;
+  engine.relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 20}, .max_sweeps = 2000};
+  plan.engine = engine;
   plan.observables = {MeanHeight{}, BottomFraction{}, BulkFraction{}};
   plan.snapshots.taps = {0, 15};
   std::vector<Plan> plans = {plan};
-  plan.relax.sampler = Sampler::skipping;
+  engine.relax.sampler = Sampler::skipping;
+  plan.engine = engine;
   plans.push_back(plan);
   plan.container = WalledBox{4.5, 4};
   plan.start = RandomSettle{};
-  plan.relax.move = MetropolisMove{0.2};
+  engine.relax.move = MetropolisMove{0.2};
+  plan.engine = engine;
   plan.protocol = {{Shake{0.05, 0.2, 5}, 15}};
   plans.push_back(plan);
   plan.container = Cylinder{1.4};  // a single file
@@ -60,8 +64,7 @@ std::vector<Plan> small_plans() {
   plan.container = PeriodicBox{4, 3.4641016151377544};
   plan.start = Crystal{};  // without any gap
   plan.n_spheres = 80;
-  plan.relax.move = MetropolisMove{0.1, 1e3};
-  plan.relax.sampler = Sampler::exhaustive;
+  plan.engine = MonteCarlo{.relax = {.move = MetropolisMove{0.1, 1e3}, .stop = engine.relax.stop}};
   plan.protocol = {{Dilate{0}, 5}, {Dilate{1e-16}, 5}, {Dilate{10}, 5}};
   plans.push_back(plan);
   for (std::size_t k = 0; k < plans.size(); ++k) plans[k].point_id = k;
@@ -161,7 +164,7 @@ std::string read_back(const std::string& folder) {
   std::uint64_t rows = 0;
   for (std::uint32_t point = 0; point < plans.size(); ++point) {
     const std::vector<double> stored = file.record({point, 1}).rows;
-    const std::size_t n_columns = plans[point].observables.size() + n_relaxation_columns;
+    const std::size_t n_columns = file.study().points[point].n_columns();
     Realization realization(plans[point], 1);
     while (!realization.finished()) {
       const Slice slice = realization.advance(1'000'000);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <string>
 
 #include "cli/terminal/durations.hpp"
 #include "cli/terminal/text_table.hpp"
@@ -14,37 +14,24 @@
 namespace jostle {
 namespace {
 
-/// The observables of a point, and the relaxation columns that follow them.
+/// The columns of a point, and how many realizations have come to each tap.
 struct PointSeries {
-  std::vector<EnsembleSeries> observables;
-  EnsembleSeries sweeps, acceptance, capped, dropped_offsets;
+  std::vector<EnsembleSeries> columns;
+  std::vector<std::uint32_t> reached;  // [n_taps]
 };
 
-PointSeries point_series(const ResultsFile& file, std::uint32_t point) {
-  PointSeries series;
-  for (EnsembleSeries& column : file.ensemble(point)) {
-    const std::string& name = column.label.name;
-    if (name == "sweeps") {
-      series.sweeps = std::move(column);
-    } else if (name == "acceptance") {
-      series.acceptance = std::move(column);
-    } else if (name == "capped") {
-      series.capped = std::move(column);
-    } else if (name == "dropped_offsets") {
-      series.dropped_offsets = std::move(column);
-    } else {
-      series.observables.push_back(std::move(column));
-    }
+PointSeries point_series(const ResultsFile& file, std::uint32_t point,
+                         const std::vector<RealizationSummary>& realizations) {
+  PointSeries series{file.ensemble(point), {}};
+  for (const RealizationSummary& one : realizations) {
+    if (one.id.point != point || one.rows == 0) continue;
+    series.reached.resize(std::max(series.reached.size(), static_cast<std::size_t>(one.rows)));
+    ++series.reached[one.rows - 1];  // for now, of those that end here
+  }
+  for (std::size_t tap = series.reached.size(); tap-- > 1;) {
+    series.reached[tap - 1] += series.reached[tap];
   }
   return series;
-}
-
-/// The last tap that any realization has reached; nothing where none has begun.
-std::optional<std::uint64_t> last_tap(const EnsembleSeries& column) {
-  const auto reached = std::find_if(column.count.rbegin(), column.count.rend(),
-                                    [](std::uint32_t count) { return count > 0; });
-  if (reached == column.count.rend()) return {};
-  return static_cast<std::uint64_t>(column.count.rend() - reached) - 1;
 }
 
 /// Decimals that show the smallest error of a column to two digits; -1 where no error is known.
@@ -61,60 +48,81 @@ std::string cell(double value, int decimals) {
   return decimals < 0 ? fmt::format("{:.6g}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
-std::string tap_table(const PointSeries& series, std::uint64_t last) {
-  const auto taps = reported_taps(last);
-  const std::vector<std::uint32_t>& reached = series.sweeps.count;
+std::string tap_table(const PointSeries& series) {
+  const auto taps = reported_taps(series.reached.size() - 1);
+  const std::vector<std::uint32_t>& reached = series.reached;
   const bool partial = std::ranges::any_of(
       taps, [&](std::uint64_t tap) { return reached[tap] != reached[taps.front()]; });
   std::vector<std::string> headers{"tap"};
   if (partial) headers.emplace_back("M");
   std::vector<int> decimals;
-  for (const auto& column : series.observables) {
-    decimals.push_back(decimals_of(column, taps));
-    headers.insert(headers.end(), {column.label.name, "+- error", "sigma"});
+  for (const auto& column : series.columns) {
+    const Column& label = column.label;
+    decimals.push_back(label.shown == Shown::spread ? decimals_of(column, taps) : label.decimals);
+    if (label.shown == Shown::spread || label.shown == Shown::mean) headers.push_back(label.name);
+    if (label.shown == Shown::spread) headers.insert(headers.end(), {"+- error", "sigma"});
   }
-  headers.insert(headers.end(), {"sweeps", "acceptance"});
   TextTable table(headers);
   for (const std::uint64_t tap : taps) {
     std::vector<std::string> row{fmt::to_string(tap)};
     if (partial) row.push_back(fmt::to_string(reached[tap]));
-    for (std::size_t i = 0; i < series.observables.size(); ++i) {
-      const auto& column = series.observables[i];
-      for (const double value : {column.mean[tap], column.error[tap], column.sigma[tap]}) {
+    for (std::size_t i = 0; i < series.columns.size(); ++i) {
+      const auto& column = series.columns[i];
+      const Shown shown = column.label.shown;
+      if (shown == Shown::spread || shown == Shown::mean) {
+        row.push_back(cell(column.mean[tap], decimals[i]));
+      }
+      if (shown != Shown::spread) continue;
+      for (const double value : {column.error[tap], column.sigma[tap]}) {
         row.push_back(cell(value, decimals[i]));
       }
     }
-    row.push_back(cell(series.sweeps.mean[tap], 0));
-    row.push_back(cell(series.acceptance.mean[tap], 4));
     table.add(std::move(row));
   }
   return table.text();
 }
 
-std::string capped_line(const EnsembleSeries& capped, const EnsembleSeries& sweeps) {
-  double relaxations = 0, at_cap = 0;
-  for (std::size_t tap = 0; tap < capped.count.size(); ++tap) {
-    const bool relaxed = tap > 0 || sweeps.mean[tap] > 0;  // a poured start is not relaxed
-    if (capped.count[tap] == 0 || !relaxed) continue;
-    relaxations += capped.count[tap];
-    at_cap += capped.mean[tap] * capped.count[tap];
-  }
-  if (at_cap < 0.5) return "no relaxation ended at the cap on sweeps\n";
-  return fmt::format("{:.0f} of {:.0f} relaxations ended at the cap on sweeps: raise max_sweeps\n",
-                     at_cap, relaxations);
+std::string sentence(std::string text, const std::string& number) {
+  const auto place = text.find("{}");
+  if (place != std::string::npos) text.replace(place, 2, number);
+  return text.empty() ? text : text + "\n";
 }
 
-/// Of the taps that dropped any; nothing where none did, as without a shake.
-std::string dropped_offsets_line(const EnsembleSeries& dropped) {
-  double taps = 0, share = 0;
-  for (std::size_t tap = 0; tap < dropped.count.size(); ++tap) {
-    if (!(dropped.mean[tap] > 0)) continue;
-    ++taps;
-    share += dropped.mean[tap];
+/// How often it happened, of the taps at which the engine moved anything: a start that is not
+/// relaxed leaves columns of the engine without a value.
+std::string count_line(const EnsembleSeries& happened, const PointSeries& series) {
+  double taps = 0, times = 0;
+  for (std::size_t tap = 0; tap < happened.count.size(); ++tap) {
+    const bool moved = std::ranges::all_of(series.columns, [&](const EnsembleSeries& column) {
+      return column.label.shown == Shown::spread || column.count[tap] > 0;
+    });
+    if (!moved) continue;
+    taps += happened.count[tap];
+    times += happened.mean[tap] * happened.count[tap];
   }
-  if (taps == 0) return "";
-  return fmt::format("shakes dropped {:.1f} % of their lateral offsets for want of room\n",
-                     100 * share / taps);
+  if (times < 0.5) return sentence(happened.label.if_none, "");
+  return sentence(happened.label.if_any, fmt::format("{:.0f} of {:.0f}", times, taps));
+}
+
+/// The mean over the taps that have any.
+std::string share_line(const EnsembleSeries& share) {
+  double taps = 0, sum = 0;
+  for (std::size_t tap = 0; tap < share.count.size(); ++tap) {
+    if (!(share.mean[tap] > 0)) continue;
+    ++taps;
+    sum += share.mean[tap];
+  }
+  if (taps == 0) return sentence(share.label.if_none, "");
+  return sentence(share.label.if_any, fmt::format("{:.1f} %", 100 * sum / taps));
+}
+
+std::string sentences(const PointSeries& series) {
+  std::string lines;
+  for (const EnsembleSeries& column : series.columns) {
+    if (column.label.shown == Shown::count) lines += count_line(column, series);
+    if (column.label.shown == Shown::share) lines += share_line(column);
+  }
+  return lines;
 }
 
 /// Means over realizations; nothing of a start that is no fitted pour.
@@ -178,10 +186,9 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
     }
   }
   std::string text = study.label.empty() ? "" : study.label + "\n";
-  const PointSeries series = point_series(file, point);
-  if (const auto last = last_tap(series.sweeps)) {
-    text += tap_table(series, *last) + capped_line(series.capped, series.sweeps) +
-            dropped_offsets_line(series.dropped_offsets) + fitting_line(file, point);
+  const PointSeries series = point_series(file, point, realizations);
+  if (!series.reached.empty()) {
+    text += tap_table(series) + sentences(series) + fitting_line(file, point);
   }
   return text + cost_line(cost) + failures;
 }

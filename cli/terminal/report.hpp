@@ -9,8 +9,9 @@
 namespace jostle {
 
 /// For every sweep point a table over taps, about three a decade, of mean +- standard error and
-/// sigma of every observable, with mean sweeps and acceptance of the relaxations, and the number M
-/// of realizations where not all reached every tap; below it capped relaxations, cost, and failed
+/// sigma of every observable, with the means that the engine has shown beside them, and the number
+/// M of realizations where not all reached every tap; below it what the engine says in sentences
+/// (capped relaxations), cost, and failed
 /// realizations with seed and reason.
 std::string report(const ResultsFile& file);
 

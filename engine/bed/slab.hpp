@@ -3,7 +3,7 @@
 #include <span>
 
 #include "engine/bed/packing.hpp"
-#include "engine/monte_carlo/stops.hpp"
+#include "engine/bed/window.hpp"
 
 // Solids fractions in closed form: a plane cuts a sphere into segments of known volume.
 namespace jostle {

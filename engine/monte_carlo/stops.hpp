@@ -3,22 +3,10 @@
 #include <cstdint>
 #include <variant>
 
+#include "engine/bed/window.hpp"
+
 // When the relaxation after a tap ends. A sweep is n_spheres trials.
 namespace jostle {
-
-/// Between two heights above the floor, diameters.
-struct HeightWindow {
-  double low = 0, high = 2;
-  bool operator==(const HeightWindow&) const = default;
-};
-
-/// Between two quantiles of the heights of the centres of the starting packing; fixed for the run.
-struct QuantileWindow {
-  double low = 0.2, high = 0.8;
-  bool operator==(const QuantileWindow&) const = default;
-};
-
-using Window = std::variant<HeightWindow, QuantileWindow>;
 
 /// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height.
 /// The first value is taken right after the tap. Philippe & Bideau 2001, sec. II, which publishes

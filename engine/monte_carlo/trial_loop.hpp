@@ -6,8 +6,8 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
+#include "engine/bed/window.hpp"
 #include "engine/monte_carlo/moves.hpp"
-#include "engine/monte_carlo/stops.hpp"
 
 namespace jostle {
 

@@ -10,7 +10,6 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
-#include "engine/monte_carlo/stops.hpp"
 
 // How the packing begins, tap 0. Lengths in diameters.
 namespace jostle {

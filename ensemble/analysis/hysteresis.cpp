@@ -78,8 +78,8 @@ void add_steps(const ProtocolSteps& steps, Table& table) {
   add("last_tap", std::move(last_tap), "taps", "last tap of the mean");
 }
 
-void add_values(const ObservableLabel& observable, std::span<const double> values,
-                std::size_t n_steps, std::uint32_t realizations, Table& table) {
+void add_values(const Column& observable, std::span<const double> values, std::size_t n_steps,
+                std::uint32_t realizations, Table& table) {
   std::vector<double> means, errors, dof;
   std::vector<std::uint64_t> counts;
   for (std::size_t step = 0; step < n_steps; ++step) {
@@ -217,9 +217,8 @@ std::vector<double> step_values(const ProtocolSteps& steps, std::span<const doub
   return values;
 }
 
-Table hysteresis_table(std::string name, const ObservableLabel& observable,
-                       const ProtocolSteps& steps, std::span<const double> values,
-                       std::uint32_t realizations) {
+Table hysteresis_table(std::string name, const Column& observable, const ProtocolSteps& steps,
+                       std::span<const double> values, std::uint32_t realizations) {
   Table table{.name = std::move(name)};
   add_steps(steps, table);
   add_values(observable, values, steps.strengths.size(), realizations, table);

@@ -39,9 +39,8 @@ std::vector<Loop> loops(std::span<const double> strengths, std::span<const doubl
 /// The steady-state value of each step with its error over realizations, the branch it lies on, and
 /// the loops between branches. values: [n_steps, n_realizations], means of the last taps of each
 /// step (means_over_rows of the steps' windows), NaN where there is none.
-Table hysteresis_table(std::string name, const ObservableLabel& observable,
-                       const ProtocolSteps& steps, std::span<const double> values,
-                       std::uint32_t realizations);
+Table hysteresis_table(std::string name, const Column& observable, const ProtocolSteps& steps,
+                       std::span<const double> values, std::uint32_t realizations);
 
 /// The values of the steps [n_steps, n_realizations] from a whole series [n_taps, n_realizations],
 /// tap 0 first; NaN at steps that it does not reach.

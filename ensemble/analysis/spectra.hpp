@@ -9,7 +9,7 @@
 // one-sided, the window periodic. Frequencies are in 1/taps.
 namespace jostle {
 
-enum class Taper { boxcar, hann };  // the window: engine/monte_carlo/stops.hpp has another Window
+enum class Taper { boxcar, hann };  // the window: engine/bed/window.hpp has another Window
 enum class Detrending { none, mean, linear };  // of every segment, before the window
 
 struct SpectrumOptions {

@@ -131,7 +131,7 @@ struct SweptValue {
 
 /// The curve with errors, its maximum, its straight line and, where realizations are known, the
 /// differences between its points.
-Table sweep_table(std::string name, const SweptValue& swept, const ObservableLabel& quantity,
+Table sweep_table(std::string name, const SweptValue& swept, const Column& quantity,
                   const SweepCurve& curve, std::optional<std::size_t> reference = std::nullopt);
 
 }  // namespace jostle

@@ -19,7 +19,7 @@ void add_with_error(const std::string& name, double value, const ErrorOf& error,
   add_value(name + "_dof", error.dof, "1", "degrees of freedom of " + name + "_error", table);
 }
 
-void add_maximum(const SweepMaximum& top, const SweptValue& swept, const ObservableLabel& quantity,
+void add_maximum(const SweepMaximum& top, const SweptValue& swept, const Column& quantity,
                  Table& table) {
   add_with_error("maximum_at", top.x, top.x_error, swept.units,
                  swept.long_name + " of the maximum, from a parabola", table);
@@ -40,8 +40,8 @@ void add_maximum(const SweepMaximum& top, const SweptValue& swept, const Observa
   table.notes.emplace_back("maximum", top.verdict);
 }
 
-void add_line(const StraightLine& line, const std::string& slope_units,
-              const ObservableLabel& quantity, Table& table) {
+void add_line(const StraightLine& line, const std::string& slope_units, const Column& quantity,
+              Table& table) {
   add_with_error("line_intercept", line.intercept, line.intercept_error, quantity.units,
                  "of a straight line", table);
   add_with_error("line_slope", line.slope, line.slope_error, slope_units, "of a straight line",
@@ -53,7 +53,7 @@ void add_line(const StraightLine& line, const std::string& slope_units,
 }
 
 void add_differences(const SweepCurve& curve, std::optional<std::size_t> reference,
-                     const SweptValue& swept, const ObservableLabel& quantity, Table& table) {
+                     const SweptValue& swept, const Column& quantity, Table& table) {
   const std::vector<SweepDifference> all = differences(curve, reference);
   if (all.empty()) return;
   std::vector<std::uint64_t> index;
@@ -92,7 +92,7 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
 
 }  // namespace
 
-Table sweep_table(std::string name, const SweptValue& swept, const ObservableLabel& quantity,
+Table sweep_table(std::string name, const SweptValue& swept, const Column& quantity,
                   const SweepCurve& curve, std::optional<std::size_t> reference) {
   Table table{.name = std::move(name)};
   table.axes = {{swept.name, {swept.name}, curve.x(), swept.units, swept.long_name, ""}};

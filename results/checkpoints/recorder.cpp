@@ -27,11 +27,10 @@ std::uint64_t Recorder::next_row() const {
 
 void Recorder::append(const TapRow& row) {
   assert(row.tap == next_row());
-  assert(row.observables.size() + n_relaxation_columns == n_columns_);
+  assert(row.observables.size() + row.diagnostics.size() == n_columns_);
   auto& rows = part_.tail.rows;
   rows.insert(rows.end(), row.observables.begin(), row.observables.end());
-  rows.insert(rows.end(), {row.relaxation.sweeps, row.relaxation.acceptance, row.relaxation.capped,
-                           row.relaxation.dropped_offsets});
+  rows.insert(rows.end(), row.diagnostics.begin(), row.diagnostics.end());
   publish_tail_if_large();
 }
 

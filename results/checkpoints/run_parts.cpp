@@ -305,7 +305,7 @@ std::map<RealizationId, RealizationSummary> verify_parts(const std::string& resu
     const std::string path = state_path(results_path, id);
     if (id.point >= study.points.size() || id.realization >= study.realizations)
       throw ResultsError(path, "part of a realization that the study does not have");
-    const std::size_t n_columns = study.points[id.point].observables.size() + n_relaxation_columns;
+    const std::size_t n_columns = study.points[id.point].n_columns();
     const PartState part = index_parts(results_path, {run_id, id}, n_columns).outline.part;
     summaries[id] = summary_of(id, part);
     n_segments[id] = part.n_segments;

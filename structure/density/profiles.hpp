@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
-#include "engine/monte_carlo/stops.hpp"
+#include "engine/bed/window.hpp"
 
 // Where the solids of one packing are: packing fraction against height, against a side or from the
 // walls inwards. Planes cut spheres into parts of known volume, so nothing is sampled. Lengths in

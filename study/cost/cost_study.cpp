@@ -76,7 +76,7 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs,
       pilot_taps_(file.study().points.front().taps),
       rounds_(file.study().realizations) {
   read_times(file);
-  for (const ObservableLabel& label : file.study().points.front().observables) {
+  for (const Column& label : file.study().points.front().observables) {
     observables_.push_back(read_observable(file, label));
   }
 }
@@ -95,7 +95,7 @@ void CostStudy::read_times(const ResultsFile& file) {
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
   for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
     const std::vector<double> sweeps =
-        file.block(p, "sweeps", {1, pilot_taps_ + 1}, {0, file.study().realizations});
+        file.block(p, sweeps_column, {1, pilot_taps_ + 1}, {0, file.study().realizations});
     Moments all, late;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
       all.add(sweeps[i]);
@@ -113,8 +113,7 @@ double CostStudy::realization_seconds(std::size_t rung) const {
   return times_[rung].start_seconds + times_[rung].tap_seconds * static_cast<double>(taps_);
 }
 
-CostOfObservable CostStudy::read_observable(const ResultsFile& file,
-                                            const ObservableLabel& label) const {
+CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Column& label) const {
   CostOfObservable cost;
   cost.label = label;
   std::vector<std::vector<double>> values;  // [n_rungs][n_taps, n_rounds]

@@ -27,7 +27,7 @@ struct WindowEffect {
 
 /// What the pilot found of one observable, after its last tap.
 struct CostOfObservable {
-  ObservableLabel label;
+  Column label;
   std::vector<PairedBias> biases;  // [n_rungs]
   std::vector<Setting> settings;   // [n_rungs], for the whole run of the scene
   PairedBias last_step{};          // the most complete rung less the one before
@@ -65,7 +65,7 @@ class CostStudy {
 
  private:
   void read_times(const ResultsFile& file);
-  CostOfObservable read_observable(const ResultsFile& file, const ObservableLabel& label) const;
+  CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
   std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
 
   std::vector<Rung> rungs_;

@@ -88,11 +88,11 @@ TapCost between(const CostsByStrength& costs, double strength) {
 class Pilot {
  public:
   Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
-      : plan_(plan), bed_(bed), budget_(budget) {
+      : plan_(plan), engine_(std::get<MonteCarlo>(plan.engine)), bed_(bed), budget_(budget) {
     const auto began = Clock::now();
     RandomStream random(key(Purpose::start));
     packing_ = make_start(plan.start, bed.container, bed.n_spheres, random);
-    if (const Relaxation* rule = relaxation_of_start(plan)) {
+    if (const Relaxation* rule = relaxation_of_start(engine_, plan.start)) {
       const auto relaxing = Clock::now();
       const auto loop = make_loop(*rule);
       loop->load(packing_);
@@ -104,8 +104,8 @@ class Pilot {
 
   PilotEstimate estimate() {
     const std::vector<std::size_t> stages = piloted_stages(plan_.protocol);
-    const auto loop = make_loop(plan_.relax);
-    const HeightWindow window = pilot_window(plan_.relax.stop, packing_);
+    const auto loop = make_loop(engine_.relax);
+    const HeightWindow window = pilot_window(engine_.relax.stop, packing_);
     std::uint64_t left = budget_ - std::min(budget_ / 2, trials_);
     std::size_t untried = stages.size();
     RandomStream tap_random(key(Purpose::tap));
@@ -116,7 +116,7 @@ class Pilot {
       const auto began = Clock::now();
       excite(packing_, tap, tap_random);
       loop->load(packing_);
-      const std::uint64_t trials = run(*loop, plan_.relax.stop, window, left / untried--);
+      const std::uint64_t trials = run(*loop, engine_.relax.stop, window, left / untried--);
       left -= std::min(left, trials);
       const Seconds time = Clock::now() - began;
       relax_time_ += time;
@@ -173,6 +173,7 @@ class Pilot {
   }
 
   const Plan& plan_;
+  const MonteCarlo& engine_;
   const CutBed& bed_;
   std::uint64_t budget_;
   Packing packing_;

@@ -32,7 +32,7 @@ struct Member {
   std::vector<double> realizations;  // of the value, by number; empty for other quantities
   double y = not_a_number;
   ErrorOf y_error;
-  ObservableLabel label;
+  Column label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
 };
 

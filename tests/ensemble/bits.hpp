@@ -28,8 +28,7 @@ class Bits {
   void add(const TapRow& row) {
     add(row.tap);
     add(row.observables);
-    add(std::vector<double>{row.relaxation.sweeps, row.relaxation.acceptance, row.relaxation.capped,
-                            row.relaxation.dropped_offsets});
+    add(row.diagnostics);
   }
   void add(const SnapshotRecord& snapshot) {
     add(snapshot.tap);

@@ -69,12 +69,13 @@ TEST_CASE("A realization reports the fitting of its start, and of no other start
   const Packing fitted =
       make_start(plan.start, plan.container, plan.n_spheres, random, {}, &poured);
   CHECK(start.fitting == fitting_report(poured, fitted));
-  CHECK(start.row.relaxation.sweeps == 0);
+  CHECK(diagnostic(start.row, "sweeps") == 0);
 
   // A relaxation before tap 0 on request, and the report is that of the fitting still.
-  plan.relax_start = Relaxation{.move = PolarMove{}, .stop = {.rule = SweepsStop{.sweeps = 11}}};
+  monte_carlo(plan).relax_start =
+      Relaxation{.move = PolarMove{}, .stop = {.rule = SweepsStop{.sweeps = 11}}};
   const FirstRow relaxed = start_of(plan);
-  CHECK(relaxed.row.relaxation.sweeps == 11);
+  CHECK(diagnostic(relaxed.row, "sweeps") == 11);
   CHECK(relaxed.fitting == start.fitting);
 }
 

@@ -153,8 +153,8 @@ TEST_CASE("A start under way is given up at a stop and made anew") {
   plans[1].start = FittedPour{};
   plans[2].container = FullyPeriodicBox{4, 4.5, 5};
   plans[2].start = Grow{};
-  plans[2].relax.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
-  plans[2].relax.stop = {.rule = SweepsStop{.sweeps = 60}};
+  monte_carlo(plans[2]).relax.move = MetropolisMove{.max_step = 0.2, .adaptation = {}};
+  monte_carlo(plans[2]).relax.stop = {.rule = SweepsStop{.sweeps = 60}};
   plans[2].protocol = {{Lift{.gamma = 0}, 5}};
   plans[2].observables = {};
   for (const Plan& plan : plans) {
@@ -180,7 +180,7 @@ TEST_CASE("A realization that fails is recorded with its reason and the rest go 
   plans.push_back(small_plan());
   plans[3].container = FullyPeriodicBox{5, 5, 6};
   plans[3].start = Grow{};
-  plans[3].relax.move = PolarMove{};
+  monte_carlo(plans[3]).relax.move = PolarMove{};
   MemorySink sink;
   Progress progress;
   const RunSummary summary =

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "ensemble/realization.hpp"
+#include "tests/monte_carlo_plan.hpp"
 #include "tests/two_samples.hpp"
 
 using namespace jostle;
@@ -18,8 +19,8 @@ std::vector<std::vector<double>> last_taps(const Plan& plan) {
     while (!realization.finished()) {
       if (Slice slice = realization.advance(1'000'000); slice.row) last = std::move(*slice.row);
     }
-    columns[0].push_back(last.relaxation.sweeps);
-    columns[1].push_back(last.relaxation.acceptance);
+    columns[0].push_back(diagnostic(last, "sweeps"));
+    columns[1].push_back(diagnostic(last, "acceptance"));
     for (std::size_t k = 0; k < last.observables.size(); ++k) {
       columns[2 + k].push_back(last.observables[k]);
     }
@@ -31,13 +32,13 @@ std::vector<std::vector<double>> last_taps(const Plan& plan) {
 void check_samplers(Plan plan) {
   plan.n_spheres = 80;
   plan.start = SteepestDescentPour{};
-  plan.relax.stop = {.rule = MeanHeightStop{.eta = 3e-5, .every_sweeps = 100}};
+  monte_carlo(plan).relax.stop = {.rule = MeanHeightStop{.eta = 3e-5, .every_sweeps = 100}};
   plan.observables = {MeanHeight{}, BottomFraction{}, CorrectedFraction{},
                       BulkFraction{.window = HeightWindow{1.5, 3}}};
   plan.seed = 81;
   const auto exhaustive = last_taps(plan);
   plan.seed = 82;
-  plan.relax.sampler = Sampler::skipping;
+  monte_carlo(plan).relax.sampler = Sampler::skipping;
   const auto skipping = last_taps(plan);
   const char* const names[] = {"sweeps", "acceptance", "<Z>", "Phi_b", "<Phi_c>", "bulk"};
   for (std::size_t k = 0; k < exhaustive.size(); ++k) {
@@ -58,7 +59,7 @@ TEST_CASE("realizations of both samplers have one law: Metropolis, walls", "[sta
   Plan plan;
   plan.container = WalledBox{4.5, 4.5};
   plan.protocol = {{Lift{.gamma = 0.25}, 2}};
-  plan.relax.move = MetropolisMove{};
+  monte_carlo(plan).relax.move = MetropolisMove{};
   check_samplers(plan);
 }
 

@@ -9,6 +9,7 @@
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
 #include "tests/ensemble/bits.hpp"
+#include "tests/monte_carlo_plan.hpp"
 
 #include "ensemble/realization.hpp"
 

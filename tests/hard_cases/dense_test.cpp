@@ -103,8 +103,8 @@ TEST_CASE("a crystal tapped 10 000 times never overlaps", "[statistics]") {
       plan.n_spheres = 80;
       plan.start = Crystal{};
       plan.protocol = {{tap, 10'000}};
-      plan.relax.stop = {.rule = SweepsStop{.sweeps = 30}};
-      plan.relax.sampler = sampler;
+      monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 30}};
+      monte_carlo(plan).relax.sampler = sampler;
       plan.observables = {MeanHeight{}, BottomFraction{}};
       const RecordedRealization record = run_plan(plan, 100);
       for (const TapRow& row : record.rows) {

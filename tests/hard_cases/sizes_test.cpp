@@ -57,7 +57,8 @@ TEST_CASE("taps in boxes of the least legal width leave no overlap") {
       plan.n_spheres = 12;
       plan.start = SteepestDescentPour{};
       plan.protocol = {{tap, 20}};
-      plan.relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10}, .max_sweeps = 500};
+      monte_carlo(plan).relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10},
+                                      .max_sweeps = 500};
       plan.observables = {MeanHeight{}, BottomFraction{}};
       run_plan_twice(plan);
     }

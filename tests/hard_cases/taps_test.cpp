@@ -11,7 +11,8 @@ Plan plan_of(const Tap& tap, std::uint64_t taps) {
   plan.n_spheres = 60;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{tap, taps}};
-  plan.relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10}, .max_sweeps = 2000};
+  monte_carlo(plan).relax.stop = {.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10},
+                                  .max_sweeps = 2000};
   plan.observables = {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
   return plan;
 }
@@ -26,8 +27,8 @@ TEST_CASE("taps from nothing to ten times the height") {
       for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
         CAPTURE(tap.index(), move.index(), int(sampler));
         Plan plan = plan_of(tap, 4);
-        plan.relax.move = move;
-        plan.relax.sampler = sampler;
+        monte_carlo(plan).relax.move = move;
+        monte_carlo(plan).relax.sampler = sampler;
         for (const TapRow& row : run_plan_twice(plan).rows) {
           for (const double value : row.observables) CHECK(std::isfinite(value));
         }
@@ -47,7 +48,7 @@ TEST_CASE("<Z> is that of the spheres after every one of a million taps", "[stat
   Plan plan = plan_of(Dilate{0.02}, 1'000'000);
   plan.n_spheres = 6;
   plan.container = PeriodicBox{2.5, 2.5};
-  plan.relax.stop = {.rule = SweepsStop{.sweeps = 10}};
+  monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 10}};
   plan.observables = {MeanHeight{}};
   Realization realization(plan, 0);
   double worst = 0, highest = 0;

@@ -12,6 +12,7 @@
 #include "structure/measure.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/ensemble/memory_sink.hpp"
+#include "tests/monte_carlo_plan.hpp"
 
 namespace jostle {
 
@@ -36,7 +37,7 @@ inline Records run_records(const Plan& plan, std::uint32_t n) {
   if (summary.done != n) throw std::runtime_error("a realization failed");
   for (const auto& [id, record] : sink.records()) {
     for (const TapRow& row : record.rows) {
-      if (row.relaxation.capped != 0) throw std::runtime_error("a relaxation met its cap");
+      if (diagnostic(row, "capped") != 0) throw std::runtime_error("a relaxation met its cap");
     }
   }
   return sink.records();

@@ -68,8 +68,7 @@ constexpr bool memory_is_watched = false;
 TEST_CASE("series of many blocks are written as those of one, stopped or killed on the way") {
   const synthetic::Sizes sizes{
       .points = 1, .realizations = 2, .spheres = 2, .taps = 200'000, .snapshot_taps = {}};
-  const std::size_t n_columns =
-      synthetic::study(sizes).points[0].observables.size() + n_relaxation_columns;
+  const std::size_t n_columns = synthetic::study(sizes).points[0].n_columns();
   REQUIRE(rows_a_block(2, n_columns) < sizes.taps);
   const TemporaryFolder folder;
   const std::string straight = folder / "straight.h5";
@@ -113,7 +112,7 @@ TEST_CASE("parts that go on while they are read give what was there") {
   const synthetic::Sizes sizes{
       .points = 1, .realizations = 1, .taps = 60'000, .snapshot_taps = {0, 10'000, 60'000}};
   const Study study = synthetic::study(sizes);
-  const std::size_t n_columns = study.points[0].observables.size() + n_relaxation_columns;
+  const std::size_t n_columns = study.points[0].n_columns();
   const auto store = RunStore::create(path, study, {}, provenance());
   const synthetic::Conduct some{
       .checkpoint_every = 5000, .steps = 50'000, .leave_without_end = true};

@@ -299,8 +299,7 @@ void read_all(const std::string& path) {
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
     file.series(point);
     file.ensemble(point);
-    for (const ObservableLabel& label : file.columns(point))
-      file.block(point, label.name, {0, 1}, {0, 1});
+    for (const Column& label : file.columns(point)) file.block(point, label.name, {0, 1}, {0, 1});
   }
 }
 

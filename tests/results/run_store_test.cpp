@@ -10,6 +10,7 @@
 #include "results/error.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
+#include "tests/monte_carlo_plan.hpp"
 
 using namespace jostle;
 using synthetic::Conduct;
@@ -61,9 +62,9 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
         const TapRow row = synthetic::expected_row(study, {p, r}, tap);
         CHECK(series[0].at(tap, r) == row.observables[0]);
         CHECK(series[1].at(tap, r) == row.observables[1]);
-        CHECK(series[2].at(tap, r) == row.relaxation.sweeps);
-        CHECK(same(series[3].at(tap, r), row.relaxation.acceptance));
-        CHECK(series[5].at(tap, r) == row.relaxation.dropped_offsets);
+        CHECK(series[2].at(tap, r) == diagnostic(row, "sweeps"));
+        CHECK(same(series[3].at(tap, r), diagnostic(row, "acceptance")));
+        CHECK(series[5].at(tap, r) == diagnostic(row, "dropped_offsets"));
       }
   }
   const RealizationRecord record = file.record({1, 2});
@@ -88,7 +89,7 @@ TEST_CASE("any part of a column can be read by itself") {
   synthetic::run_to_end(path, {.realizations = 7, .taps = 300});
   const ResultsFile file(path);
   const std::vector<Series> all = file.series(1);
-  const std::vector<ObservableLabel> labels = file.columns(1);
+  const std::vector<Column> labels = file.columns(1);
   REQUIRE(labels.size() == all.size());
   for (std::size_t column = 0; column < all.size(); ++column) {
     CHECK(labels[column].name == all[column].label.name);

@@ -106,7 +106,7 @@ TEST_CASE("a run that is stopped early stores what is there, however much was pl
     const TemporaryFolder folder;
     const std::string path = folder / "a.h5";
     const Study study = synthetic::study({.points = 2, .realizations = 2, .taps = taps});
-    const std::size_t n_columns = study.points[0].observables.size() + n_relaxation_columns;
+    const std::size_t n_columns = study.points[0].n_columns();
     const auto record = [&](RealizationId id) {
       RealizationRecord one;
       one.status = RealizationStatus::running;

@@ -44,14 +44,14 @@ void step(RealizationState& state) {
 }
 
 TapRow row_of(const RealizationState& state) {
-  TapRow row{.tap = state.rows, .observables = {0, 0}, .relaxation = {}};
+  TapRow row{.tap = state.rows, .observables = {0, 0}, .diagnostics = {}};
   for (const Vec3 r : state.centres) {
     row.observables[0] += r.z;
     row.observables[1] += r.x;
   }
-  row.relaxation.sweeps = static_cast<double>(state.relaxation.trials);
-  row.relaxation.acceptance = state.rows == 0 ? -std::nan("") : state.move.step;
-  row.relaxation.dropped_offsets = 0.125 * static_cast<double>(state.rows);
+  const double step = state.rows == 0 ? -std::nan("") : state.move.step;
+  row.diagnostics = {static_cast<double>(state.relaxation.trials), step, 0,
+                     0.125 * static_cast<double>(state.rows)};
   return row;
 }
 
@@ -97,6 +97,7 @@ Study study(const Sizes& sizes) {
                      .taps = sizes.taps,
                      .observables = {{"mean_height", "diameter", "mean height", "a paper"},
                                      {"bulk_fraction", "1", "bulk fraction", "another"}},
+                     .diagnostics = columns(MonteCarlo{}),
                      .snapshots = {}};
     point.snapshots.taps = sizes.snapshot_taps;
     study.points.push_back(point);

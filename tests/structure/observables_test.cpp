@@ -77,7 +77,7 @@ TEST_CASE("Labels name every observable, with its units and source") {
                                                BulkFraction{}, BulkFraction{.name = "deep"}};
   std::set<std::string> names;
   for (const Observable& observable : observables) {
-    const ObservableLabel text = label(observable);
+    const Column text = label(observable);
     names.insert(text.name);
     CHECK(text.units == (std::holds_alternative<MeanHeight>(observable) ? "diameter" : "1"));
     CHECK_FALSE(text.long_name.empty());

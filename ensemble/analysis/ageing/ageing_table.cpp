@@ -162,7 +162,7 @@ void add_trend(const AgeTrend& trend, const std::string& prefix, const std::stri
 
 }  // namespace
 
-Table ageing_table(std::string name, const ObservableLabel& observable, const TapRows& rows,
+Table ageing_table(std::string name, const Column& observable, const TapRows& rows,
                    const AgeingGrid& grid, int threads) {
   const AgeingCurves curves = ageing_curves(rows, grid);
   const AgeingFits fits = fit_ageing(rows, grid, threads);

@@ -12,7 +12,7 @@ namespace jostle {
 /// with and without a common B, the collapse of A / A_inf against t / tau, tau and A_inf against
 /// t_W. `rows` holds taps_of(grid), as far as the series goes; `name` is that of the table
 /// ("point_0000/ageing/mean_height").
-Table ageing_table(std::string name, const ObservableLabel& observable, const TapRows& rows,
+Table ageing_table(std::string name, const Column& observable, const TapRows& rows,
                    const AgeingGrid& grid, int threads = 1);
 
 }  // namespace jostle

@@ -8,7 +8,7 @@
 namespace jostle {
 namespace {
 
-const ObservableLabel fraction = {"bulk_fraction", "1", "bulk packing fraction", "somebody 2001"};
+const Column fraction = {"bulk_fraction", "1", "bulk packing fraction", "somebody 2001"};
 
 const Quantity& quantity(const Table& table, const std::string& name) {
   for (const Quantity& found : table.quantities) {

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/monte_carlo_plan.hpp"
+
 using namespace jostle;
 
 namespace {
@@ -14,7 +16,7 @@ Plan plan_of(const Container& container, std::uint32_t n_spheres) {
   plan.n_spheres = n_spheres;
   plan.start = SteepestDescentPour{};
   plan.protocol = {{Dilate{0.02}, 10}};
-  plan.relax.stop.rule = SweepsStop{20};
+  monte_carlo(plan).relax.stop.rule = SweepsStop{20};
   return plan;
 }
 
@@ -85,7 +87,7 @@ TEST_CASE("A ramp is tried at its first, weakest, middle, strongest and last str
 
 TEST_CASE("A ramp costs the sum over its taps") {
   Plan ramp = plan_of(PeriodicBox{6, 6}, 200);
-  ramp.relax.stop.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10};
+  monte_carlo(ramp).relax.stop.rule = MeanHeightStop{.eta = 1e-4, .every_sweeps = 10};
   const auto sweeps = [&](std::vector<Stage> protocol) {
     ramp.protocol = std::move(protocol);
     const PilotEstimate estimate = pilot(ramp, 1'000'000'000);

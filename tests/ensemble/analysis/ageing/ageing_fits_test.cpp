@@ -44,7 +44,7 @@ std::vector<std::uint64_t> numbers(const Table& table) {
   return bits;
 }
 
-const ObservableLabel height = {"mean_height", "diameter", "mean height", ""};
+const Column height = {"mean_height", "diameter", "mean height", ""};
 
 double scalar(const Table& table, const std::string& name) {
   for (const Quantity& quantity : table.quantities) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <variant>
+
+// Horizontal slices of a bed, in which solids fractions are taken.
+namespace jostle {
+
+/// Between two heights above the floor, diameters.
+struct HeightWindow {
+  double low = 0, high = 2;
+  bool operator==(const HeightWindow&) const = default;
+};
+
+/// Between two quantiles of the heights of the centres of the starting packing; fixed for the run.
+struct QuantileWindow {
+  double low = 0.2, high = 0.8;
+  bool operator==(const QuantileWindow&) const = default;
+};
+
+using Window = std::variant<HeightWindow, QuantileWindow>;
+
+}  // namespace jostle

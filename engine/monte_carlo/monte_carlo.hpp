@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/column.hpp"
+#include "engine/monte_carlo/moves.hpp"
+#include "engine/monte_carlo/stops.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
+
+// The Monte Carlo engine: after a tap, trials of single spheres bring the bed to rest.
+namespace jostle {
+
+/// How a bed comes to rest: the moves, how they are found and when they end.
+struct Relaxation {
+  Move move;
+  Stop stop;
+  Sampler sampler = Sampler::exhaustive;
+  bool operator==(const Relaxation&) const = default;
+};
+
+struct MonteCarlo {
+  Relaxation relax;                                      // after every tap
+  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself
+  bool operator==(const MonteCarlo&) const = default;
+};
+
+/// How the start is relaxed before tap 0 is recorded: as `relax_start` says; without it a random
+/// settle as after a tap, any other start not at all (null).
+const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& start);
+
+/// Sweeps of the relaxation after each tap, a sweep being n_spheres trials: what a tap takes.
+inline constexpr const char* sweeps_column = "sweeps";
+
+/// What is recorded of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
+/// without trials; capped; dropped_offsets, of a shake.
+std::vector<Column> columns(const MonteCarlo& settings);
+
+}  // namespace jostle
