@@ -58,7 +58,7 @@ void taps_of_scene(benchmark::State& run, Plan plan) {
       whole += std::chrono::steady_clock::now() - began;
       ended = slice.row.has_value();
       relaxing += slice.relaxing;
-      trials += static_cast<double>(slice.trials);
+      trials += static_cast<double>(slice.effort.units);
     }
   }
   run.counters["taps/s"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
@@ -83,7 +83,7 @@ void ensemble(benchmark::State& run, int threads) {
     Progress progress;
     ForgetfulSink sink;
     run_ensemble(std::span(&plan, 1), realizations, {.threads = threads}, sink, progress);
-    trials += static_cast<double>(progress.trials_done);
+    trials += static_cast<double>(progress.units_done);
   }
   run.counters["trials/s"] = benchmark::Counter(trials, benchmark::Counter::kIsRate);
 }

@@ -20,14 +20,17 @@ double seconds_since(ProcessorClock::time_point began) {
   return std::chrono::duration<double>(ProcessorClock::now() - began).count();
 }
 
-// Whether `act` succeeded; if not, the outcome says why. Memory that ran out is no fault of the
-// realization: that ends the run, and the realization goes on from its last checkpoint.
+// Whether `act` succeeded; if not, the outcome says why. Memory that ran out, or a state of another
+// program, is no fault of the realization: that ends the run, and the realization goes on from its
+// last checkpoint.
 template <class Act>
 bool attempt(Outcome& outcome, Act&& act) {
   try {
     act();
     return true;
   } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const StateError&) {
     throw;
   } catch (const std::exception& error) {
     outcome.status = RealizationStatus::failed;
@@ -75,8 +78,8 @@ class EnsembleRun {
   std::exception_ptr sink_failure_;  // the first
 };
 
-// Whatever is thrown here comes from the sink or for want of memory: `attempt` keeps what else a
-// realization throws.
+// Whatever is thrown here comes from the sink, a foreign state or for want of memory: `attempt`
+// keeps what else a realization throws.
 void EnsembleRun::work() noexcept {
   try {
     while (!stopping()) {
@@ -113,6 +116,8 @@ void EnsembleRun::carry_out(RealizationId id) {
 
 void EnsembleRun::carry_on(RealizationId id, Realization& realization,
                            ProcessorClock::time_point began, Outcome& outcome) {
+  const std::uint64_t units =
+      options_.units_per_slice.value_or(realization.dynamics().units_per_slice());
   auto checkpointed = Clock::now();
   while (!realization.finished()) {
     if (stopping()) {
@@ -120,15 +125,12 @@ void EnsembleRun::carry_on(RealizationId id, Realization& realization,
       return;
     }
     Slice slice;
-    const auto advance = [&] {
-      slice = realization.advance(options_.trials_per_slice, [this] { return stopping(); });
-    };
+    const auto advance = [&] { slice = realization.advance(units, [this] { return stopping(); }); };
     const bool starting = realization.rows() == 0;
     const bool advanced = attempt(outcome, advance);
     if (starting) outcome.work.start_seconds = seconds_since(began);
     if (!advanced) return;
-    outcome.work.trials += slice.trials;
-    outcome.work.distance_tests += slice.distance_tests;
+    outcome.work.effort += slice.effort;
     hand_over(id, slice);
     if (!realization.finished() && Clock::now() - checkpointed >= options_.checkpoint_every) {
       sink_.checkpoint(id, realization.state());
@@ -141,8 +143,8 @@ void EnsembleRun::carry_on(RealizationId id, Realization& realization,
 void EnsembleRun::hand_over(RealizationId id, const Slice& slice) {
   if (slice.row) sink_.append(id, *slice.row);
   if (slice.snapshot) sink_.snapshot(id, *slice.snapshot);
-  progress_.trials_done += slice.trials;
-  progress_.distance_tests += slice.distance_tests;
+  progress_.units_done += slice.effort.units;
+  progress_.pair_tests += slice.effort.pair_tests;
   progress_.relaxing_nanoseconds += static_cast<std::uint64_t>(slice.relaxing.count());
   if (slice.row && slice.row->tap > 0) ++progress_.taps_done;
 }

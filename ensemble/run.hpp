@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,19 +15,19 @@ namespace jostle {
 /// Live counts for a progress display, read while the run goes on.
 struct Progress {
   std::atomic<std::uint64_t> realizations_done{0}, realizations_running{0}, realizations_failed{0};
-  std::atomic<std::uint64_t> taps_done{0}, trials_done{0};
-  std::atomic<std::uint64_t> distance_tests{0};
-  std::atomic<std::uint64_t> relaxing_nanoseconds{0};  // of all threads, inside relaxations
+  std::atomic<std::uint64_t> taps_done{0};
+  std::atomic<std::uint64_t> units_done{0}, pair_tests{0};  // Effort of the engine
+  std::atomic<std::uint64_t> relaxing_nanoseconds{0};       // of all threads, inside relaxations
 };
 
 struct RunOptions {
   int threads = 1;
   /// Of each realization, at least. 0: after every slice.
   std::chrono::duration<double> checkpoint_every{60.0};
-  /// A slice: how many trials a realization makes, up to the next end of a sweep, before it looks
-  /// at `stop` and at the clock. About 0.1 s on one core.
-  std::uint64_t trials_per_slice = 4'000'000;
-  /// Set from a signal handler or a time limit: every realization stops at a sweep boundary,
+  /// How many units of its engine a realization goes on for before it looks at `stop` and at the
+  /// clock. By default what the engine makes in about 0.1 s.
+  std::optional<std::uint64_t> units_per_slice = std::nullopt;
+  /// Set from a signal handler or a time limit: every realization stops at the end of its slice,
   /// checkpoints and ends.
   const std::atomic<bool>* stop = nullptr;
 };
@@ -42,7 +43,8 @@ struct RunSummary {
 /// At a stop each realization ends with status `running` and its state. One that throws ends as
 /// failed with the reason and an empty state, and the rest go on. An exception of the sink, or a
 /// std::bad_alloc of a realization, which goes on from its last checkpoint when the run is resumed,
-/// stops the run like a stop and is rethrown.
+/// stops the run like a stop and is rethrown. So is StateError of one whose state is of another
+/// engine or version: what is stored of it stays.
 RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
                         const RunOptions& options, Sink& sink, Progress& progress);
 

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/bed/vec3.hpp"
-#include "engine/monte_carlo/relaxation.hpp"
-#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/bed/window.hpp"
+#include "engine/dynamics.hpp"
 #include "ensemble/fitting_report.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.
@@ -38,16 +39,12 @@ struct SnapshotRecord {
   std::vector<double> height_histogram;  // [n_bins], or empty where not kept
 };
 
-/// A realization between two sweeps: what it needs to go on bit for bit.
+/// A realization between two slices: what it needs to go on bit for bit.
 struct RealizationState {
-  std::uint64_t rows = 0;  // recorded: taps 0 .. rows - 1; the next is tap `rows`
-  bool relaxing = false;   // tap `rows` was excited and is not yet relaxed
-  RelaxationProgress relaxation;
-  MoveState move;
-  SamplerState sampler;
+  std::uint64_t rows = 0;                 // recorded: taps 0 .. rows - 1; the next is tap `rows`
+  bool relaxing = false;                  // tap `rows` was excited and is not yet at rest
+  std::vector<std::byte> engine;          // Dynamics::save; empty until there is a start
   std::uint64_t tap_stream_position = 0;  // of Purpose::tap
-  std::uint64_t dropped_offsets = 0;      // of the tap that is being relaxed
-  HeightWindow stop_window{0, 0};
   std::vector<HeightWindow> observable_windows;
   std::optional<FittingReport> fitting;  // of a fitted pour
   std::vector<Vec3> centres;
@@ -59,14 +56,12 @@ enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 
 struct Work {
   double seconds = 0;        // of processor time
   double start_seconds = 0;  // of them, until tap 0 was recorded
-  std::uint64_t trials = 0;
-  std::uint64_t distance_tests = 0;  // pair distances computed in them
+  Effort effort{};
 
   Work& operator+=(const Work& other) {
     seconds += other.seconds;
     start_seconds += other.start_seconds;
-    trials += other.trials;
-    distance_tests += other.distance_tests;
+    effort += other.effort;
     return *this;
   }
 };

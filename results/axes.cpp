@@ -4,8 +4,6 @@
 #include <limits>
 #include <numeric>
 
-#include "ensemble/moments.hpp"
-
 namespace jostle {
 namespace {
 
@@ -104,14 +102,14 @@ std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns) 
   return std::max<std::uint64_t>(bytes_a_block / bytes_a_row / chunk, 1) * chunk;
 }
 
-EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<Column>& labels, std::uint64_t n_taps,
-                               std::uint32_t n_realizations)
-    : n_realizations_(n_realizations) {
+EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<Column>& labels,
+                               std::uint64_t n_taps) {
   const Hdf5Handle taps = write_tap_axis(group, n_taps);
-  for (const auto& [name, units, long_name, source] : labels) {
+  for (const Column& label : labels) {
     const auto moment = [&](const char* ending, const std::string& what) {
-      return labelled_column<double>(group, taps, n_taps,
-                                     {name + ending, units, what + long_name, source});
+      return labelled_column<double>(
+          group, taps, n_taps,
+          {label.name + ending, label.units, what + label.long_name, label.source});
     };
     columns_.push_back(
         {moment("_mean", "mean of "),
@@ -119,27 +117,17 @@ EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<Column>& labels, s
          moment("_error", "standard error of the mean of "),
          labelled_column<std::uint32_t>(
              group, taps, n_taps,
-             {name + "_count", "1", "realizations with a value of " + long_name, ""})});
+             {label.name + "_count", "1", "realizations with a value of " + label.long_name, ""})});
   }
 }
 
-void EnsembleWriter::write(std::uint64_t first, const std::vector<std::vector<double>>& columns) {
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    std::vector<double> mean, sigma, error;
-    std::vector<std::uint32_t> count;
-    for (std::size_t tap = 0; tap < columns[c].size() / n_realizations_; ++tap) {
-      Moments moments;
-      for (std::uint32_t r = 0; r < n_realizations_; ++r)
-        moments.add(columns[c][tap * n_realizations_ + r]);
-      mean.push_back(moments.mean());
-      sigma.push_back(moments.sigma());
-      error.push_back(moments.standard_error());
-      count.push_back(static_cast<std::uint32_t>(moments.count()));
-    }
-    columns_[c].mean.write(first, mean);
-    columns_[c].sigma.write(first, sigma);
-    columns_[c].error.write(first, error);
-    columns_[c].count.write(first, count);
+void EnsembleWriter::write(const SeriesBlock& block) {
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const FoldedColumn folded = block.folded(c);
+    columns_[c].mean.write(block.first_tap(), folded.mean);
+    columns_[c].sigma.write(block.first_tap(), folded.sigma);
+    columns_[c].error.write(block.first_tap(), folded.error);
+    columns_[c].count.write(block.first_tap(), folded.count);
   }
 }
 

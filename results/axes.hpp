@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "ensemble/fold.hpp"
 #include "ensemble/plan.hpp"
 #include "results/hdf5/write.hpp"
 #include "structure/observables.hpp"
@@ -28,19 +29,16 @@ Shape chunk_along_first(const Shape& shape);
 /// a time.
 class EnsembleWriter {
  public:
-  EnsembleWriter(hid_t group, const std::vector<Column>& labels, std::uint64_t n_taps,
-                 std::uint32_t n_realizations);
-  /// The taps from `first` on. `columns`: [n_columns] of [n, n_realizations], folded in the order
-  /// of realizations.
-  void write(std::uint64_t first, const std::vector<std::vector<double>>& columns);
+  EnsembleWriter(hid_t group, const std::vector<Column>& labels, std::uint64_t n_taps);
+  /// The taps of the block, folded.
+  void write(const SeriesBlock& block);
 
  private:
-  struct Column {
+  struct Written {
     RowsDataset<double> mean, sigma, error;
     RowsDataset<std::uint32_t> count;
   };
-  std::uint32_t n_realizations_;
-  std::vector<Column> columns_;
+  std::vector<Written> columns_;
 };
 
 /// Of a snapshot tap, by its place among them, and a realization; empty where there is none.

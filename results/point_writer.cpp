@@ -21,12 +21,6 @@ double canonical(double value) {
   return std::isnan(value) ? nan : value;
 }
 
-/// What of a state the next trial depends on: between relaxations nothing of the last one.
-RealizationState essential(RealizationState state) {
-  if (!state.relaxing) state.relaxation = {};
-  return state;
-}
-
 }  // namespace
 
 void create_point_folders(hid_t file) {
@@ -84,7 +78,7 @@ void PointWriter::take_snapshots(StoredRealization& realization) {
 
 void PointWriter::write_restart(const RealizationState& state) {
   ByteWriter bytes;
-  put(bytes, essential(state));
+  put(bytes, state);
   const auto raw =
       std::span(reinterpret_cast<const std::uint8_t*>(bytes.bytes().data()), bytes.bytes().size());
   // Its own axis: one of all realizations would have to name each of them.
@@ -112,24 +106,21 @@ void PointWriter::write_series(hid_t group, const Hdf5Handle& taps,
     write_label(series.back().dataset(), label);
     attach_axes(series.back().dataset(), both);
   }
-  EnsembleWriter ensemble(group_under("ensemble"), labels_, n_taps, n_realizations_);
+  EnsembleWriter ensemble(group_under("ensemble"), labels_, n_taps);
   const std::uint64_t a_block = rows_a_block(n_realizations_, labels_.size());
   std::vector<double> rows;
   for (std::uint64_t first = 0; first < n_taps; first += a_block) {
     const std::uint64_t n = std::min(a_block, n_taps - first);
-    std::vector<std::vector<double>> columns(labels_.size(),
-                                             std::vector<double>(n * n_realizations_, nan));
+    SeriesBlock block(labels_.size(), first, n, n_realizations_);
     for (std::uint32_t r = 0; r < n_realizations_; ++r) {
       const std::uint64_t end = std::clamp(rows_[r], first, first + n);
       rows.resize((end - first) * labels_.size());
-      if (!rows.empty()) realizations_[r]->read_rows(first, rows);
-      const double* number = rows.data();
-      for (std::uint64_t tap = 0; tap < end - first; ++tap)
-        for (std::vector<double>& column : columns)
-          column[tap * n_realizations_ + r] = canonical(*number++);
+      if (rows.empty()) continue;
+      realizations_[r]->read_rows(first, rows);
+      block.set(r, rows);
     }
-    for (std::size_t c = 0; c < labels_.size(); ++c) series[c].write(first, columns[c]);
-    ensemble.write(first, columns);
+    for (std::size_t c = 0; c < labels_.size(); ++c) series[c].write(first, block.column(c));
+    ensemble.write(block);
   }
 }
 
@@ -193,19 +184,21 @@ void PointWriter::write_timing() {
   const Hdf5Handle group = group_under("timing");
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
   const Hdf5Handle* const axes[] = {&realizations};
-  const auto write = [&]<class Number>(Number Work::*member, const Column& label) {
-    std::vector<Number> numbers;
-    for (const Work& work : work_) numbers.push_back(work.*member);
+  const auto write = [&](const Column& label, auto&& of) {
+    std::vector<std::decay_t<decltype(of(Work{}))>> numbers;
+    for (const Work& work : work_) numbers.push_back(of(work));
     const Hdf5Handle written = write_numbers(group, label.name.c_str(), numbers);
     write_label(written, label);
     attach_axes(written, axes);
   };
-  write(&Work::seconds, {"seconds", "s", "processor time of the realization", "jostle"});
-  write(&Work::start_seconds,
-        {"start_seconds", "s", "of that, until tap 0 was recorded", "jostle"});
-  write(&Work::trials, {"trials", "1", "trials made in that time", "jostle"});
-  write(&Work::distance_tests,
-        {"distance_tests", "1", "pair distances computed in them", "jostle"});
+  write({"seconds", "s", "processor time of the realization", "jostle"},
+        [](const Work& work) { return work.seconds; });
+  write({"start_seconds", "s", "of that, until tap 0 was recorded", "jostle"},
+        [](const Work& work) { return work.start_seconds; });
+  write({"trials", "1", "trials made in that time", "jostle"},
+        [](const Work& work) { return work.effort.units; });
+  write({"distance_tests", "1", "pair distances computed in them", "jostle"},
+        [](const Work& work) { return work.effort.pair_tests; });
 }
 
 }  // namespace jostle

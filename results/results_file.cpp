@@ -35,8 +35,7 @@ std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& each) {
   for (std::size_t r = 0; r < work.size(); ++r) {
     work[r] = {.seconds = seconds[r],
                .start_seconds = start_seconds.at(r),
-               .trials = trials.at(r),
-               .distance_tests = distance_tests.at(r)};
+               .effort = {.units = trials.at(r), .pair_tests = distance_tests.at(r)}};
   }
   return work;
 }

@@ -99,8 +99,10 @@ StudyPoint read_point(hid_t sweep, std::uint32_t number) {
 }
 
 RunState state_named(const std::string& name) {
+  if (name == "running") return RunState::running;
+  if (name == "interrupted") return RunState::interrupted;
   if (name == "complete") return RunState::complete;
-  return name == "interrupted" ? RunState::interrupted : RunState::running;
+  throw Hdf5Error("unknown state of the run: \"" + name + "\"");
 }
 
 }  // namespace

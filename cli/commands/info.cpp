@@ -53,9 +53,9 @@ std::string state_of(const RunStatus& status) {
 }
 
 Json realization_json(const RealizationSummary& one) {
-  Json json{{"point", one.id.point},      {"realization", one.id.realization},
-            {"status", name(one.status)}, {"taps_recorded", one.rows},
-            {"trials", one.work.trials},  {"seconds", one.work.seconds}};
+  Json json{{"point", one.id.point},           {"realization", one.id.realization},
+            {"status", name(one.status)},      {"taps_recorded", one.rows},
+            {"trials", one.work.effort.units}, {"seconds", one.work.seconds}};
   if (!one.reason.empty()) json["reason"] = one.reason;
   return json;
 }

@@ -159,12 +159,12 @@ std::string resume_command(const RunArguments& arguments) {
 std::string process_line(const Progress& progress, Seconds elapsed, int threads) {
   std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
                                  counted(static_cast<std::uint64_t>(threads), "thread"));
-  const auto trials = static_cast<double>(progress.trials_done);
+  const auto trials = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
   if (trials > 0 && relaxing > 0) {
     line += fmt::format("; relaxing, {} trials/s a core and {:.3f} distance tests a trial",
                         format_count(trials / relaxing),
-                        static_cast<double>(progress.distance_tests) / trials);
+                        static_cast<double>(progress.pair_tests) / trials);
   }
   return line + "\n";
 }

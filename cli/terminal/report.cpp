@@ -154,11 +154,12 @@ std::string cost_line(const PointCost& cost) {
   std::string line = fmt::format("{} done", cost.done);
   if (cost.unfinished > 0) line += fmt::format(", {} unfinished", cost.unfinished);
   line += fmt::format(", {} failed; {} trials in {} of one core", cost.failed,
-                      format_count(static_cast<double>(cost.work.trials)),
+                      format_count(static_cast<double>(cost.work.effort.units)),
                       format_duration(Seconds(cost.work.seconds)));
   if (cost.work.seconds > 0) {
-    line += fmt::format(", {} trials/s a core",
-                        format_count(static_cast<double>(cost.work.trials) / cost.work.seconds));
+    line +=
+        fmt::format(", {} trials/s a core",
+                    format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds));
   }
   return line + "\n";
 }

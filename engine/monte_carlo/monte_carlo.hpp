@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/column.hpp"
+#include "engine/dynamics.hpp"
 #include "engine/monte_carlo/moves.hpp"
 #include "engine/monte_carlo/stops.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
@@ -36,5 +38,9 @@ inline constexpr const char* sweeps_column = "sweeps";
 /// What is recorded of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
 /// without trials; capped; dropped_offsets, of a shake.
 std::vector<Column> columns(const MonteCarlo& settings);
+
+/// One realization's mechanics. A unit is a trial; slices end at the end of a sweep. What it saves
+/// is in engine/monte_carlo/state.hpp.
+std::unique_ptr<Dynamics> make_dynamics(const MonteCarlo& settings, const DynamicsStreams& streams);
 
 }  // namespace jostle

@@ -62,11 +62,11 @@ void relax(TrialLoop& loop, const Stop& stop, HeightWindow window, RelaxationPro
       std::max<std::uint64_t>(1, std::visit(MeasurementInterval{sweep}, stop.rule));
   const Measure measure{loop, window, progress};
   if (progress.trials == 0 && !progress.measured && std::visit(measure, stop.rule)) {
-    progress.status = RelaxationStatus::settled;
+    progress.status = DynamicsStatus::settled;
   }
   // Up to the first sweep boundary at or beyond the budget.
   const std::uint64_t pause = (progress.trials + budget + sweep - 1) / sweep * sweep;
-  while (progress.status == RelaxationStatus::running && progress.trials < pause) {
+  while (progress.status == DynamicsStatus::running && progress.trials < pause) {
     const std::uint64_t measuring_point = (progress.trials / interval + 1) * interval;
     const std::uint64_t until = std::min({measuring_point, pause, cap});
     const std::uint64_t accepted_before = loop.tally().accepted;
@@ -74,9 +74,9 @@ void relax(TrialLoop& loop, const Stop& stop, HeightWindow window, RelaxationPro
     progress.accepted += loop.tally().accepted - accepted_before;
     progress.trials = until;
     if (until == measuring_point && std::visit(measure, stop.rule)) {
-      progress.status = RelaxationStatus::settled;
+      progress.status = DynamicsStatus::settled;
     } else if (until == cap) {
-      progress.status = RelaxationStatus::capped;
+      progress.status = DynamicsStatus::capped;
     }
   }
 }

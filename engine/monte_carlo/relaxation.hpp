@@ -3,16 +3,15 @@
 #include <cstdint>
 
 #include "engine/bed/slab.hpp"
+#include "engine/dynamics.hpp"
 #include "engine/monte_carlo/stops.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
 namespace jostle {
 
-enum class RelaxationStatus : std::uint32_t { running = 0, settled = 1, capped = 2 };
-
 /// Everything a relaxation must remember to go on bit for bit after a checkpoint.
 struct RelaxationProgress {
-  RelaxationStatus status = RelaxationStatus::running;
+  DynamicsStatus status = DynamicsStatus::running;
   std::uint64_t trials = 0;    // since the tap
   std::uint64_t accepted = 0;  // of them
   bool measured = false;       // whether last_value holds a measurement

@@ -15,7 +15,7 @@ namespace jostle {
 namespace {
 
 constexpr std::string_view magic = "jostle part\n";
-constexpr std::uint32_t format_version = 3;
+constexpr std::uint32_t format_version = 4;
 constexpr std::uint32_t state_number = 0xffffffff;
 constexpr std::size_t sum_size = std::tuple_size_v<Sha256::Sum>;
 

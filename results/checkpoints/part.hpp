@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/bytes.hpp"
 #include "ensemble/sink.hpp"
-#include "results/checkpoints/bytes.hpp"
 #include "results/record.hpp"
 
 // The files under NAME.parts/: for every realization at work one state, replaced at each

@@ -8,7 +8,7 @@ namespace {
 
 // Leads the bytes of a state; counts up when they change, from a number that no older state, which
 // began with its rows, can begin with.
-constexpr std::uint32_t state_format = 0xf0000003;
+constexpr std::uint32_t state_format = 0xf0000004;
 
 }  // namespace
 
@@ -24,27 +24,8 @@ void put(ByteWriter& writer, const RealizationState& state) {
   writer.put(state_format);
   writer.put(state.rows);
   writer.put(state.relaxing);
-  writer.put(state.relaxation.status);
-  writer.put(state.relaxation.trials);
-  writer.put(state.relaxation.accepted);
-  writer.put(state.relaxation.measured);
-  writer.put(state.relaxation.last_value);
-  writer.put(state.relaxation.passes);
-  writer.put(state.move.next_trial);
-  writer.put(state.move.step);
-  writer.put(state.move.window_trials);
-  writer.put(state.move.window_base);
-  writer.put(state.move.window_accepted);
-  writer.put(state.sampler.skipping);
-  writer.put(state.sampler.window_trials);
-  writer.put(state.sampler.window_accepted);
-  writer.put(state.sampler.candidate);
-  writer.put(state.sampler.pending);
-  writer.put(state.sampler.reference_step);
+  writer.put(state.engine);
   writer.put(state.tap_stream_position);
-  writer.put(state.dropped_offsets);
-  writer.put(state.stop_window.low);
-  writer.put(state.stop_window.high);
   writer.put(state.observable_windows);
   writer.put(state.fitting.has_value());
   for (const FittingColumn& column : fitting_columns) {
@@ -59,27 +40,8 @@ RealizationState get_realization_state(ByteReader& reader) {
   RealizationState state;
   state.rows = reader.get<std::uint64_t>();
   state.relaxing = reader.get_flag();
-  state.relaxation.status = reader.get_enum(RelaxationStatus::capped);
-  state.relaxation.trials = reader.get<std::uint64_t>();
-  state.relaxation.accepted = reader.get<std::uint64_t>();
-  state.relaxation.measured = reader.get_flag();
-  state.relaxation.last_value = reader.get<double>();
-  state.relaxation.passes = reader.get<std::uint32_t>();
-  state.move.next_trial = reader.get<std::uint64_t>();
-  state.move.step = reader.get<double>();
-  state.move.window_trials = reader.get<std::uint64_t>();
-  state.move.window_base = reader.get<std::uint64_t>();
-  state.move.window_accepted = reader.get<std::uint64_t>();
-  state.sampler.skipping = reader.get_flag();
-  state.sampler.window_trials = reader.get<std::uint64_t>();
-  state.sampler.window_accepted = reader.get<std::uint64_t>();
-  state.sampler.candidate = reader.get<std::uint64_t>();
-  state.sampler.pending = reader.get<std::uint64_t>();
-  state.sampler.reference_step = reader.get<double>();
+  state.engine = reader.get_vector<std::byte>();
   state.tap_stream_position = reader.get<std::uint64_t>();
-  state.dropped_offsets = reader.get<std::uint64_t>();
-  state.stop_window.low = reader.get<double>();
-  state.stop_window.high = reader.get<double>();
   state.observable_windows = reader.get_vector<HeightWindow>();
   if (reader.get_flag()) {
     state.fitting.emplace();
@@ -129,8 +91,8 @@ void put(ByteWriter& writer, const PartState& part) {
   writer.put(part.reason);
   writer.put(part.work.seconds);
   writer.put(part.work.start_seconds);
-  writer.put(part.work.trials);
-  writer.put(part.work.distance_tests);
+  writer.put(part.work.effort.units);
+  writer.put(part.work.effort.pair_tests);
   writer.put(part.state.has_value());
   if (part.state) put(writer, *part.state);
 }
@@ -165,8 +127,8 @@ void get_after_tail(ByteReader& reader, PartState& part) {
   part.reason = reader.get_string();
   part.work.seconds = reader.get<double>();
   part.work.start_seconds = reader.get<double>();
-  part.work.trials = reader.get<std::uint64_t>();
-  part.work.distance_tests = reader.get<std::uint64_t>();
+  part.work.effort.units = reader.get<std::uint64_t>();
+  part.work.effort.pair_tests = reader.get<std::uint64_t>();
   if (reader.get_flag()) part.state = get_realization_state(reader);
 }
 

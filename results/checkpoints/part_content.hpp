@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/checkpoints/bytes.hpp"
+#include "engine/bytes.hpp"
 #include "results/checkpoints/part.hpp"
 
 // The bytes inside parts.

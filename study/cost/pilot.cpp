@@ -159,7 +159,7 @@ class Pilot {
     loop.begin_tap();
     relax(loop, stop, window, progress, budget);
     loop.store(packing_);
-    settled_ = settled_ && progress.status != RelaxationStatus::running;
+    settled_ = settled_ && progress.status != DynamicsStatus::running;
     trials_ += progress.trials;
     return progress.trials;
   }

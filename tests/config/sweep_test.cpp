@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/config/scene_files.hpp"
+#include "tests/monte_carlo_plan.hpp"
 
 namespace jostle {
 
@@ -72,7 +73,7 @@ TEST_CASE("Whole parts of a scene can be swept, and values that are defaults") {
   REQUIRE(points.size() == 2);
   CHECK(points[0].protocol[0].tap == Tap{Lift{0.25}});
   CHECK(points[1].protocol[0].tap == Tap{DilateFloorHeld{0.025}});
-  CHECK(std::get<PolarMove>(points[1].relax.move).theta0 == 0.5);
+  CHECK(std::get<PolarMove>(monte_carlo(points[1]).relax.move).theta0 == 0.5);
   CHECK(points[0].label == "tap = {\"lift\":0.25}, theta0 = 0.5");
 }
 

@@ -39,25 +39,8 @@ class Bits {
   void add(const RealizationState& state) {
     add(state.rows);
     add(std::uint64_t{state.relaxing});
-    add(state.move.next_trial);
-    add(state.move.step);
-    add(state.move.window_trials);
-    add(state.move.window_base);
-    add(state.move.window_accepted);
-    add(std::uint64_t{state.sampler.skipping});
-    add(state.sampler.window_trials);
-    add(state.sampler.window_accepted);
-    add(state.sampler.candidate);
-    add(state.sampler.pending);
-    add(state.sampler.reference_step);
-    add(state.relaxation.trials);
-    add(state.relaxation.accepted);
-    add(state.relaxation.last_value);
-    add(std::uint64_t{state.relaxation.passes});
+    for (const std::byte byte : state.engine) add(std::to_integer<std::uint64_t>(byte));
     add(state.tap_stream_position);
-    add(state.dropped_offsets);
-    add(state.stop_window.low);
-    add(state.stop_window.high);
     for (const HeightWindow& window : state.observable_windows) {
       add(window.low);
       add(window.high);

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "bits.hpp"
+#include "engine/bed/slab.hpp"
+#include "engine/monte_carlo/state.hpp"
 #include "engine/starts/starts.hpp"
 #include "small_plans.hpp"
 #include "structure/snapshot_statistics.hpp"
@@ -11,6 +13,10 @@
 using namespace jostle;
 
 namespace {
+
+MonteCarloState engine_of(const RealizationState& state) {
+  return monte_carlo_state(state.engine);
+}
 
 void keep(RecordedRealization& record, Slice slice) {
   if (slice.row) record.rows.push_back(std::move(*slice.row));
@@ -47,7 +53,7 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
     CAPTURE(name);
     const RecordedRealization undisturbed = straight(plan);
     REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
-    const bool skipped = undisturbed.state->sampler.candidate > 0;
+    const bool skipped = engine_of(*undisturbed.state).sampler.candidate > 0;
     CHECK(skipped == (monte_carlo(plan).relax.sampler == Sampler::skipping));
     for (int repeat = 0; repeat < 3; ++repeat) {
       CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
@@ -58,16 +64,17 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
 TEST_CASE("The sampler of the plan is the one that relaxes, and its state is kept") {
   Plan plan = small_plan();
   monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 2000}};
-  CHECK(straight(plan).state->sampler == SamplerState{});
+  CHECK(engine_of(*straight(plan).state).sampler == SamplerState{});
   monte_carlo(plan).relax.sampler = Sampler::skipping;
   Realization realization(plan, 0);
   while (realization.state().rows == 0) realization.advance(1'000);
   realization.advance(1500 * plan.n_spheres);
   const RealizationState state = realization.state();
   CHECK(state.relaxing);
-  CHECK(state.sampler.skipping);
-  CHECK(state.sampler.candidate > 0);
-  CHECK(state.sampler.pending >= state.move.next_trial);
+  const MonteCarloState engine = engine_of(state);
+  CHECK(engine.sampler.skipping);
+  CHECK(engine.sampler.candidate > 0);
+  CHECK(engine.sampler.pending >= engine.move.next_trial);
 }
 
 TEST_CASE("Taps leave no overlap in any container") {
@@ -111,7 +118,7 @@ TEST_CASE("A start that settles is recorded once it has") {
   REQUIRE(record.rows.size() == 1);
   CHECK(diagnostic(record.rows[0], "sweeps") == 37);
   CHECK(diagnostic(record.rows[0], "acceptance") > 0);
-  CHECK(record.state->move.next_trial == 37 * 60);
+  CHECK(engine_of(*record.state).move.next_trial == 37 * 60);
 }
 
 TEST_CASE("A start can settle in a way of its own, and taps then begin as after any other start") {
@@ -151,7 +158,7 @@ TEST_CASE(
   monte_carlo(named).relax_start = monte_carlo(plan).relax;
   const RecordedRealization one = straight(plan), other = straight(named);
   REQUIRE(one.rows.size() == other.rows.size());
-  CHECK(one.state->move.step < 0.2);
+  CHECK(engine_of(*one.state).move.step < 0.2);
   CHECK(bits(one) == bits(other));
 }
 
@@ -163,18 +170,19 @@ TEST_CASE("While a start settles, quantiles are those of the bed to come, then t
   realization.advance(60);
   REQUIRE(realization.state().rows == 0);
   const double depth = 60 * sphere_volume / (0.57 * 4 * 4);
-  CHECK(realization.state().stop_window.low == Approx(0.2 * depth));
-  CHECK(realization.state().stop_window.high == Approx(0.8 * depth));
+  const HeightWindow to_come = engine_of(realization.state()).stop_window;
+  CHECK(to_come.low == Approx(0.2 * depth));
+  CHECK(to_come.high == Approx(0.8 * depth));
 
   while (realization.state().rows == 0) realization.advance(1'000'000);
   const RealizationState settled = realization.state();
   const Packing bed{plan.container, settled.centres};
-  CHECK(settled.stop_window == resolve(QuantileWindow{}, bed));
+  CHECK(engine_of(settled).stop_window == resolve(QuantileWindow{}, bed));
   REQUIRE(settled.observable_windows.size() == 4);
   CHECK(settled.observable_windows[3] == resolve(QuantileWindow{}, bed));
 
   while (!realization.finished()) realization.advance(1'000'000);
-  CHECK(realization.state().stop_window == settled.stop_window);
+  CHECK(engine_of(realization.state()).stop_window == engine_of(settled).stop_window);
 }
 
 TEST_CASE("A relaxation that meets no rule is capped, and recorded as capped") {
@@ -273,8 +281,8 @@ TEST_CASE("The Metropolis step begins anew at each tap where the move asks for i
   // Halved twice in the 600 trials of a tap, whatever is accepted.
   StepAdaptation adaptation{.factor = 0.5, .every_trials = 300, .threshold = 1};
   monte_carlo(plan).relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
-  CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25));
+  CHECK(engine_of(*straight(plan).state).move.step == Approx(0.2 * 0.25));
   adaptation.reset_each_tap = false;
   monte_carlo(plan).relax.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation};
-  CHECK(straight(plan).state->move.step == Approx(0.2 * 0.25 * 0.25 * 0.25));
+  CHECK(engine_of(*straight(plan).state).move.step == Approx(0.2 * 0.25 * 0.25 * 0.25));
 }

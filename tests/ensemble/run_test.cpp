@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "bits.hpp"
+#include "engine/monte_carlo/state.hpp"
 #include "ensemble/parallel.hpp"
 #include "ensemble/realization.hpp"
 #include "small_plans.hpp"
@@ -95,7 +96,7 @@ TEST_CASE("A run stopped at any call and resumed records what an undisturbed one
     };
     const RunOptions options{.threads = 1 + repeat % 3,
                              .checkpoint_every = std::chrono::seconds(repeat < 3 ? 0 : 3600),
-                             .trials_per_slice = 500,
+                             .units_per_slice = 500,
                              .stop = &stop};
     std::vector<RealizationId> to_do = ids;
     unsigned runs = 0;
@@ -129,7 +130,7 @@ TEST_CASE("A stop is honoured within a slice, by every realization") {
   const int threads = GENERATE(1, 3);
   const RunOptions options{.threads = threads,
                            .checkpoint_every = std::chrono::seconds(0),
-                           .trials_per_slice = 100,
+                           .units_per_slice = 100,
                            .stop = &stop};
   Progress progress;
   const RunSummary summary = run_ensemble(plans, ids, options, sink, progress);
@@ -143,7 +144,7 @@ TEST_CASE("A stop is honoured within a slice, by every realization") {
     REQUIRE(record.outcome);
     if (record.outcome->status == RealizationStatus::done) continue;
     CHECK(record.outcome->status == RealizationStatus::running);
-    CHECK(record.state->relaxation.trials % plans[id.point].n_spheres == 0);
+    CHECK(monte_carlo_state(record.state->engine).progress.trials % plans[id.point].n_spheres == 0);
   }
 }
 
@@ -163,7 +164,7 @@ TEST_CASE("A start under way is given up at a stop and made anew") {
     Realization realization(plan, 0), undisturbed(plan, 0);
     const Slice stopped = realization.advance(1'000'000, stop);
     CHECK_FALSE(stopped.row);
-    CHECK(stopped.trials == 0);
+    CHECK(stopped.effort.units == 0);
     CHECK(realization.state().rows == 0);
     CHECK_FALSE(realization.state().relaxing);
     realization.advance(1'000'000, stop);
@@ -217,7 +218,7 @@ TEST_CASE("A sink that throws ends the run, and what it stored can be resumed") 
     }
   };
   const RunOptions options{
-      .threads = threads, .checkpoint_every = std::chrono::seconds(0), .trials_per_slice = 500};
+      .threads = threads, .checkpoint_every = std::chrono::seconds(0), .units_per_slice = 500};
   Progress progress;
   CHECK_THROWS_WITH(run_ensemble(plans, ids, options, sink, progress), "no space left");
   CHECK(appended_after <= 2 * threads);
@@ -246,14 +247,15 @@ TEST_CASE("No more realizations are alive than threads, and progress counts the 
 
   std::uint64_t trials = 0, tests = 0;
   for (const auto& [id, record] : sink.records()) {
-    trials += record.outcome->work.trials;
-    tests += record.outcome->work.distance_tests;
-    CHECK(record.outcome->work.trials == record.state->move.next_trial);
+    trials += record.outcome->work.effort.units;
+    tests += record.outcome->work.effort.pair_tests;
+    CHECK(record.outcome->work.effort.units ==
+          monte_carlo_state(record.state->engine).move.next_trial);
     CHECK(record.outcome->work.start_seconds > 0);
     CHECK(record.outcome->work.start_seconds < record.outcome->work.seconds);
   }
-  CHECK(progress.trials_done == trials);
-  CHECK(progress.distance_tests == tests);
+  CHECK(progress.units_done == trials);
+  CHECK(progress.pair_tests == tests);
   CHECK(progress.taps_done == 4 * 5 + 4 * 15);
   CHECK(progress.realizations_done == 8);
   CHECK(progress.realizations_running == 0);

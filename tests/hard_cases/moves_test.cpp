@@ -99,14 +99,14 @@ TEST_CASE("a step that adapts until nothing is left of it moves nothing and ends
 TEST_CASE("an eta below machine precision stops where <Z> no longer changes, or at the cap") {
   const Packing start = bed();
   const RelaxationProgress capped = relaxed(start, {MeanHeightStop{1e-17, 1}, 50});
-  CHECK(capped.status == RelaxationStatus::capped);
+  CHECK(capped.status == DynamicsStatus::capped);
   const RelaxationProgress at_rest =
       relaxed({PeriodicBox{4, 4}, {{1, 1, 0.5}}}, {MeanHeightStop{1e-17, 1}, 50});
-  CHECK(at_rest.status == RelaxationStatus::settled);
+  CHECK(at_rest.status == DynamicsStatus::settled);
   // |Z' - Z| < 0 never holds.
   const RelaxationProgress never =
       relaxed({PeriodicBox{4, 4}, {{1, 1, 0.5}}}, {MeanHeightStop{0, 1}, 50});
-  CHECK(never.status == RelaxationStatus::capped);
+  CHECK(never.status == DynamicsStatus::capped);
 }
 
 TEST_CASE("a fraction measured after every single trial") {
@@ -114,7 +114,7 @@ TEST_CASE("a fraction measured after every single trial") {
   const BulkFractionStop rule{0, 1, 50, true, HeightWindow{1, 3}};
   const RelaxationProgress progress = relaxed(start, {rule, 1000}, PolarMove{}, HeightWindow{1, 3});
   // It ends after 50 refusals in a row, or moves outside the window.
-  CHECK(progress.status == RelaxationStatus::settled);
+  CHECK(progress.status == DynamicsStatus::settled);
   CHECK(progress.trials >= 50);
 }
 
@@ -125,6 +125,6 @@ TEST_CASE("caps and intervals whose trials exceed 64 bits do not wrap around") {
   loop->load(start);
   RelaxationProgress progress;
   relax(*loop, {MeanHeightStop{1e-5, most}, most}, {}, progress, 3000);
-  CHECK(progress.status == RelaxationStatus::running);
+  CHECK(progress.status == DynamicsStatus::running);
   CHECK(progress.trials == 3000);
 }

@@ -142,7 +142,7 @@ TEST_CASE("The first tap fills the layers at the walls of a fitted pour, and the
       if (!slice.row) continue;
       const std::uint64_t tap = slice.row->tap;
       // Nothing relaxes before tap 0.
-      CHECK((slice.row->relaxation.sweeps == 0) == (tap == 0));
+      CHECK((diagnostic(*slice.row, "sweeps") == 0) == (tap == 0));
       const Packing bed{plan.container, slice.snapshot->centres};
       phi.at(tap) = lateral_and_central(bed, transverse_window(bed));
       lateral.at(tap).add(phi.at(tap).lateral);

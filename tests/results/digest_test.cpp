@@ -87,10 +87,7 @@ TEST_CASE("a study's digest ignores who computed it and how long it took") {
   const std::string expected = digest_with(nothing, nothing);
   CHECK(digest_with(nothing, nothing, "b") == expected);
   CHECK(digest_with(nothing, [](RealizationRecord& r) { r.work.seconds = 5; }) == expected);
-  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.work.trials = 5; }) == expected);
-  // Between relaxations nothing of the last one matters.
-  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.state->relaxation.trials = 5; }) ==
-        expected);
+  CHECK(digest_with(nothing, [](RealizationRecord& r) { r.work.effort.units = 5; }) == expected);
 }
 
 TEST_CASE("a study's digest notices any change of what was measured or asked") {
@@ -101,7 +98,8 @@ TEST_CASE("a study's digest notices any change of what was measured or asked") {
   CHECK(digest_with(nothing, [](Record& r) { r.snapshots[0].coordination = 0.6; }) != expected);
   CHECK(digest_with(nothing, [](Record& r) { r.snapshots[0].height_histogram[0] = 0; }) !=
         expected);
-  CHECK(digest_with(nothing, [](Record& r) { r.state->move.next_trial = 1; }) != expected);
+  CHECK(digest_with(nothing, [](Record& r) { r.state->engine.push_back(std::byte{1}); }) !=
+        expected);
   CHECK(digest_with(nothing, [](Record& r) { r.status = RealizationStatus::failed; }) != expected);
   CHECK(digest_with(nothing, [](Record& r) { r.reason = "no reason"; }) != expected);
   CHECK(digest_with([](Study& s) { s.scene.push_back(' '); }, nothing) != expected);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace jostle::synthetic {
 namespace {
@@ -17,12 +18,29 @@ double noise(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>((h ^ (h >> 31)) >> 11) * 0x1p-53;
 }
 
+/// The engine of these realizations, as the bytes that a state keeps of it.
+struct Engine {
+  std::uint64_t steps = 0;  // since the tap
+  std::uint64_t next_trial = 0;
+  double step = 0.1;
+};
+
+Engine engine_of(const RealizationState& state) {
+  Engine engine;
+  std::memcpy(&engine, state.engine.data(), sizeof engine);
+  return engine;
+}
+
+void keep(RealizationState& state, const Engine& engine) {
+  state.engine.resize(sizeof engine);
+  std::memcpy(state.engine.data(), &engine, sizeof engine);
+}
+
 RealizationState begin_state(const StudyPoint& point, RealizationId id) {
   RealizationState state;
   for (std::uint32_t i = 0; i < point.n_spheres; ++i)
     state.centres.push_back({noise(i, id.realization), noise(i, point.id), 0.5 + i});
-  state.move.step = 0.1;
-  state.stop_window = {0.25, 4};
+  keep(state, {});
   state.observable_windows = {{0, 0}, {1, 3}};
   state.fitting = {.spheres_moved = 3.0 + id.realization,
                    .mean_rise = 1.5,
@@ -35,12 +53,14 @@ RealizationState begin_state(const StudyPoint& point, RealizationId id) {
 
 /// One step of a relaxation, by numbers that the state alone decides.
 void step(RealizationState& state) {
+  Engine engine = engine_of(state);
   for (Vec3& r : state.centres) {
-    r.x = noise(++state.move.next_trial, static_cast<std::uint64_t>(1e6 * r.x));
+    r.x = noise(++engine.next_trial, static_cast<std::uint64_t>(1e6 * r.x));
     r.z *= 1 + 1e-3 * (r.x - 0.5);
   }
-  state.move.step *= 0.995;
-  ++state.relaxation.trials;
+  engine.step *= 0.995;
+  ++engine.steps;
+  keep(state, engine);
 }
 
 TapRow row_of(const RealizationState& state) {
@@ -49,8 +69,9 @@ TapRow row_of(const RealizationState& state) {
     row.observables[0] += r.z;
     row.observables[1] += r.x;
   }
-  const double step = state.rows == 0 ? -std::nan("") : state.move.step;
-  row.diagnostics = {static_cast<double>(state.relaxation.trials), step, 0,
+  const Engine engine = engine_of(state);
+  row.diagnostics = {static_cast<double>(engine.steps),
+                     state.rows == 0 ? -std::nan("") : engine.step, 0,
                      0.125 * static_cast<double>(state.rows)};
   return row;
 }
@@ -67,6 +88,9 @@ void record(Sink& sink, const StudyPoint& point, RealizationId id, RealizationSt
   sink.append(id, row_of(state));
   ++state.rows;
   state.relaxing = false;
+  Engine engine = engine_of(state);
+  engine.steps = 0;
+  keep(state, engine);
 }
 
 class Rows : public Sink {
@@ -114,20 +138,17 @@ void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduc
   while (state.rows <= point.taps) {
     if (state.rows == conduct.fail_at_tap)
       return sink.end(id, state,
-                      {RealizationStatus::failed, "it was told to", {0.5, 0.25, steps, 0}});
+                      {RealizationStatus::failed, "it was told to", {0.5, 0.25, {steps, 0}}});
     if (steps == conduct.steps) {
       if (conduct.leave_without_end) return;
-      return sink.end(id, state, {RealizationStatus::running, "", {0.5, 0.25, steps, 0}});
+      return sink.end(id, state, {RealizationStatus::running, "", {0.5, 0.25, {steps, 0}}});
     }
-    if (!state.relaxing) {
-      state.relaxing = true;
-      state.relaxation = {};
-    }
+    state.relaxing = true;
     step(state);
-    if (state.relaxation.trials == steps_a_tap) record(sink, point, id, state);
+    if (engine_of(state).steps == steps_a_tap) record(sink, point, id, state);
     if (++steps % conduct.checkpoint_every == 0) sink.checkpoint(id, state);
   }
-  sink.end(id, state, {RealizationStatus::done, "", {0.5, 0.25, steps, 2 * steps}});
+  sink.end(id, state, {RealizationStatus::done, "", {0.5, 0.25, {steps, 2 * steps}}});
 }
 
 TapRow expected_row(const Study& study, RealizationId id, std::uint64_t tap) {

@@ -32,6 +32,24 @@ TEST_CASE("A report has the number of realizations a row where not all reached e
   CHECK(whole.starts_with("epsilon = 0\ntap  mean_height"));
 }
 
+TEST_CASE("A report shows the columns of an engine as they ask for") {
+  const TemporaryFolder folder;
+  Study study = synthetic::study({.points = 1, .realizations = 2});
+  study.points[0].diagnostics = {
+      {"steps", "1", "", "", Shown::mean, 1},
+      {"step", "diameter", "", "", Shown::spread},
+      {"late", "1", "", "", Shown::count, 0, "{} taps were late", "no tap was late"},
+      {"lost", "1", "", "", Shown::share, 0, "taps lost {} of it", "no tap lost any"}};
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  synthetic::run_pending(*store, study);
+  store->finish();
+  const std::string text = report(ResultsFile(folder / "a.h5"));
+  CHECK(text.find("  steps  step  +- error  sigma\n") != std::string::npos);
+  CHECK(text.find("  3.0  ") != std::string::npos);
+  CHECK(text.find("\nno tap was late\n") != std::string::npos);
+  CHECK(text.find("\ntaps lost 43.8 % of it\n") != std::string::npos);
+}
+
 TEST_CASE("Reported taps are about three a decade, with both ends") {
   CHECK(reported_taps(0) == std::vector<std::uint64_t>{0});
   CHECK(reported_taps(1) == std::vector<std::uint64_t>{0, 1});

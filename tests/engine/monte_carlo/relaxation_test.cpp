@@ -28,7 +28,7 @@ TEST_CASE("the mean-height rule stops at the first small relative change") {
   const auto loop = loaded(start);
   RelaxationProgress progress;
   relax(*loop, {MeanHeightStop{1e-3, 50}, 100'000}, {}, progress, endless);
-  REQUIRE(progress.status == RelaxationStatus::settled);
+  REQUIRE(progress.status == DynamicsStatus::settled);
 
   // By hand, on a second loop.
   const auto twin = loaded(start);
@@ -51,7 +51,7 @@ TEST_CASE("the absolute rule stops at the first small change in diameters") {
   const auto loop = loaded(start);
   RelaxationProgress progress;
   relax(*loop, {HeightChangeStop{4e-3, 50}, 100'000}, {}, progress, endless);
-  REQUIRE(progress.status == RelaxationStatus::settled);
+  REQUIRE(progress.status == DynamicsStatus::settled);
 
   const auto twin = loaded(start);
   double before = twin->mean_height(), now = 0;
@@ -69,7 +69,7 @@ TEST_CASE("the absolute rule stops at the first small change in diameters") {
   // Cut into slices, as by a checkpoint, it takes the same course.
   const auto sliced = loaded(start);
   RelaxationProgress in_slices;
-  while (in_slices.status == RelaxationStatus::running) {
+  while (in_slices.status == DynamicsStatus::running) {
     relax(*sliced, {HeightChangeStop{4e-3, 50}, 100'000}, {}, in_slices, 700);
   }
   CHECK(in_slices == progress);
@@ -83,7 +83,7 @@ TEST_CASE("the bulk-fraction rule wants its number of small changes in a row") {
     RelaxationProgress progress;
     const BulkFractionStop rule{1e-3, 777, 2, measure_start, window};
     relax(*loop, {rule, 100'000}, window, progress, endless);
-    REQUIRE(progress.status == RelaxationStatus::settled);
+    REQUIRE(progress.status == DynamicsStatus::settled);
 
     const auto twin = loaded(start);
     std::vector<double> fractions;
@@ -121,7 +121,7 @@ TEST_CASE("a fixed number of sweeps is exactly that, none included") {
     const auto loop = loaded(bed());
     RelaxationProgress progress;
     relax(*loop, {SweepsStop{sweeps}, 1000}, {}, progress, endless);
-    CHECK(progress.status == RelaxationStatus::settled);
+    CHECK(progress.status == DynamicsStatus::settled);
     CHECK(progress.trials == sweeps * 40);
   }
 }
@@ -131,7 +131,7 @@ TEST_CASE("a rule that is never met ends at the cap and says so") {
     const auto loop = loaded(bed(), MetropolisMove{0.2, 1.0});
     RelaxationProgress progress;
     relax(*loop, {rule, 20}, {}, progress, endless);
-    CHECK(progress.status == RelaxationStatus::capped);
+    CHECK(progress.status == DynamicsStatus::capped);
     CHECK(progress.trials == 20 * 40);
   }
 }
@@ -150,9 +150,9 @@ TEST_CASE("a relaxation cut into slices takes the same course") {
 
       auto sliced = loaded(start, move);
       RelaxationProgress progress;
-      for (std::uint64_t budget = 1; progress.status == RelaxationStatus::running; budget += 97) {
+      for (std::uint64_t budget = 1; progress.status == DynamicsStatus::running; budget += 97) {
         relax(*sliced, {rule, 100'000}, window, progress, budget);
-        CHECK((progress.trials % 40 == 0 || progress.status == RelaxationStatus::settled));
+        CHECK((progress.trials % 40 == 0 || progress.status == DynamicsStatus::settled));
         Packing packing = start;
         sliced->store(packing);
         const MoveState state = sliced->state();

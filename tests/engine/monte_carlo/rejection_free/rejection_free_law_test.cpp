@@ -42,7 +42,7 @@ void relax_and_measure(TrialLoop& loop, const Packing& excited, const Course& co
   loop.begin_tap();
   RelaxationProgress progress;
   relax(loop, course.stop, {}, progress, endless);
-  REQUIRE(progress.status == RelaxationStatus::settled);
+  REQUIRE(progress.status == DynamicsStatus::settled);
   samples.sweeps.push_back(static_cast<double>(progress.trials) / loop.n_spheres());
   samples.height.push_back(loop.mean_height());
   samples.bottom.push_back(loop.solids_fraction({0, 2}));

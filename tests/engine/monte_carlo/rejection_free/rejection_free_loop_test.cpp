@@ -122,7 +122,7 @@ TEST_CASE("a rejection-free relaxation, cut into slices, takes the same course t
     std::vector<double> heights;
     for (int tap = 0; tap < 3; ++tap) {
       RelaxationProgress progress;
-      for (int slice = 1; progress.status == RelaxationStatus::running; ++slice) {
+      for (int slice = 1; progress.status == DynamicsStatus::running; ++slice) {
         relax(*loop, stop, {}, progress, budget);
         loop->store(packing);
         if (slice % 16 != 0) continue;

@@ -13,7 +13,8 @@
 // Plain values to bytes and back: little-endian, no padding, lengths as 64-bit counts.
 namespace jostle {
 
-static_assert(std::endian::native == std::endian::little, "results are written little-endian");
+static_assert(std::endian::native == std::endian::little,
+              "states and results are written little-endian");
 
 class ByteWriter {
  public:
@@ -23,10 +24,11 @@ class ByteWriter {
     const auto* first = reinterpret_cast<const std::byte*>(&value);
     bytes_.insert(bytes_.end(), first, first + sizeof value);
   }
-  /// Elements without padding: doubles, Vec3, HeightWindow.
+  /// Elements without padding: bytes, doubles, Vec3, HeightWindow.
   template <class T>
   void put(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0);
+    static_assert(std::is_same_v<T, std::byte> ||
+                  (std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0));
     put<std::uint64_t>(values.size());
     const auto raw = std::as_bytes(std::span(values));
     bytes_.insert(bytes_.end(), raw.begin(), raw.end());

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/starts/starts.hpp"
+#include "engine/taps.hpp"
+
+// The seam between what moves spheres and what runs ensembles of beds: one virtual call a slice.
+namespace jostle {
+
+/// How far a bed is after a tap: it moves, it is at rest, or a limit ended it before it was.
+enum class DynamicsStatus : std::uint32_t { running = 0, settled = 1, capped = 2 };
+
+/// What moving the spheres took.
+struct Effort {
+  std::uint64_t units = 0;       // of the engine: trials
+  std::uint64_t pair_tests = 0;  // pair distances computed in them
+
+  Effort& operator+=(const Effort& other) {
+    units += other.units;
+    pair_tests += other.pair_tests;
+    return *this;
+  }
+  Effort operator-(const Effort& other) const {
+    return {units - other.units, pair_tests - other.pair_tests};
+  }
+};
+
+/// What an engine draws its own random numbers from: while the start comes to rest, and after taps.
+struct DynamicsStreams {
+  StreamKey start, taps;
+};
+
+/// A state that this program cannot go on from; what() says why and what to do.
+class StateError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The mechanics of one realization, whatever moves the spheres. Between load, settle and the taps
+/// it is advanced by slices; what it does depends neither on how it is sliced nor on whether it was
+/// saved and restored between two of them.
+class Dynamics {
+ public:
+  virtual ~Dynamics() = default;
+
+  /// Takes over a bed: as a start was made, or as store() gave it, before restore().
+  virtual void load(const Packing& bed) = 0;
+  /// Begins to bring a start, made in this way, to rest. One that needs none is at rest at once.
+  virtual void settle(const Start& start) = 0;
+  /// Of a bed at rest: excites it, or begins to. `random` is the stream of Purpose::tap.
+  virtual void tap(const Tap& tap, RandomStream& random) = 0;
+  /// Goes on for about so many units, or until the bed is at rest. At rest it does nothing. Throws
+  /// std::invalid_argument where the engine's settings do not suit the container.
+  virtual DynamicsStatus advance(std::uint64_t units) = 0;
+  /// Gives the bed as it is: the container, and [n_spheres] centres in the order of load().
+  virtual void store(Packing& bed) const = 0;
+  /// Of the last tap, along the engine's columns. To be called once the bed is at rest.
+  virtual std::vector<double> diagnostics() const = 0;
+  /// Since this object was made.
+  virtual Effort effort() const = 0;
+  /// Units that take about a tenth of a second on one core.
+  virtual std::uint64_t units_per_slice() const = 0;
+  /// Bytes held: positions, and what finds neighbours.
+  virtual std::size_t bytes() const = 0;
+
+  /// All that the engine needs besides the bed to go on bit for bit. The bytes begin with what
+  /// tells their version.
+  virtual std::vector<std::byte> save() const = 0;
+  /// Goes on, with the bed loaded before, from where save() was called. Throws StateError where the
+  /// bytes are of another engine or another version.
+  virtual void restore(std::span<const std::byte> state) = 0;
+};
+
+}  // namespace jostle
