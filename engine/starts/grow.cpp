@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/monte_carlo/kernel/moving_spheres.hpp"
+#include "engine/starts/moving_spheres.hpp"
 #include "engine/starts/parts.hpp"
 
 namespace jostle {

@@ -12,7 +12,7 @@ namespace jostle {
 
 /// Centres on the move with Verlet lists, for starts that shuffle spheres until they fit: every
 /// sphere's list holds all others that can be within one diameter of it, nearest first. Between two
-/// renewals of the lists no sphere may leave its neighbourhood: steps that would are refused, so
+/// renewals of the lists no sphere may leave its neighbourhood: steps that would are rejected, so
 /// that a few spheres flying free do not cost a renewal for all at every moment.
 template <class Box>
 class MovingSpheres {
