@@ -86,7 +86,8 @@ struct MakeRejectionFree {
   }
   template <class Box, class Policy>
   std::unique_ptr<TrialLoop> operator()(const Box&, const Policy&) const {
-    return nullptr;  // a fault, thrown before
+    throw std::invalid_argument(
+        "the skipping sampler has no bounds for this move: use the exhaustive sampler");
   }
 };
 
