@@ -12,7 +12,7 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/version.hpp"
 #include "results/export/printable.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
 namespace {
@@ -80,7 +80,7 @@ int run_program(int argc, char** argv) {
     const int code = parse_and_run(argc, argv);
     return code == exit_ok && output_is_lost() ? exit_broken_surroundings : code;
   } catch (const BadInput& error) {
-    say(error.what());
+    say(failure_text(error));
     return exit_bad_input;
   } catch (const std::invalid_argument& error) {  // an environment variable, for one
     say(error.what());

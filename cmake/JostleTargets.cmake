@@ -17,7 +17,7 @@ target_compile_options(jostle_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
 # jostle_library(engine SOURCES a.cpp ... DEPENDS jostle_x ...): one folder, one library, installed
 # as jostle::engine. Link only what the arrows allow: engine <- structure <- ensemble; config and
-# results stand on those; cli joins them.
+# results stand on those; study joins them, and cli is its command line.
 function(jostle_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(jostle_${name} STATIC ${arg_SOURCES})

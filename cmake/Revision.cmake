@@ -18,7 +18,7 @@ if(revision STREQUAL "")
   set(revision unknown)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
-#include "cli/terminal/version.hpp"
+#include "study/version.hpp"
 
 namespace jostle {
 

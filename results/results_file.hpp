@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/record.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
@@ -105,6 +106,11 @@ class ResultsFile {
   std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
+  /// Derived tables of a group (results/tables.hpp), in the order of their names; none where there
+  /// is no such group.
+  std::vector<Table> tables(const std::string& group) const;
+  /// Names of all derived tables with their group first, in order: "fits/point_0000/...".
+  std::vector<std::string> table_names() const;
 
  private:
   class Impl;

@@ -16,7 +16,6 @@
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
-#include "results/results_file.hpp"
 #include "results/results_writer.hpp"
 
 namespace jostle {
@@ -50,14 +49,15 @@ bool same_points(const Study& stored, const Study& study) {
 
 class RunStore::Impl {
  public:
-  Impl(const std::string& results_path, const Study& a_study, const Shard& a_shard, bool force)
-      : path(end_of_links(results_path)), study(a_study), shard(a_shard), lock(path, force) {
+  Impl(const std::string& results_path, const Shard& a_shard, bool force)
+      : path(end_of_links(results_path)), shard(a_shard), lock(path, force) {
     require_replaceable_file(path);
     remove_stale_temporaries(path);
   }
 
   void start(const Provenance& provenance);
-  void go_on(const Provenance& provenance);
+  void go_on(const std::function<Study(const ResultsFile&)>& study_for,
+             const Provenance& provenance);
   void fold(const StoringProgress& progress = {});
   RealizationSummary summary(RealizationId id) const;
   PartState last_checkpoint(RealizationId id) const;
@@ -92,8 +92,10 @@ void RunStore::Impl::start(const Provenance& provenance) {
   open_file();
 }
 
-void RunStore::Impl::go_on(const Provenance& provenance) {
+void RunStore::Impl::go_on(const std::function<Study(const ResultsFile&)>& study_for,
+                           const Provenance& provenance) {
   open_file();
+  study = study_for(*file);
   check_shard_and_points();
   run_id = file->run_id();
   processes = file->provenance();
@@ -200,7 +202,8 @@ RunStore::~RunStore() = default;
 std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
                                            bool force) {
-  auto impl = std::make_unique<Impl>(path, study, shard, force);
+  auto impl = std::make_unique<Impl>(path, shard, force);
+  impl->study = study;
   if (!force && file_exists(path))
     throw ResultsError(path,
                        "exists already; go on with it by --resume, overwrite it by --force, or "
@@ -216,9 +219,34 @@ std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study&
 std::unique_ptr<RunStore> RunStore::resume(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
                                            bool force) {
-  auto impl = std::make_unique<Impl>(path, study, shard, force);
-  impl->go_on(provenance);
+  return resume(
+      path, [&](const ResultsFile&) { return study; }, shard, provenance, force);
+}
+
+std::unique_ptr<RunStore> RunStore::resume(
+    const std::string& path, const std::function<Study(const ResultsFile&)>& study_for,
+    const Shard& shard, const Provenance& provenance, bool force) {
+  auto impl = std::make_unique<Impl>(path, shard, force);
+  impl->go_on(study_for, provenance);
   return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
+}
+
+ResultsFile RunStore::close(std::unique_ptr<RunStore> store) {
+  return std::move(*store->impl_->file);
+}
+
+const ResultsFile& RunStore::results() const {
+  return *impl_->file;
+}
+
+std::vector<RealizationSummary> RunStore::realizations() const {
+  std::vector<RealizationSummary> all;
+  for (std::uint32_t p = 0; p < impl_->study.points.size(); ++p) {
+    for (std::uint32_t r = 0; r < impl_->study.realizations; ++r) {
+      all.push_back(impl_->summary({p, r}));
+    }
+  }
+  return all;
 }
 
 std::vector<RealizationId> RunStore::pending(bool retry_failed) const {

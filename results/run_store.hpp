@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ensemble/sink.hpp"
+#include "results/results_file.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
 
@@ -31,8 +33,22 @@ class RunStore : public Sink {
   static std::unique_ptr<RunStore> resume(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
                                           bool force = false);
+  /// The same where the study depends on what the file holds: `study_for` is given the locked,
+  /// verified file, and may refuse by throwing.
+  static std::unique_ptr<RunStore> resume(const std::string& path,
+                                          const std::function<Study(const ResultsFile&)>& study_for,
+                                          const Shard& shard, const Provenance& provenance,
+                                          bool force = false);
   /// Gives the lock back; parts that were not folded stay for a resume.
   ~RunStore() override;
+  /// Ends a store: gives the lock back, and its file as the last fold left it, open and verified.
+  static ResultsFile close(std::unique_ptr<RunStore> store);
+
+  /// The file as the last fold left it, until the next one.
+  const ResultsFile& results() const;
+  /// Every (point, realization), points outermost, with the checkpoints that are newer than the
+  /// file.
+  std::vector<RealizationSummary> realizations() const;
 
   /// Realizations of the shard that have taps left to do; failed ones only if asked for, and those
   /// begin anew.

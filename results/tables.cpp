@@ -11,12 +11,12 @@
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/seal.hpp"
 #include "results/checkpoints/temporary_file.hpp"
-#include "results/export/input_file.hpp"
 #include "results/hdf5/axes.hpp"
 #include "results/hdf5/policy.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
+#include "results/results_file_impl.hpp"
 
 namespace jostle {
 namespace {
@@ -103,15 +103,6 @@ void write_table(hid_t parent, const Table& table, const Provenance& provenance)
   }
 }
 
-void copy(const std::string& path, TemporaryFile& to) {
-  InputFile file(path);
-  std::vector<std::byte> piece(1u << 20);
-  for (std::size_t n = piece.size(); n == piece.size();) {
-    n = file.read(piece);
-    to.write(std::span(piece).first(n));
-  }
-}
-
 std::string text_attribute_or_empty(hid_t object, const char* name) {
   return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
 }
@@ -189,31 +180,32 @@ void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visi
   }
 }
 
-Hdf5Handle open_verified(const std::string& path) {
-  verify_seal(path);
-  silence_hdf5();
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
-}
-
 }  // namespace
 
-void store_tables(const std::string& named, const std::string& group, std::span<const Table> tables,
+void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                   const Provenance& provenance) {
-  for (const Table& table : tables) {
-    for (const Quantity& quantity : table.axes) shape_in(table, quantity);
-    for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
+  const TableGroup one{group, {tables.begin(), tables.end()}};
+  store_tables(path, std::span(&one, 1), provenance);
+}
+
+void store_tables(const std::string& named, std::span<const TableGroup> groups,
+                  const Provenance& provenance) {
+  for (const TableGroup& group : groups) {
+    for (const Table& table : group.tables) {
+      for (const Quantity& quantity : table.axes) shape_in(table, quantity);
+      for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
+    }
   }
   const std::string path = end_of_links(named);
   const RunLock lock(path, false);
   remove_stale_temporaries(path);
-  verify_seal(path);
   TemporaryFile temporary(path);
-  copy(path, temporary);
+  verify_seal(path, [&](std::span<const std::byte> piece) { temporary.write(piece); });
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name(), WritableHdf5File::Begin::as_it_is);
-    {
-      const Hdf5Handle parent = group_at(file, group);
-      for (const Table& table : tables) write_table(parent, table, provenance);
+    for (const TableGroup& group : groups) {
+      const Hdf5Handle parent = group_at(file, group.name);
+      for (const Table& table : group.tables) write_table(parent, table, provenance);
     }
     file.close();
   });
@@ -221,32 +213,39 @@ void store_tables(const std::string& named, const std::string& group, std::span<
   temporary.publish();
 }
 
-std::vector<Table> read_tables(const std::string& path, const std::string& group) {
-  return naming_file(path, [&] {
-    const Hdf5Handle file = open_verified(path);
+std::vector<Table> ResultsFile::tables(const std::string& group) const {
+  return naming_file(path(), [&] {
     std::vector<Table> tables;
     const auto read = [&](hid_t table, const std::string& name) {
       tables.push_back(read_table(table, name));
     };
-    if (exists(file, group)) {
+    if (exists(impl_->file, group)) {
       Walk walk;
-      for_each_table(open_group(file, group), "", walk, read);
+      for_each_table(open_group(impl_->file, group), "", walk, read);
     }
     return tables;
   });
 }
 
-std::vector<std::string> table_names(const std::string& path) {
-  return naming_file(path, [&] {
-    const Hdf5Handle file = open_verified(path);
+std::vector<std::string> ResultsFile::table_names() const {
+  return naming_file(path(), [&] {
     std::vector<std::string> names;
     const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
     Walk walk;
     for (const std::string group : derived_groups)
-      if (exists(file, group)) for_each_table(open_group(file, group), group, walk, name);
+      if (exists(impl_->file, group))
+        for_each_table(open_group(impl_->file, group), group, walk, name);
     std::ranges::sort(names);
     return names;
   });
+}
+
+std::vector<Table> read_tables(const std::string& path, const std::string& group) {
+  return ResultsFile(path).tables(group);
+}
+
+std::vector<std::string> table_names(const std::string& path) {
+  return ResultsFile(path).table_names();
 }
 
 }  // namespace jostle

@@ -13,6 +13,12 @@ namespace jostle {
 
 inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"};
 
+/// Tables that belong into one of the groups.
+struct TableGroup {
+  std::string name;
+  std::vector<Table> tables;
+};
+
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
 /// replaced, others stay. Every table tells who made it: attributes version, git_revision,
@@ -20,6 +26,10 @@ inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"
 /// Throws ResultsError, also where another process holds the file's lock, and
 /// std::invalid_argument for a quantity whose number of values its axes do not give.
 void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                  const Provenance& provenance);
+
+/// The same for several groups, in one replacement of the file.
+void store_tables(const std::string& path, std::span<const TableGroup> groups,
                   const Provenance& provenance);
 
 /// The tables of a group, in the order of their names; none where there is no such group. Throws

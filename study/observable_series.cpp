@@ -9,7 +9,7 @@
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "ensemble/moments.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
 
@@ -38,14 +38,14 @@ Column label_named(const ResultsFile& file, std::uint32_t point, const std::stri
   for (const Column& label : labels) names.push_back(label.name);
   const std::string others = points_with(file, observable);
   if (others.empty()) {
-    throw BadInput(fmt::format("--observable {}: there is none; {} has {}.{}", observable,
-                               file.path(), joined(names, ", "), did_you_mean(observable, names)));
+    throw BadArgument(Argument::observable, observable,
+                      fmt::format("there is none; {} has {}.{}", file.path(), joined(names, ", "),
+                                  did_you_mean(observable, names)));
   }
-  throw BadInput(
-      fmt::format("--observable {}: there is none at sweep point {}, which has {}. It is at {}: "
-                  "choose one with "
-                  "--sweep-point",
-                  observable, point, joined(names, ", "), others));
+  throw BadArgument(Argument::observable, observable,
+                    fmt::format("there is none at sweep point {}, which has {}. It is at {}", point,
+                                joined(names, ", "), others),
+                    Argument::sweep_point);
 }
 
 }  // namespace

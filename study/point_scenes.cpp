@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <cassert>
 
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
+namespace {
 
-PointScenes::PointScenes(const ResultsFile& file) {
-  const ParsedScene parsed = parse_scene(file.study().resolved_scene);
+Scene scene_of(const ResultsFile& file) {
+  ParsedScene parsed = parse_scene(file.study().resolved_scene);
   if (!parsed.scene) throw BadInput(file.path() + ": its scene is not one that this version reads");
-  resolved_ = resolved(*parsed.scene);
-  axes_ = parsed.scene->sweep;
-  points_ = sweep_points(axes_);
+  return std::move(*parsed.scene);
 }
 
+}  // namespace
+
+PointScenes::PointScenes(const ResultsFile& file)
+    : scene_(scene_of(file)), resolved_(resolved(scene_)), points_(sweep_points(scene_.sweep)) {}
+
 bool PointScenes::vary_together(const std::string& a, const std::string& b) const {
-  return std::ranges::any_of(axes_, [&](const SweepAxis& axis) {
+  return std::ranges::any_of(scene_.sweep, [&](const SweepAxis& axis) {
     const auto holds = [&](const std::string& pointer) {
       return std::ranges::any_of(axis.columns,
                                  [&](const auto& column) { return column.first == pointer; });
@@ -25,11 +29,22 @@ bool PointScenes::vary_together(const std::string& a, const std::string& b) cons
   });
 }
 
-Scene PointScenes::at(std::uint32_t point) const {
+const Scene& PointScenes::at(std::uint32_t point) const {
+  const auto known = read_.find(point);
+  if (known != read_.end()) return known->second;
   std::vector<Fault> faults;
   Scene scene = scene_at(resolved_, points_.at(point), faults);
   assert(faults.empty());
-  return scene;
+  return read_.emplace(point, std::move(scene)).first->second;
+}
+
+std::optional<Json> PointScenes::value_at(std::uint32_t point, const std::string& pointer) const {
+  for (const auto& [swept, value] : points_.at(point).values) {
+    if (swept == pointer) return value;
+  }
+  const Json scene = resolved(at(point));
+  const Json* const value = scene.find_pointer(pointer);
+  return value != nullptr ? std::optional(*value) : std::nullopt;
 }
 
 }  // namespace jostle

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,21 +11,28 @@
 
 namespace jostle {
 
-/// The scenes of a results file's sweep points, from the scene that the file keeps.
+/// The scene that a results file keeps, read once, and those of its sweep points, each read when it
+/// is first asked for.
 class PointScenes {
  public:
   /// Throws BadInput for a scene that this version does not read.
   explicit PointScenes(const ResultsFile& file);
 
+  /// With its sweep.
+  const Scene& scene() const { return scene_; }
   /// Without a sweep.
-  Scene at(std::uint32_t point) const;
+  const Scene& at(std::uint32_t point) const;
+  /// The value that a JSON pointer leads to in the scene of a point; nothing where it leads
+  /// nowhere.
+  std::optional<Json> value_at(std::uint32_t point, const std::string& pointer) const;
   /// Whether two pointers are swept together, zipped: where one is known, so is the other.
   bool vary_together(const std::string& a, const std::string& b) const;
 
  private:
+  Scene scene_;
   Json resolved_;
-  std::vector<SweepAxis> axes_;
   std::vector<SweepPoint> points_;
+  mutable std::map<std::uint32_t, Scene> read_;  // one thread at a time
 };
 
 }  // namespace jostle

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <fstream>
 
-#include "cli/terminal/version.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
+#include "study/version.hpp"
 
 namespace jostle {
 namespace {

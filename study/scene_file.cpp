@@ -135,17 +135,6 @@ LoadedScene load_derived(const Scene& scene, const std::string& path) {
   return load_text(resolved(scene).dump(2), path);
 }
 
-Json stored_scene(const ResultsFile& file) {
-  std::vector<Fault> faults;
-  auto scene = read_json(file.study().resolved_scene, faults);
-  if (!scene || !scene->is_object()) {
-    throw ResultsError(file.path(),
-                       "its scene (/scene/resolved) is not a JSON object: jostle did not write it "
-                       "so; restore the file from a copy");
-  }
-  return std::move(*scene);
-}
-
 Study study_of(const LoadedScene& loaded) {
   return make_study(loaded.plans, loaded.text, loaded.resolved, loaded.scene.realizations);
 }

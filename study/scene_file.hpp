@@ -1,20 +1,13 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "config/json/json.hpp"
 #include "config/scene.hpp"
 #include "results/results_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
-
-/// A scene or a command line that cannot be run; what() says what, why and what to do. Exit code 2.
-class BadInput : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// A scene file, read, with all that is needed to run it.
 struct LoadedScene {
@@ -31,10 +24,7 @@ LoadedScene load_scene(const std::string& path);
 /// A scene made of that in `path`: it starts from the same packings. Throws BadInput likewise.
 LoadedScene load_derived(const Scene& scene, const std::string& path);
 
-/// The scene that a results file was made from, every default written out. Throws ResultsError
-/// where what is stored is none.
-Json stored_scene(const ResultsFile& file);
-
+/// What its results file will hold.
 Study study_of(const LoadedScene& loaded);
 
 /// "pointer: message", one fault a line.

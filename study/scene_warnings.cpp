@@ -7,7 +7,7 @@
 #include <numbers>
 #include <variant>
 
-#include "cli/terminal/text_table.hpp"
+#include "study/amounts.hpp"
 
 namespace jostle {
 namespace {

@@ -194,10 +194,7 @@ std::string read_back(const std::string& folder) {
 }  // namespace
 
 std::vector<SelfCheck> self_checks(const std::string& folder) {
-  const std::string wrong_numbers =
-      "this build on this machine computes wrongly: trust no result of it. Build again without "
-      "compiler flags of your own, try another machine, and report this line with `jostle "
-      "--version`";
+  using enum SelfCheck::Finds;
   std::vector<SelfCheck> checks;
   for (const InstructionSet set :
        {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
@@ -208,9 +205,7 @@ std::vector<SelfCheck> self_checks(const std::string& folder) {
   checks.push_back({"overlaps", look_for_overlaps, wrong_numbers});
   checks.push_back({"fit", fit_certified_set, wrong_numbers});
   checks.push_back({"threads", [folder] { return compare_threads(folder); }, wrong_numbers});
-  checks.push_back({"results file", [folder] { return read_back(folder); },
-                    "look at the disk and its quota, or name another folder with --folder: runs "
-                    "that write there would lose data"});
+  checks.push_back({"results file", [folder] { return read_back(folder); }, bad_disk});
   return checks;
 }
 

@@ -8,17 +8,15 @@
 #include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/results_input.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/table_output.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
 #include "study/tables/analyse.hpp"
-#include "study/tables/fit_source.hpp"
 #include "study/tables/sweep.hpp"
 
 namespace jostle {
@@ -127,7 +125,7 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
     {
-      const ResultsFile file = open_results(input, arguments.live);
+      const ResultsFile file = open_to_read(input, arguments.live);
       tables = analyse(file, chosen_points(file.study(), arguments.point), analyses, threads);
     }
     output.show(tables, input);
@@ -135,17 +133,6 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
       keep_tables(input, "analysis", tables, by);
   }
   return output.end(by);
-}
-
-/// Copies of a file hold the same run.
-void require_different_runs(const std::vector<ResultsFile>& files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (files[i].run_id() != files[j].run_id()) continue;
-      throw BadInput(fmt::format("{} and {} hold the same run, which counts once", files[j].path(),
-                                 files[i].path()));
-    }
-  }
 }
 
 /// All files together; stored where they are one.
@@ -160,7 +147,7 @@ int run_sweep(const AnalyseArguments& arguments) {
   {
     std::vector<ResultsFile> files;
     for (const std::string& input : arguments.inputs)
-      files.push_back(open_results(input, arguments.live));
+      files.push_back(open_to_read(input, arguments.live));
     require_different_runs(files);
     std::vector<const ResultsFile*> all;
     for (const ResultsFile& file : files) all.push_back(&file);

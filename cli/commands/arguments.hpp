@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "study/tables/fit_source.hpp"
+
 // What values options take, with messages of their own: the parser's wrap negative numbers and
 // print ranges in 309 digits.
 namespace jostle {
@@ -16,6 +18,9 @@ CLI::Validator positive_number();
 
 /// A file's name: neither empty nor "-", which stands for no stream here.
 CLI::Validator file_to_write();
+
+/// "1:4000", ":4000", "1:". Throws BadInput naming the option.
+FitRange read_range(const std::string& option, const std::string& text);
 
 /// Has every option that holds unsigned numbers, of all commands, refuse negative ones.
 void refuse_negative_counts(CLI::App& app);

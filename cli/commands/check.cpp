@@ -13,6 +13,7 @@
 #include "cli/terminal/text_table.hpp"
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/cost/pilot.hpp"
 #include "study/scene_file.hpp"

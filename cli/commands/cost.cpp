@@ -1,38 +1,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/cost_report.hpp"
+#include "cli/terminal/durations.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/progress_display.hpp"
-#include "cli/terminal/results_input.hpp"
+#include "cli/terminal/run_display.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "cli/terminal/table_output.hpp"
-#include "config/grids.hpp"
-#include "config/json/json_text.hpp"
-#include "config/json/suggestion.hpp"
-#include "config/sweep.hpp"
-#include "ensemble/run.hpp"
-#include "results/live_run.hpp"
-#include "results/run_store.hpp"
 #include "study/available_cpus.hpp"
-#include "study/cost/rounds.hpp"
+#include "study/cost/cost_run.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
-#include "study/tables/fit_source.hpp"
 
 namespace jostle {
 namespace {
 
-constexpr std::uint32_t fewest_rounds = 2;  // an error needs two
 constexpr std::uint64_t default_taps = 10;
 
 struct CostArguments {
@@ -45,60 +35,6 @@ struct CostArguments {
   bool resume = false, force = false, no_progress = false;
 };
 
-/// The scene at the chosen point of its sweep.
-Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
-  const std::uint32_t point = wanted.empty() ? 0 : chosen_points(study_of(loaded), wanted).front();
-  std::vector<Fault> faults;
-  Scene scene =
-      scene_at(resolved(loaded.scene), sweep_points(loaded.scene.sweep).at(point), faults);
-  if (total_taps(scene.protocol) == 0) {
-    throw BadInput("/protocol: there is no tap whose relaxation could cost anything");
-  }
-  if (scene.observables.empty()) throw BadInput("/observe: there is nothing to be accurate in");
-  if (std::holds_alternative<FullyPeriodicBox>(scene.container)) {
-    throw BadInput("/container: a fluid without gravity does not relax, so nothing is incomplete");
-  }
-  return scene;
-}
-
-std::string observable_name(const Scene& scene, const std::string& wanted) {
-  std::string found;
-  std::vector<std::string> names;
-  for (const Observable& observable : scene.observables) {
-    const std::string name = label(observable).name;
-    names.push_back(name);
-    if (name == (wanted.empty() ? "bottom_fraction" : wanted)) found = name;
-  }
-  if (!found.empty()) return found;
-  if (wanted.empty()) return label(scene.observables.front()).name;
-  throw BadInput(fmt::format("--observable {}: the scene observes {}.{}", wanted,
-                             joined(names, ", "), did_you_mean(wanted, names)));
-}
-
-std::unique_ptr<RunStore> open_store(const CostArguments& arguments, const LoadedScene& pilot,
-                                     Study& study, const std::string& output,
-                                     const Provenance& by) {
-  const bool exists = std::filesystem::exists(output);
-  if (!exists || (arguments.force && !arguments.resume)) {
-    require_results_or_empty(output);
-    return RunStore::create(output, study, Shard{}, by, arguments.force);
-  }
-  if (!arguments.resume) {
-    throw BadInput(
-        fmt::format("{} exists and is kept. Go on with it with --resume, write elsewhere with -o "
-                    "FILE, or replace it with --force.",
-                    output));
-  }
-  const ResultsFile file(output);
-  const auto faults = resume_faults(stored_scene(file), Json::parse(pilot.resolved));
-  if (!faults.empty()) {
-    throw BadInput(
-        fmt::format("{} holds the pilot of another scene:\n{}", output, fault_lines(faults)));
-  }
-  study.realizations = std::max(study.realizations, file.study().realizations);
-  return RunStore::resume(output, study, Shard{}, by);
-}
-
 /// Nothing that is written may replace what is read, nor one another.
 void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
                      const std::string& output) {
@@ -110,74 +46,6 @@ void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
   if (!arguments.csv.empty()) taken.push_back(arguments.csv);
   require_text_output("--figure", arguments.figure, taken, arguments.force);
 }
-
-/// Runs whole rounds: one realization of every rung. The longest first, so that threads end
-/// together.
-class Rounds {
- public:
-  Rounds(const CostArguments& arguments, const LoadedScene& pilot, const Study& study,
-         RunStore& store, const std::string& output, std::size_t longest)
-      : arguments_(arguments),
-        pilot_(pilot),
-        study_(study),
-        store_(store),
-        output_(output),
-        longest_(longest),
-        worked_before_(run_status(output).realizations) {}
-
-  /// Whether they were completed, not stopped. None is added where all so far failed.
-  bool run(int threads) {
-    while (complete(threads)) {
-      const std::uint32_t wanted =
-          arguments_.rounds > 0 ? arguments_.rounds : affordable(study_.realizations);
-      if (wanted <= study_.realizations || (failed_ > 0 && computed_ == 0)) return true;
-      study_.realizations = wanted;
-      store_.extend(wanted);
-    }
-    return false;
-  }
-  std::string stopped_by() const { return stop_.reason(); }
-
- private:
-  std::uint32_t affordable(std::uint32_t done) const {
-    const Seconds spent = std::chrono::steady_clock::now() - began_;
-    return affordable_rounds(done, arguments_.budget, spent,
-                             rounds_done(worked_before_, ResultsFile(output_).realizations()));
-  }
-
-  bool complete(int threads) {
-    std::vector<RealizationId> pending = store_.pending();
-    std::ranges::stable_sort(pending, [&](RealizationId a, RealizationId b) {
-      return (a.point == longest_) > (b.point == longest_);
-    });
-    WorkAhead ahead{.realizations = pending.size() + progress_.realizations_done,
-                    .taps = progress_.taps_done};
-    for (const RealizationId& id : pending) ahead.taps += study_.points[id.point].taps;
-    RunSummary summary;
-    {
-      const ProgressDisplay display(
-          progress_, ahead, arguments_.no_progress ? ProgressStyle::none : ProgressStyle::plain);
-      summary = run_ensemble(pilot_.plans, pending, {.threads = threads, .stop = &stop_.flag()},
-                             store_, progress_);
-    }
-    store_.finish();
-    computed_ += summary.done;
-    failed_ += summary.failed;
-    return summary.done + summary.failed == pending.size();
-  }
-
-  const CostArguments& arguments_;
-  const LoadedScene& pilot_;
-  Study study_;
-  RunStore& store_;
-  std::string output_;
-  std::size_t longest_;
-  std::vector<RealizationSummary> worked_before_;  // by earlier processes
-  StopRequest stop_;
-  Progress progress_;
-  std::uint64_t computed_ = 0, failed_ = 0;  // realizations
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
 
 void write_reports(const CostArguments& arguments, const CostStudy& study, const Scene& scene,
                    const std::string& output, const std::string& observable, const Provenance& by) {
@@ -202,36 +70,46 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
   keep_tables(output, "analysis", tables, by);
 }
 
+RunSettings settings_of(const CostArguments& arguments, const std::string& output, int threads,
+                        const StopRequest& stop) {
+  RunSettings settings{.output = output, .threads = threads, .stop = &stop.flag()};
+  if (arguments.resume) {
+    settings.existing = Existing::resume;
+  } else if (arguments.force) {
+    settings.existing = Existing::replace;
+    require_results_or_empty(output);
+  }
+  return settings;
+}
+
 int run_cost(const CostArguments& arguments) {
   outlive_readers();
   const LoadedScene loaded = load_scene(arguments.scene);
-  const Scene scene = scene_at_point(loaded, arguments.point);
-  const std::string observable = observable_name(scene, arguments.observable);
-  const std::uint64_t taps = total_taps(scene.protocol);
-  const std::vector<Rung> rungs = ladder(scene);
-  Scene pilot_scene = ladder_scene(
-      scene, rungs, std::min(taps, arguments.taps > 0 ? arguments.taps : default_taps));
-  const LoadedScene pilot = load_derived(pilot_scene, arguments.scene);
+  CostPilot pilot = make_cost_pilot(loaded, arguments.scene, arguments.point,
+                                    arguments.taps > 0 ? arguments.taps : default_taps);
+  const std::string observable = cost_observable(pilot.scene, arguments.observable);
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
-  const Provenance by = provenance_of_this_run(fmt::to_string(threads));
-  const std::string output = arguments.output.empty() ? pilot.scene.name + ".h5" : arguments.output;
-  require_outputs(arguments, pilot, output);
-  Study study = study_of(pilot);
-  study.realizations = fewest_rounds;
-  if (arguments.rounds > 0) study.realizations = std::min(study.realizations, arguments.rounds);
+  const std::string output =
+      arguments.output.empty() ? pilot.pilot.scene.name + ".h5" : arguments.output;
+  require_outputs(arguments, pilot.pilot, output);
   try {
-    auto store = open_store(arguments, pilot, study, output, by);
-    Rounds rounds(arguments, pilot, study, *store, output, most_complete(rungs).last);
-    if (!rounds.run(threads)) {
-      print_to_standard_error(fmt::format("jostle: stopped by {}; --resume goes on with {}\n",
-                                          rounds.stopped_by(), output));
+    const StopRequest stop;
+    RunDisplay display(arguments.no_progress ? ProgressStyle::none : ProgressStyle::plain, "",
+                       threads, false);
+    CostRun run(pilot, {arguments.budget, arguments.rounds},
+                settings_of(arguments, output, threads, stop), display);
+    if (!run.run()) {
+      print_to_standard_error(
+          fmt::format("jostle: stopped by {}; --resume goes on with {}\n", stop.reason(), output));
       return exit_stopped;
     }
-    store.reset();
-    std::optional<CostStudy> found;
-    found.emplace(ResultsFile(output), rungs, other_windows(scene), taps);
-    write_reports(arguments, *found, scene, output, observable, by);
-    if (!found->failed().empty()) return exit_failed_realizations;
+    const CostStudy found = run.study();
+    write_reports(arguments, found, pilot.scene, output, observable,
+                  provenance_of_this_run(fmt::to_string(threads)));
+    return found.failed().empty() ? exit_ok : exit_failed_realizations;
+  } catch (const OtherScene& other) {
+    throw BadInput(
+        fmt::format("{} holds the pilot of another scene:\n{}", other.path(), other.differences()));
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
@@ -241,7 +119,6 @@ int run_cost(const CostArguments& arguments) {
                     failure_text(error), output));
     return exit_broken_surroundings;
   }
-  return exit_ok;
 }
 
 void add_duration(CLI::App& command, CostArguments& arguments) {

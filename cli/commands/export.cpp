@@ -8,14 +8,14 @@
 #include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/results_input.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/text_table.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/export.hpp"
 #include "results/results_file.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
 namespace {
@@ -61,7 +61,7 @@ Wanted wanted(const ExportArguments& arguments) {
   const KeptTaps taps = tap_choice(arguments.taps);
   const std::string& input = arguments.input;
   if (is_results_file(input)) {
-    const ResultsFile file = open_results(input, arguments.live);
+    const ResultsFile file = open_to_read(input, arguments.live);
     const std::uint32_t point =
         arguments.point.empty() ? 0 : chosen_points(file.study(), arguments.point).front();
     const RealizationId id{point, arguments.realization};

@@ -9,15 +9,14 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/fit_output.hpp"
 #include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/results_input.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "fitting/models/models.hpp"
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
 #include "study/tables/curve_file.hpp"
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
@@ -77,8 +76,9 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
     }
     // Tap 0 is the start: a law of taps begins with the first.
     const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
-    return results_curves(arguments.input, arguments.observable, arguments.point, range,
-                          arguments.live);
+    const ResultsFile file = open_to_read(arguments.input, arguments.live);
+    return results_curves(file, chosen_points(file.study(), arguments.point), arguments.observable,
+                          range);
   }
   if (!arguments.observable.empty() || !arguments.point.empty()) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
@@ -111,7 +111,8 @@ FitManner manner_of(const FitArguments& arguments) {
                          .threads = arguments.threads > 0 ? arguments.threads : available_cpus()}};
 }
 
-Json source_json(const FitSource& source, const std::vector<FitOutcome>& outcomes) {
+Json source_json(const FittedCurve& fitted) {
+  const auto& [source, outcomes] = fitted;
   Json object = {{"title", source.title}, {"fits", Json::array()}};
   if (source.point) {
     object["observable"] = source.observable;
@@ -140,20 +141,20 @@ int run_fits(const FitArguments& arguments) {
   std::vector<Table> tables;
   Json curves = Json::array();
   for (const FitSource& source : sources) {
-    const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
-    for (const FitOutcome& outcome : outcomes) {
+    const FittedCurve fitted{source, fit_models(models, source.curve, manner)};
+    for (const FitOutcome& outcome : fitted.outcomes) {
       any = any || std::holds_alternative<Fit>(outcome.result);
     }
     if (arguments.json) {
-      curves.push_back(source_json(source, outcomes));
+      curves.push_back(source_json(fitted));
     } else {
-      print(fits_text(source, outcomes, detail));
+      print(fits_text(fitted, detail));
     }
     if (source.point) {
-      const auto made = fit_tables(source, outcomes, manner);
+      const auto made = fit_tables(fitted, manner);
       tables.insert(tables.end(), made.begin(), made.end());
     }
-    if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, outcomes));
+    if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, fitted.outcomes));
   }
   if (arguments.json) {
     const Json object = {

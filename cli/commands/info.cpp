@@ -8,12 +8,11 @@
 #include "cli/terminal/effects.hpp"
 #include "cli/terminal/report.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/text_table.hpp"
 #include "results/error.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
-#include "results/tables.hpp"
-#include "study/scene_file.hpp"
+#include "study/amounts.hpp"
+#include "study/stored_scene.hpp"
 
 namespace jostle {
 namespace {
@@ -97,7 +96,7 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
           {"scene", stored_scene(file)},
           {"points", points},
           {"realizations", realizations},
-          {"tables", table_names(file.path())},
+          {"tables", file.table_names()},
           {"bytes", {{"file", status.file_bytes}, {"parts", status.parts_bytes}}}};
 }
 
@@ -136,7 +135,7 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
   line("seed", fmt::to_string(study.points.front().seed));
   line("size", fmt::format("{} and {} of parts", format_bytes(double(status.file_bytes)),
                            format_bytes(double(status.parts_bytes))));
-  for (const std::string& table : table_names(file.path())) line("table", "/" + table);
+  for (const std::string& table : file.table_names()) line("table", "/" + table);
   for (const auto& process : file.provenance()) {
     line("made by", fmt::format("jostle {} ({}) on {}, {}, {} thread{}", process.version,
                                 process.git_revision, process.host, process.started,

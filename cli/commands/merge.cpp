@@ -1,24 +1,21 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "config/sweep.hpp"
+#include "cli/terminal/tables_display.hpp"
 #include "ensemble/statistics/counted.hpp"
-#include "results/error.hpp"
 #include "results/merge.hpp"
 #include "study/available_cpus.hpp"
+#include "study/bad_input.hpp"
+#include "study/merge.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
 #include "study/scene_tables.hpp"
 
 namespace jostle {
@@ -40,44 +37,6 @@ void require_output(const MergeArguments& arguments) {
                     "--force.",
                     arguments.output));
   }
-}
-
-/// The study of files whose scenes differ in the values of their sweeps alone; nothing where they
-/// are shares of one run. Throws ResultsError where they differ in more.
-std::optional<Study> joined_study(const std::vector<std::string>& inputs) {
-  std::vector<ResultsFile> files;
-  for (const std::string& input : inputs) files.emplace_back(input);
-  const auto same = [&](const ResultsFile& file) {
-    return file.study().resolved_scene == files.front().study().resolved_scene;
-  };
-  if (std::ranges::all_of(files, same)) return std::nullopt;
-  Json scene = stored_scene(files.front());
-  ParsedScene joined;
-  for (const ResultsFile& file : files) {
-    joined = join_sweeps(scene, stored_scene(file));
-    if (!joined.scene) {
-      throw ResultsError(file.path(),
-                         fmt::format("cannot be merged with {}: {}", files.front().path(),
-                                     fault_lines(joined.faults)));
-    }
-    scene = resolved(*joined.scene);
-  }
-  Study study{scene.dump(2), scene.dump(2), files.front().study().realizations, {}};
-  std::unordered_map<std::uint64_t, const StudyPoint*> held;
-  for (const ResultsFile& file : files) {
-    for (const StudyPoint& point : file.study().points) held[point.id] = &point;
-  }
-  for (const SweepPoint& point : sweep_points(joined.scene->sweep)) {
-    const auto holder = held.find(point_id(point));
-    if (holder == held.end()) {
-      throw ResultsError(files.front().path(),
-                         fmt::format("cannot be merged: together the sweeps have the point {}, "
-                                     "which no file holds; run it, as a resume of one of them",
-                                     point_label(point)));
-    }
-    study.points.push_back(*holder->second);
-  }
-  return study;
 }
 
 }  // namespace
@@ -111,7 +70,8 @@ void add_merge(CLI::App& app, int& code) {
     outlive_readers();
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
-    make_scene_tables(arguments->output, available_cpus(), false);
+    TablesDisplay display(Quiet::no);
+    store_scene_tables(ResultsFile(arguments->output), available_cpus(), display);
     code = exit_ok;
   });
 }

@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <iterator>
@@ -14,21 +15,17 @@
 #include "cli/terminal/durations.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/progress_display.hpp"
 #include "cli/terminal/report.hpp"
+#include "cli/terminal/run_display.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
-#include "cli/terminal/text_table.hpp"
+#include "cli/terminal/tables_display.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/printable.hpp"
-#include "results/live_run.hpp"
-#include "results/run_store.hpp"
-#include "results/tables.hpp"
+#include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
-#include "study/enough.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
-#include "study/scene_tables.hpp"
+#include "study/run.hpp"
 #include "study/scene_warnings.hpp"
 
 namespace jostle {
@@ -67,42 +64,6 @@ Seconds duration_argument(const std::string& option, const std::string& text) {
   return *duration;
 }
 
-/// What a resume would change, named; nothing else may differ from the file's scene.
-void require_same_scene(const std::string& output, const LoadedScene& loaded, const Shard& shard) {
-  const ResultsFile file(output);
-  const auto faults = resume_faults(stored_scene(file), Json::parse(loaded.resolved));
-  if (!faults.empty()) {
-    throw BadInput(
-        fmt::format("{} was begun with another scene and cannot be resumed with this one:\n{}\n"
-                    "Undo the change, or write to another file with -o.",
-                    output, fault_lines(faults)));
-  }
-  if (file.shard() != shard) {
-    throw BadInput(fmt::format("{} holds shard {}/{}, not {}/{}: resume it with --shard {}/{}",
-                               output, file.shard().index, file.shard().count, shard.index,
-                               shard.count, file.shard().index, file.shard().count));
-  }
-}
-
-/// What a run works on once its scene is read and its file opened.
-struct OpenedRun {
-  Study study;
-  std::string output;
-  std::unique_ptr<RunStore> store;
-  std::uint64_t taps_recorded = 0;    // of pending realizations, by earlier processes
-  std::vector<std::string> tables{};  // that the file had before
-};
-
-std::uint64_t recorded_taps(const std::string& output, const std::vector<RealizationId>& pending) {
-  std::uint64_t taps = 0;
-  for (const auto& one : run_status(output).realizations) {
-    const bool counts = one.status == RealizationStatus::running &&
-                        std::ranges::find(pending, one.id) != pending.end();
-    if (counts && one.rows > 0) taps += one.rows - 1;  // row 0 is the start
-  }
-  return taps;
-}
-
 /// Where results go. A link is followed: what it names is replaced, not the link.
 std::string output_path(const RunArguments& arguments, const LoadedScene& loaded) {
   const std::string output =
@@ -113,38 +74,21 @@ std::string output_path(const RunArguments& arguments, const LoadedScene& loaded
   return (link.parent_path() / std::filesystem::read_symlink(link)).string();
 }
 
-OpenedRun open_run(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
-  OpenedRun run{
-      .study = study_of(loaded), .output = output_path(arguments, loaded), .store = nullptr};
-  require_not_read("-o", run.output, loaded.files);
-  const bool exists = std::filesystem::exists(run.output);
-  const Provenance provenance = provenance_of_this_run(fmt::to_string(threads));
-  if (exists && (arguments.resume || arguments.retry_failed)) {
-    require_same_scene(run.output, loaded, arguments.shard);
-    run.study.realizations =
-        std::max(run.study.realizations, ResultsFile(run.output).study().realizations);
-    run.tables = table_names(run.output);
-    run.store =
-        RunStore::resume(run.output, run.study, arguments.shard, provenance, arguments.force);
-    run.taps_recorded = recorded_taps(run.output, run.store->pending(arguments.retry_failed));
-    return run;
+RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
+  RunSettings settings{.output = output_path(arguments, loaded),
+                       .take_over = arguments.force,
+                       .retry_failed = arguments.retry_failed,
+                       .shard = arguments.shard,
+                       .threads = threads,
+                       .checkpoint_every = arguments.checkpoint_every};
+  require_not_read("-o", settings.output, loaded.files);
+  if (arguments.resume || arguments.retry_failed) {
+    settings.existing = Existing::resume;
+  } else if (arguments.force) {
+    settings.existing = Existing::replace;
+    require_results_or_empty(settings.output);
   }
-  if (exists && !arguments.force) {
-    throw BadInput(
-        fmt::format("{} exists and is kept. Go on with it with --resume, write elsewhere with -o "
-                    "FILE, or replace it with --force.",
-                    run.output));
-  }
-  require_results_or_empty(run.output);
-  run.store = RunStore::create(run.output, run.study, arguments.shard, provenance, arguments.force);
-  return run;
-}
-
-WorkAhead work_ahead(const OpenedRun& run, const std::vector<RealizationId>& pending) {
-  WorkAhead ahead{.realizations = pending.size()};
-  for (const auto& id : pending) ahead.taps += run.study.points[id.point].taps;
-  ahead.taps -= std::min(ahead.taps, run.taps_recorded);
-  return ahead;
+  return settings;
 }
 
 /// This command again, as it goes on after a stop.
@@ -174,97 +118,48 @@ ProgressStyle progress_style(const RunArguments& arguments) {
   return isatty(STDERR_FILENO) != 0 ? ProgressStyle::live : ProgressStyle::plain;
 }
 
-int exit_code_of(const ResultsFile& file) {
-  for (const auto& one : file.realizations()) {
-    if (one.status == RealizationStatus::failed) return exit_failed_realizations;
-  }
-  return exit_ok;
-}
-
-/// What a process does from opening its file to its last realization.
-struct ProcessWork {
-  explicit ProcessWork(StopRequest& request) : stop(request) {}
-
-  StopRequest& stop;
-  Progress progress;
-  int rounds = 0;
-  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
-};
-
-/// Runs what is pending and folds it into the file. Returns whether it was stopped before the end.
-bool compute(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run, int threads,
-             ProcessWork& work) {
-  // Those that failed are tried once, before others are added.
-  const bool retry_failed = arguments.retry_failed && work.rounds++ == 0;
-  const auto pending = run.store->pending(retry_failed);
-  RunSummary summary;
-  spdlog::info("{}: {} of {} to do on {}", printable(run.output), pending.size(),
-               counted(loaded.plans.size() * run.study.realizations, "realization"),
-               counted(static_cast<std::uint64_t>(threads), "thread"));
-  {
-    WorkAhead ahead = work_ahead(run, pending);
-    ahead.realizations += work.progress.realizations_done;
-    ahead.taps += work.progress.taps_done;
-    const ProgressDisplay display(work.progress, ahead, progress_style(arguments));
-    summary = run_ensemble(loaded.plans, pending,
-                           {.threads = threads,
-                            .checkpoint_every = arguments.checkpoint_every,
-                            .stop = &work.stop.flag()},
-                           *run.store, work.progress);
-  }
-  StoringDisplay storing(progress_style(arguments));
-  run.store->finish([&](std::uint64_t done, std::uint64_t of) { storing.show(done, of); });
-  return summary.done + summary.failed < pending.size();
-}
-
-/// Runs realizations, and more of them until the scene says that they are enough. Returns whether
-/// it was stopped before the end.
-bool compute_enough(const RunArguments& arguments, const LoadedScene& loaded, OpenedRun& run,
-                    int threads, ProcessWork& work) {
-  const Enough& until = loaded.scene.until;
-  while (!compute(arguments, loaded, run, threads, work)) {
-    if (until.targets.empty()) return false;
-    const EnoughStatus status = enough_status(ResultsFile(run.output), until);
-    if (!arguments.quiet) print(enough_line(status));
-    if (status.next == status.realizations) return false;
-    run.study.realizations = status.next;
-    run.taps_recorded = 0;
-    run.store->extend(status.next);
-  }
-  return true;
-}
-
-void print_results(const OpenedRun& run, const ProcessWork& work, int threads) {
-  const ResultsFile file(run.output);
-  const std::string text =
-      report(file) +
-      process_line(work.progress, std::chrono::steady_clock::now() - work.began, threads);
-  print(text);
-}
-
 /// Derived tables do not outlive the data they were made of: names those that are gone.
-void say_which_tables_are_gone(const OpenedRun& run) {
+void say_which_tables_are_gone(const std::vector<std::string>& before,
+                               std::vector<std::string> after, const std::string& output) {
+  std::ranges::sort(after);
   std::vector<std::string> gone;
-  std::ranges::set_difference(run.tables, table_names(run.output), std::back_inserter(gone));
+  std::ranges::set_difference(before, after, std::back_inserter(gone));
   if (gone.empty()) return;
   std::string lines;
   for (const std::string& name : gone) lines.append("\n  ").append(name);
   print_to_standard_error(
       fmt::format("jostle: these tables were made of the data before this run, and are no longer "
                   "in {}; make them again where they are wanted:{}\n",
-                  run.output, lines));
+                  output, lines));
 }
 
-/// What a complete run ends with.
-void make_tables(const RunArguments& arguments, const LoadedScene& loaded,
-                 const std::string& output, int threads) {
-  if (arguments.shard.count > 1) return;
-  if (!loaded.scene.until.targets.empty()) {
-    const Table table = enough_status(ResultsFile(output), loaded.scene.until).table;
-    store_tables(output, "analysis", std::span(&table, 1),
-                 provenance_of_this_run(fmt::to_string(threads)));
+/// From the first realization to the last table. Returns the exit code.
+int carry_out(const RunArguments& arguments, SceneRun& run, const RunSettings& settings,
+              const StopRequest& stop) {
+  const auto began = std::chrono::steady_clock::now();
+  const bool stopped = !run.compute_until_enough();
+  if (!arguments.quiet) {
+    print(report(run.results()) +
+          process_line(run.progress(), std::chrono::steady_clock::now() - began, settings.threads));
   }
-  make_scene_tables(output, threads, arguments.quiet);
+  if (stopped) {
+    say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);
+    print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
+                                        resume_command(arguments)));
+    return exit_stopped;
+  }
+  const std::vector<std::string> before = run.tables_before();
+  const ResultsFile file = run.close();
+  std::vector<std::string> tables = file.table_names();
+  if (settings.shard.count == 1) {
+    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no);
+    const auto made = store_scene_tables(file, settings.threads, display);
+    tables.insert(tables.end(), made.begin(), made.end());
+  }
+  say_which_tables_are_gone(before, tables, settings.output);
+  const std::string failures = failure_lines(file);
+  if (arguments.quiet) print_to_standard_error(failures);
+  return failures.empty() ? exit_ok : exit_failed_realizations;
 }
 
 int run(const RunArguments& arguments) {
@@ -275,30 +170,16 @@ int run(const RunArguments& arguments) {
     spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
   }
   const LoadedScene loaded = load_scene(arguments.scene);
-  if (!loaded.scene.until.targets.empty() && arguments.shard.count > 1) {
-    throw BadInput(
-        "--shard: this scene runs until its realizations are enough (\"until\"), which a share of "
-        "them cannot tell. Run it whole, or take \"until\" out, run shares, merge them and resume "
-        "the merged file with \"until\".");
-  }
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
-  OpenedRun run = open_run(arguments, loaded, threads);
+  RunSettings settings = settings_of(arguments, loaded, threads);
+  settings.stop = &stop.flag();
+  RunDisplay display(progress_style(arguments), settings.output, threads, !arguments.quiet);
+  SceneRun run(loaded, settings, display);
   for (const std::string& warning : scene_warnings(loaded))
     spdlog::info("warning: {}", printable(warning));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
-    ProcessWork work(stop);
-    const bool stopped = compute_enough(arguments, loaded, run, threads, work);
-    if (!arguments.quiet) print_results(run, work, threads);
-    if (stopped) {
-      say_which_tables_are_gone(run);
-      print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n",
-                                          work.stop.reason(), resume_command(arguments)));
-      return exit_stopped;
-    }
-    run.store.reset();  // gives the lock back
-    make_tables(arguments, loaded, run.output, threads);
-    say_which_tables_are_gone(run);
+    return carry_out(arguments, run, settings, stop);
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
@@ -308,9 +189,6 @@ int run(const RunArguments& arguments) {
                     failure_text(error), resume_command(arguments)));
     return exit_broken_surroundings;
   }
-  const ResultsFile file(run.output);
-  if (arguments.quiet) print_to_standard_error(failure_lines(file));
-  return exit_code_of(file);
 }
 
 void add_options(CLI::App& command, RunArguments& arguments) {

@@ -8,7 +8,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 #include "study/self_checks.hpp"
 
 namespace jostle {
@@ -37,6 +37,19 @@ class ScratchFolder {
   std::string path_;
 };
 
+const char* remedy(SelfCheck::Finds finds) {
+  switch (finds) {
+    case SelfCheck::Finds::wrong_numbers:
+      return "this build on this machine computes wrongly: trust no result of it. Build again "
+             "without compiler flags of your own, try another machine, and report this line with "
+             "`jostle --version`";
+    case SelfCheck::Finds::bad_disk:
+      return "look at the disk and its quota, or name another folder with --folder: runs that "
+             "write there would lose data";
+  }
+  return "";
+}
+
 /// Returns whether the check passed.
 bool print_check(const SelfCheck& check) {
   try {
@@ -44,7 +57,7 @@ bool print_check(const SelfCheck& check) {
     print(fmt::format("ok      {}: {}\n", check.name, found));
     return true;
   } catch (const std::exception& failure) {
-    print(fmt::format("FAILED  {}: {}; {}\n", check.name, failure.what(), check.remedy));
+    print(fmt::format("FAILED  {}: {}; {}\n", check.name, failure.what(), remedy(check.finds)));
     return false;
   }
 }

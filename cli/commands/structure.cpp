@@ -6,8 +6,8 @@
 #include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/results_input.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/table_output.hpp"
 #include "config/json/json_text.hpp"
@@ -120,7 +120,7 @@ int measure_structure(const StructureArguments& arguments) {
   require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {
-    const ResultsFile file = open_results(arguments.inputs.front(), arguments.live);
+    const ResultsFile file = open_to_read(arguments.inputs.front(), arguments.live);
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
                           wanted(arguments, structure_asked_for(file)), arguments.taps, threads);
   } else {

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace jostle {
+#include "study/seconds.hpp"
 
-using Seconds = std::chrono::duration<double>;
+namespace jostle {
 
 /// "90", "90s", "1.5h", "1h30m", "2d": numbers with the units ms, s, m, h, d, summed; without a
 /// unit, seconds. Nothing for anything else, negative numbers included.

@@ -6,6 +6,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "study/results_input.hpp"
+#include "study/run.hpp"
+
 namespace jostle {
 namespace {
 
@@ -15,9 +18,65 @@ bool is_want_of_threads(const std::exception& error) {
   return std::string_view(error.what()).starts_with("pthread_create");  // TBB's, without a code
 }
 
+const char* option(Argument argument) {
+  switch (argument) {
+    case Argument::observable:
+      return "--observable";
+    case Argument::sweep_point:
+      return "--sweep-point";
+    case Argument::shard:
+      return "--shard";
+  }
+  return "";
+}
+
+std::string text_of(const BadArgument& error) {
+  std::string text = option(error.argument());
+  if (!error.value().empty()) text += " " + error.value();
+  text += ": " + error.reason();
+  if (error.remedy()) text += fmt::format(": choose one with {}", option(*error.remedy()));
+  return text;
+}
+
+std::string text_of(const NoTapsYet& error) {
+  return fmt::format(
+      "{}{}. Finish it with jostle run SCENE --resume; jostle info {} says how far it is.",
+      error.what(), error.live() == Live::no ? "; --live reads its checkpoints" : "", error.path());
+}
+
+std::string text_of(const OutputExists& error) {
+  return fmt::format(
+      "{}. Go on with it with --resume, write elsewhere with -o FILE, or replace it "
+      "with --force.",
+      error.what());
+}
+
+std::string text_of(const OtherScene& error) {
+  return fmt::format("{}\nUndo the change, or write to another file with -o.", error.what());
+}
+
+std::string text_of(const OtherShard& error) {
+  return fmt::format("{}: resume it with --shard {}/{}", error.what(), error.stored().index,
+                     error.stored().count);
+}
+
+/// Nothing for an error of another kind.
+template <class Error>
+bool tell(const std::exception& error, std::string& text) {
+  const auto* const found = dynamic_cast<const Error*>(&error);
+  if (found != nullptr) text = text_of(*found);
+  return found != nullptr;
+}
+
 }  // namespace
 
 std::string failure_text(const std::exception& error) {
+  std::string text;
+  if (tell<BadArgument>(error, text) || tell<NoTapsYet>(error, text) ||
+      tell<OutputExists>(error, text) || tell<OtherScene>(error, text) ||
+      tell<OtherShard>(error, text)) {
+    return text;
+  }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return "out of memory; raise the limit (ulimit -v, a job's memory), use fewer --threads, or "
            "keep fewer snapshots";

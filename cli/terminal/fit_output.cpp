@@ -153,6 +153,19 @@ std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
   return text;
 }
 
+std::string fits_text(const FittedCurve& fitted, ReportDetail detail) {
+  std::string text = fitted.source.title + "\n";
+  std::vector<Fit> fits;
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    text += '\n';
+    text += fit_text(outcome, detail);
+    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+  }
+  if (fits.size() > 1) text.append("\n").append(compare(fits));
+  text += '\n';
+  return text;
+}
+
 std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes) {
   std::string text = curve.sigma.empty() ? "t,X" : "t,X,sigma";
   std::vector<const Fit*> fits;

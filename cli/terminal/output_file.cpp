@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "cli/terminal/results_input.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
+#include "study/results_input.hpp"
 
 namespace jostle {
 namespace {

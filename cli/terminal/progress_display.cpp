@@ -7,6 +7,7 @@
 #include "cli/terminal/durations.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/text_table.hpp"
+#include "study/amounts.hpp"
 
 namespace jostle {
 namespace {

@@ -8,19 +8,13 @@
 #include <string>
 #include <thread>
 
-#include "ensemble/run.hpp"
+#include "study/run.hpp"
 
 namespace jostle {
 
 /// How progress is shown on stderr: a line rewritten in place, a plain line every half minute, or
 /// not at all.
 enum class ProgressStyle { live, plain, none };
-
-/// What lies ahead when the run begins.
-struct WorkAhead {
-  std::uint64_t realizations = 0;
-  std::uint64_t taps = 0;  // of all of them, without the starts
-};
 
 /// Shows a run's progress from its own thread while it lives.
 class ProgressDisplay {

@@ -10,6 +10,7 @@
 #include "cli/terminal/durations.hpp"
 #include "cli/terminal/text_table.hpp"
 #include "ensemble/moments.hpp"
+#include "study/amounts.hpp"
 
 namespace jostle {
 namespace {

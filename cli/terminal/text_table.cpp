@@ -8,19 +8,6 @@
 #include <fmt/format.h>
 
 namespace jostle {
-namespace {
-
-std::string scaled(double number, double base, std::initializer_list<const char*> units) {
-  auto unit = units.begin();
-  while (std::abs(number) >= base && unit + 1 != units.end()) {
-    number /= base;
-    ++unit;
-  }
-  if (unit == units.begin()) return fmt::format("{:.0f}{}", number, *unit);
-  return fmt::format("{:.1f}{}", number, *unit);
-}
-
-}  // namespace
 
 TextTable::TextTable(std::vector<std::string> headers) {
   rows_.push_back(std::move(headers));
@@ -74,14 +61,6 @@ std::string value_and_error(double value, double error, double scale) {
   const int shown = std::clamp(decimals + power, 0, most_digits);
   return fmt::format("({:.{}f} +- {:.{}f})e{:+03}", value / unit, shown, error / unit, shown,
                      power);
-}
-
-std::string format_count(double count) {
-  return scaled(count, 1000, {"", " k", " M", " G", " T"});
-}
-
-std::string format_bytes(double bytes) {
-  return scaled(bytes, 1024, {" B", " KiB", " MiB", " GiB", " TiB"});
 }
 
 }  // namespace jostle

@@ -7,12 +7,9 @@
 
 #include "config/json/json.hpp"
 #include "results/study.hpp"
+#include "study/version.hpp"
 
 namespace jostle {
-
-const char* version() {
-  return JOSTLE_VERSION;
-}
 
 std::string version_text() {
 #ifdef __clang__

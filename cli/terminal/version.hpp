@@ -4,13 +4,6 @@
 
 namespace jostle {
 
-/// "0.1.0".
-const char* version();
-
-/// The commit this was built from, "-dirty" appended where tracked files differed; "unknown" where
-/// it was not built from a git checkout.
-const char* git_revision();
-
 /// What `jostle --version` prints: version, revision, compiler and the libraries as linked.
 std::string version_text();
 

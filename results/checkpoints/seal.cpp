@@ -47,11 +47,18 @@ std::string read_at(const std::string& path, const Descriptor& file, std::uint64
   return text;
 }
 
-std::string line_for(const std::string& path, const Descriptor& file, std::uint64_t size) {
+using Take = std::function<void(std::span<const std::byte>)>;
+
+std::string line_for(const std::string& path, const Descriptor& file, std::uint64_t size,
+                     const Take& take = {}) {
   constexpr std::size_t piece = 4u << 20;
   Sha256 sum;
-  for (std::uint64_t offset = 0; offset < size; offset += piece)
-    sum.add(read_at(path, file, offset, std::min<std::uint64_t>(piece, size - offset)));
+  for (std::uint64_t offset = 0; offset < size; offset += piece) {
+    const std::string read =
+        read_at(path, file, offset, std::min<std::uint64_t>(piece, size - offset));
+    sum.add(read);
+    if (take) take(std::as_bytes(std::span(read)));
+  }
   return std::string(line_start) + hex(sum.finish()) + "\n";
 }
 
@@ -63,7 +70,7 @@ void seal(const std::string& path) {
   write_all(path, file.get(), std::as_bytes(std::span(line)));
 }
 
-void verify_seal(const std::string& path) {
+void verify_seal(const std::string& path, const Take& take) {
   const Descriptor file = open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
   struct stat status;
   if (::fstat(file.get(), &status) != 0) fail_on_disk(path, "read", errno);
@@ -78,10 +85,11 @@ void verify_seal(const std::string& path) {
     throw ResultsError(path,
                        "truncated, changed by another program, or not written by jostle (it does "
                        "not end with its checksum); restore it from a copy");
-  if (line != line_for(path, file, size - line_size))
+  if (line != line_for(path, file, size - line_size, take))
     throw ResultsError(path,
                        "damaged, or changed by another program (its checksum is wrong); restore it "
                        "from a copy");
+  if (take) take(std::as_bytes(std::span(line)));
 }
 
 }  // namespace jostle

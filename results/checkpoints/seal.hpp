@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 
 // A results file ends with a line that holds the SHA-256 of everything before it. HDF5 does not
@@ -10,6 +13,9 @@ namespace jostle {
 void seal(const std::string& path);
 
 /// Throws ResultsError saying what is wrong with the file: missing, not HDF5, truncated, changed.
-void verify_seal(const std::string& path);
+/// `take` is given the whole file, piece by piece, before that is known: one reading is enough to
+/// verify and to copy.
+void verify_seal(const std::string& path,
+                 const std::function<void(std::span<const std::byte>)>& take = {});
 
 }  // namespace jostle

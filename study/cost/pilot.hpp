@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "cli/terminal/durations.hpp"
 #include "engine/bed/container.hpp"
 #include "ensemble/plan.hpp"
+#include "study/seconds.hpp"
 
 namespace jostle {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "cli/terminal/durations.hpp"
 #include "results/results_file.hpp"
+#include "study/seconds.hpp"
 
 // How many rounds of jostle cost fit into its budget. A round is one realization of every setting.
 namespace jostle {

@@ -3,19 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <optional>
 
-#include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/table_output.hpp"
 #include "config/grids.hpp"
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 #include "ensemble/analysis/hysteresis.hpp"
 #include "results/layout.hpp"
-#include "results/tables.hpp"
+#include "study/bad_input.hpp"
 #include "study/point_scenes.hpp"
-#include "study/provenance.hpp"
-#include "study/scene_file.hpp"
-#include "study/tables/sweep.hpp"
 
 namespace jostle {
 
@@ -26,6 +23,7 @@ struct Surroundings {
   const ResultsFile& file;
   std::uint32_t point;
   int threads;
+  const std::function<const PointScenes&()>& scenes;  // read when first asked for
 };
 
 Table made(const ObservableSeries& series, const SteadySettings& settings, const Surroundings&) {
@@ -71,7 +69,7 @@ Table made(const ObservableSeries& series, const AgeingSettings& settings,
 
 Table made(const ObservableSeries& series, const HysteresisSettings& settings,
            const Surroundings& around) {
-  const std::vector<Stage> protocol = stages(PointScenes(around.file).at(around.point).protocol);
+  const std::vector<Stage> protocol = stages(around.scenes().at(around.point).protocol);
   std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
   for (const Stage& stage : protocol) shortest = std::min(shortest, stage.count);
   if (protocol.empty()) throw BadInput("the protocol has no taps");
@@ -92,7 +90,8 @@ void add_tables(const Surroundings& around, const char* kind,
                 const std::vector<AnalysisRequest<Settings>>& requests,
                 std::vector<Table>& tables) {
   for (const auto& request : requests) {
-    const auto& [file, point, threads] = around;
+    const ResultsFile& file = around.file;
+    const std::uint32_t point = around.point;
     const ObservableSeries series(file, point, request.observable);
     Table table;
     try {
@@ -113,8 +112,12 @@ void add_tables(const Surroundings& around, const char* kind,
 std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
                            const Analyses& analyses, int threads) {
   std::vector<Table> tables;
+  std::optional<PointScenes> read;
+  const std::function<const PointScenes&()> scenes = [&]() -> const PointScenes& {
+    return read ? *read : read.emplace(file);
+  };
   for (const std::uint32_t point : points) {
-    const Surroundings around{file, point, threads};
+    const Surroundings around{file, point, threads, scenes};
     add_tables(around, "steady", analyses.steady, tables);
     add_tables(around, "spectrum", analyses.spectrum, tables);
     add_tables(around, "ageing", analyses.ageing, tables);
@@ -145,26 +148,6 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
 bool is_made(const Table& table) {
   return std::ranges::none_of(table.notes,
                               [](const auto& note) { return note.first == "refused"; });
-}
-
-void make_scene_analyses(const std::string& results, int threads, bool quiet) {
-  std::vector<Table> tables;
-  {
-    const ResultsFile file(results);
-    const ParsedScene parsed = parse_scene(file.study().resolved_scene);
-    if (!parsed.scene || parsed.scene->analyse.empty()) return;
-    std::vector<std::uint32_t> points(file.study().points.size());
-    for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
-    tables = analyse(file, points, parsed.scene->analyse, threads);
-    const ResultsFile* const files[] = {&file};
-    for (Table& table : sweep_tables(files, tables, parsed.scene->analyse.sweep)) {
-      tables.push_back(std::move(table));
-    }
-  }
-  for (const Table& table : tables) {
-    if (!quiet) print(table_text(table, Detail::brief).insert(0, 1, '\n'));
-  }
-  store_tables(results, "analysis", tables, provenance_of_this_run(fmt::to_string(threads)));
 }
 
 }  // namespace jostle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace jostle {
 /// The tables of all analyses at the given sweep points, point_PPPP/<analysis>/<observable>, as
 /// results files keep them; those over the points of a sweep are not made here. An analysis that is
 /// not possible gives a table with the note "refused" alone. The tables do not depend on the number
-/// of threads. Throws BadInput for an observable that there is not.
+/// of threads. Throws BadArgument for an observable that there is not.
 std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
                            const Analyses& analyses, int threads);
 
@@ -26,9 +27,5 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
 
 /// Whether the table holds an analysis, and no refusal.
 bool is_made(const Table& table);
-
-/// Makes, prints briefly (unless quiet) and stores the analyses that the scene of a complete
-/// results file asks for. Throws ResultsError.
-void make_scene_analyses(const std::string& results, int threads, bool quiet);
 
 }  // namespace jostle

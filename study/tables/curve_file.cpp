@@ -10,7 +10,7 @@
 
 #include "results/export/input_file.hpp"
 #include "results/export/printable.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
 
@@ -77,8 +77,9 @@ std::string wanted(std::size_t columns, CurveColumns kind) {
   }
   return columns == 3   ? "three numbers t, X, sigma"
          : columns == 2 ? "two numbers t, X like those before"
-                        : "two numbers t, X or three t, X, sigma (or, with --realizations, t and a "
-                          "column a realization)";
+                        : "two numbers t, X or three t, X, sigma (or, where realizations are asked "
+                          "for, t and a "
+                          "column each)";
 }
 
 }  // namespace

@@ -3,32 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 
-#include "cli/terminal/results_input.hpp"
-#include "results/results_file.hpp"
 #include "study/observable_series.hpp"
-#include "study/scene_file.hpp"
 
 namespace jostle {
 
 namespace {
-
-double read_end(const std::string& text, double otherwise, const std::string& option,
-                const std::string& range) {
-  if (text.empty()) return otherwise;
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || std::isnan(value)) {
-    throw BadInput(
-        fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left "
-                    "out",
-                    option, range));
-  }
-  return value;
-}
 
 // Taps of the range that all realizations have reached, up to the first without a finite value.
 Curve collect(const ObservableSeries& series, const FitRange& range) {
@@ -66,23 +47,12 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
 
 }  // namespace
 
-FitRange read_range(const std::string& option, const std::string& text) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const auto colon = text.find(':');
-  const std::string first = text.substr(0, colon);
-  const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
-  const FitRange range{read_end(first, -infinite, option, text),
-                       read_end(last, infinite, option, text)};
-  if (range.first <= range.last) return range;
-  throw BadInput(fmt::format("{} {}: FIRST:LAST, and no number is so", option, text));
-}
-
-std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
-                                      const std::string& point, const FitRange& range, Live live) {
-  const ResultsFile file = open_results(path, live);
+std::vector<FitSource> results_curves(const ResultsFile& file,
+                                      std::span<const std::uint32_t> points,
+                                      const std::string& observable, const FitRange& range) {
   std::vector<FitSource> sources;
-  for (const std::uint32_t chosen : chosen_points(file.study(), point)) {
-    sources.push_back(point_curve(file, chosen, observable, range));
+  for (const std::uint32_t point : points) {
+    sources.push_back(point_curve(file, point, observable, range));
   }
   return sources;
 }

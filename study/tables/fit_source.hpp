@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "cli/terminal/results_input.hpp"
 #include "fitting/curve.hpp"
-#include "results/study.hpp"
+#include "results/results_file.hpp"
 
 namespace jostle {
 
@@ -23,15 +24,11 @@ struct FitRange {
   double first, last;
 };
 
-/// "1:4000", ":4000", "1:". Throws BadInput naming the option.
-FitRange read_range(const std::string& option, const std::string& text);
-
 /// The mean of an observable over realizations against taps, with the realizations behind it, for
-/// one sweep point (its number, or "pointer=value" as in the scene's sweep) or, where `point` is
-/// empty, for all. Realizations that failed are left out; taps that not all others have reached
-/// too. Throws BadInput naming what there is, ResultsError for the file.
-std::vector<FitSource> results_curves(const std::string& path, const std::string& observable,
-                                      const std::string& point, const FitRange& range,
-                                      Live live = Live::no);
+/// each of the sweep points. Realizations that failed are left out; taps that not all others have
+/// reached too. Throws BadArgument naming the observables there are, ResultsError for the file.
+std::vector<FitSource> results_curves(const ResultsFile& file,
+                                      std::span<const std::uint32_t> points,
+                                      const std::string& observable, const FitRange& range);
 
 }  // namespace jostle

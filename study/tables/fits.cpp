@@ -4,24 +4,18 @@
 
 #include <limits>
 
-#include "cli/terminal/standard_streams.hpp"
-#include "config/scene.hpp"
-#include "fitting/report.hpp"
 #include "results/layout.hpp"
-#include "results/results_file.hpp"
-#include "results/tables.hpp"
-#include "study/provenance.hpp"
+#include "study/results_input.hpp"
 
 namespace jostle {
 
 namespace {
 
-FitOutcome fit_model(const Model& model, const FitSource& source, const FitManner& manner) {
+FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& manner) {
   FitOptions options;
   options.fixed = manner.fixed;
-  FitOutcome outcome{model.name(), fit(model, source.curve, options), {}};
+  FitOutcome outcome{model.name(), fit(model, curve, options), {}};
   const auto* found = std::get_if<Fit>(&outcome.result);
-  const Curve& curve = source.curve;
   if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
   const RealizationCurves behind{curve.t, curve.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
@@ -150,28 +144,14 @@ std::vector<std::unique_ptr<Model>> models_named(const std::string& name) {
 }
 
 std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& models,
-                                   const FitSource& source, const FitManner& manner) {
+                                   const Curve& curve, const FitManner& manner) {
   std::vector<FitOutcome> outcomes;
-  for (const auto& model : models) outcomes.push_back(fit_model(*model, source, manner));
+  for (const auto& model : models) outcomes.push_back(fit_model(*model, curve, manner));
   return outcomes;
 }
 
-std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes,
-                      ReportDetail detail) {
-  std::string text = source.title + "\n";
-  std::vector<Fit> fits;
-  for (const FitOutcome& outcome : outcomes) {
-    text += '\n';
-    text += fit_text(outcome, detail);
-    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
-  }
-  if (fits.size() > 1) text.append("\n").append(compare(fits));
-  text += '\n';
-  return text;
-}
-
-std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutcome>& outcomes,
-                              const FitManner& manner) {
+std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner) {
+  const auto& [source, outcomes] = fitted;
   std::vector<Table> tables;
   for (const FitOutcome& outcome : outcomes) {
     Table table;
@@ -215,24 +195,22 @@ std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutc
   return tables;
 }
 
-void make_scene_fits(const std::string& results, int threads, bool quiet) {
-  const ParsedScene parsed = parse_scene(ResultsFile(results).study().resolved_scene);
-  if (!parsed.scene || parsed.scene->fits.empty()) return;
-  const FitManner manner{.resampling = {.threads = threads}};
-  std::vector<Table> tables;
-  for (const FitRequest& request : parsed.scene->fits) {
+std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const FitRequest> requests,
+                                    const FitManner& manner, const FitObserver& observer) {
+  std::vector<FittedCurve> all;
+  for (const FitRequest& request : requests) {
     const auto models = models_named(request.model);
     const FitRange range{static_cast<double>(request.first),
                          request.last ? static_cast<double>(*request.last)
                                       : std::numeric_limits<double>::infinity()};
-    for (const FitSource& source : results_curves(results, request.observable, "", range)) {
-      const std::vector<FitOutcome> outcomes = fit_models(models, source, manner);
-      if (!quiet) print(fits_text(source, outcomes).insert(0, 1, '\n'));
-      const auto made = fit_tables(source, outcomes, manner);
-      tables.insert(tables.end(), made.begin(), made.end());
+    for (FitSource& source :
+         results_curves(file, chosen_points(file.study(), ""), request.observable, range)) {
+      std::vector<FitOutcome> outcomes = fit_models(models, source.curve, manner);
+      all.push_back({std::move(source), std::move(outcomes)});
+      if (observer) observer(all.back());
     }
   }
-  store_tables(results, "fits", tables, provenance_of_this_run(fmt::to_string(threads)));
+  return all;
 }
 
 }  // namespace jostle

@@ -1,12 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "cli/terminal/fit_output.hpp"
+#include "config/scene.hpp"
 #include "ensemble/analysis/table.hpp"
+#include "ensemble/statistics/resampled_fit.hpp"
+#include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
 #include "study/tables/fit_source.hpp"
 
@@ -19,24 +25,37 @@ struct FitManner {
   ResamplingOptions resampling = {};
 };
 
+/// A fit of one model, or why there is none, with the errors of resampled realizations if asked
+/// for.
+struct FitOutcome {
+  std::string model;
+  std::variant<Fit, Refusal> result;
+  std::optional<ResampledErrors> resampled;
+};
+
+/// A curve with its fits, one a model.
+struct FittedCurve {
+  FitSource source;
+  std::vector<FitOutcome> outcomes;
+};
+
 /// A model of docs/fitting.md, or for "all" every law of an approach to a final value. Empty where
 /// there is none of that name.
 std::vector<std::unique_ptr<Model>> models_named(const std::string& name);
 
 std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& models,
-                                   const FitSource& source, const FitManner& manner);
+                                   const Curve& curve, const FitManner& manner);
 
-/// The report of a curve and its fits, for people.
-std::string fits_text(const FitSource& source, const std::vector<FitOutcome>& outcomes,
-                      ReportDetail detail = ReportDetail::brief);
+/// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `manner` says how
+/// resampled errors were made.
+std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner);
 
-/// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `resampling` says
-/// how resampled errors were made.
-std::vector<Table> fit_tables(const FitSource& source, const std::vector<FitOutcome>& outcomes,
-                              const FitManner& manner);
+/// Told of every curve once its fits are made; may be empty.
+using FitObserver = std::function<void(const FittedCurve&)>;
 
-/// Makes, prints (unless quiet) and stores the fits that the scene of a complete results file asks
-/// for. Throws ResultsError.
-void make_scene_fits(const std::string& results, int threads, bool quiet);
+/// The fits that a scene asks for, at every sweep point of its results. Throws BadArgument for an
+/// observable that there is not, ResultsError for the file.
+std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const FitRequest> requests,
+                                    const FitManner& manner, const FitObserver& observer = {});
 
 }  // namespace jostle

@@ -9,19 +9,15 @@
 #include <memory>
 #include <mutex>
 
-#include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/table_output.hpp"
 #include "config/json/json_text.hpp"
+#include "config/scene.hpp"
 #include "ensemble/analysis/structure_tables.hpp"
 #include "ensemble/parallel.hpp"
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/particle_columns.hpp"
 #include "results/layout.hpp"
-#include "results/tables.hpp"
-#include "study/point_scenes.hpp"
-#include "study/provenance.hpp"
-#include "study/scene_file.hpp"
+#include "study/bad_input.hpp"
 
 namespace jostle {
 
@@ -178,13 +174,12 @@ std::vector<std::uint64_t> kept_taps(const ResultsFile& file, std::uint32_t poin
 }
 
 KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
-  const Scene scene = PointScenes(file).at(point);
   const Container& container = file.study().points[point].container;
   KeptEnsemble ensemble{.name = fmt::format("{}, sweep point {}", file.path(), point),
                         .taps = kept_taps(file, point),
                         .realizations = file.study().realizations,
                         .read = {},
-                        .seed = scene.seed,
+                        .seed = file.study().points[point].seed,
                         .sweep_point = file.study().points[point].id};
   ensemble.read = [&file, &container, point](std::uint32_t r) {
     std::vector<KeptPacking> packings;
@@ -267,27 +262,6 @@ std::vector<Table> structure_of(std::span<const std::string> files,
 StructureSettings structure_asked_for(const ResultsFile& file) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);
   return parsed.scene ? parsed.scene->structure : StructureSettings{};
-}
-
-void make_scene_structure(const std::string& results, int threads, bool quiet) {
-  std::vector<Table> tables;
-  {
-    const ResultsFile file(results);
-    const StructureSettings settings = structure_asked_for(file);
-    if (settings.empty()) return;
-    std::vector<std::uint32_t> points(file.study().points.size());
-    for (std::uint32_t p = 0; p < points.size(); ++p) points[p] = p;
-    try {
-      tables = structure_of(file, points, settings, {}, threads);
-    } catch (const BadInput& refusal) {  // the run is stored and stays so
-      print_to_standard_error(fmt::format("jostle: no structure: {}\n", refusal.what()));
-      return;
-    }
-  }
-  for (const Table& table : tables) {
-    if (!quiet) print(fmt::format("\n{}", table_text(table, Detail::brief)));
-  }
-  store_tables(results, "structure", tables, provenance_of_this_run(fmt::to_string(threads)));
 }
 
 }  // namespace jostle

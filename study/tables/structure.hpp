@@ -29,8 +29,4 @@ std::vector<Table> structure_of(std::span<const std::string> files,
 /// What the scene of a results file asks for; no part where it asks for nothing.
 StructureSettings structure_asked_for(const ResultsFile& file);
 
-/// Makes, prints briefly (unless quiet) and stores the structure that the scene of a complete
-/// results file asks for. Throws ResultsError.
-void make_scene_structure(const std::string& results, int threads, bool quiet);
-
 }  // namespace jostle

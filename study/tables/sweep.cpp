@@ -13,9 +13,9 @@
 #include "ensemble/analysis/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
 #include "results/layout.hpp"
-#include "results/tables.hpp"
+#include "study/bad_input.hpp"
+#include "study/observable_series.hpp"
 #include "study/point_scenes.hpp"
-#include "study/scene_file.hpp"
 #include "study/tables/analyse.hpp"
 
 namespace jostle {
@@ -45,7 +45,7 @@ std::optional<std::size_t> tap_line(const std::string& pointer) {
 }
 
 /// What is swept, and the values of the sweep that do not vary with it.
-void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, const Scene& scene,
+void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
            std::string against) {
   if (against.empty()) {
     against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
@@ -57,6 +57,7 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, c
         .append(" = ")
         .append(value);
   }
+  const Scene& scene = scenes.at(point);
   const auto line = tap_line(against);
   if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
     const Control strength = control(scene.protocol[*line].tap);
@@ -64,9 +65,8 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, c
     member.swept = {strength.name, strength.units, "strength of the taps"};
     return;
   }
-  const auto values = resolved(scene);
-  const Json* value = values.find_pointer(against);
-  if (value == nullptr) throw BadInput(fmt::format("the scene has no value at {}", against));
+  const std::optional<Json> value = scenes.value_at(point, against);
+  if (!value) throw BadInput(fmt::format("the scene has no value at {}", against));
   if (!value->is_number()) {
     throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
   }
@@ -194,53 +194,90 @@ Table curve_table(std::string name, std::span<const Member> members,
   return sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
 }
 
-std::vector<Member> members_of(std::span<const ResultsFile* const> files,
-                               std::span<const Table> made,
+/// A file with what is read of it once for all sweeps.
+class SweptFile {
+ public:
+  SweptFile(const ResultsFile& file, const MadeTables& made)
+      : file_(file), scenes_(file), made_(made) {}
+
+  const ResultsFile& file() const { return file_; }
+  const PointScenes& scenes() const { return scenes_; }
+  /// Those just made, then those that the file keeps.
+  const MadeTables& tables() {
+    if (!kept_are_read_) {
+      kept_are_read_ = true;
+      append(made_.analyses, file_.tables("analysis"));
+      append(made_.fits, file_.tables("fits"));
+    }
+    return made_;
+  }
+
+ private:
+  static void append(std::vector<Table>& tables, const std::vector<Table>& more) {
+    tables.insert(tables.end(), more.begin(), more.end());
+  }
+
+  const ResultsFile& file_;
+  PointScenes scenes_;
+  MadeTables made_;
+  bool kept_are_read_ = false;
+};
+
+std::vector<Member> members_of(std::span<SweptFile> files,
                                const AnalysisRequest<SweepSettings>& request) {
   const auto& [observable, settings] = request;
   std::vector<Member> members;
-  for (const ResultsFile* file : files) {
-    const PointScenes scenes(*file);
-    std::vector<Table> analyses(made.begin(), file == files.front() ? made.end() : made.begin());
-    std::vector<Table> fits;
-    if (settings.quantity != "value") {
-      const auto kept = read_tables(file->path(), "analysis");
-      analyses.insert(analyses.end(), kept.begin(), kept.end());
-      fits = read_tables(file->path(), "fits");
-    }
+  for (SweptFile& swept : files) {
+    const ResultsFile* const file = &swept.file();
+    const PointScenes& scenes = swept.scenes();
     for (std::uint32_t point = 0; point < file->study().points.size(); ++point) {
       Member member;
       const ObservableSeries series(*file, point, observable);
       member.label = series.label();
       const StudyPoint& studied = file->study().points[point];
-      const Scene scene = scenes.at(point);
-      set_x(member, studied, scenes, scene, settings.against);
+      set_x(member, studied, scenes, point, settings.against);
       if (settings.quantity == "value") {
         set_value(member, series, settings.last, file->study().realizations);
       } else {
-        set_derived(member, analyses, fits, point, observable, settings.quantity);
+        const MadeTables& tables = swept.tables();
+        set_derived(member, tables.analyses, tables.fits, point, observable, settings.quantity);
       }
-      member.stream = {studied.seed, scene.streams == Streams::matched ? 0 : studied.id};
+      member.stream = {studied.seed, scenes.at(point).streams == Streams::matched ? 0 : studied.id};
       members.push_back(std::move(member));
     }
   }
   return members;
 }
 
+std::string table_name(const AnalysisRequest<SweepSettings>& request) {
+  std::string quantity = request.settings.quantity;
+  std::ranges::replace(quantity, '/', '_');
+  return fmt::format("sweep/{}/{}", request.observable, quantity);
+}
+
 }  // namespace
 
-std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files,
-                                std::span<const Table> made,
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests) {
   std::vector<Table> tables;
+  if (requests.empty()) return tables;
+  std::vector<SweptFile> swept;
+  try {
+    for (const ResultsFile* file : files) {
+      swept.emplace_back(*file, file == files.front() ? made : MadeTables{});
+    }
+  } catch (const BadInput& refusal) {
+    for (const auto& request : requests) {
+      tables.push_back({.name = table_name(request), .notes = {{"refused", refusal.what()}}});
+    }
+    return tables;
+  }
   for (const auto& request : requests) {
-    std::string quantity = request.settings.quantity;
-    std::ranges::replace(quantity, '/', '_');
-    const std::string name = fmt::format("sweep/{}/{}", request.observable, quantity);
+    const std::string name = table_name(request);
     try {
       std::map<std::string, std::vector<Member>> groups;
       std::vector<std::string> order;
-      for (Member& member : members_of(files, made, request)) {
+      for (Member& member : members_of(swept, request)) {
         if (!groups.contains(member.others)) order.push_back(member.others);
         groups[member.others].push_back(std::move(member));
       }

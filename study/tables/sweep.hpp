@@ -9,14 +9,18 @@
 
 namespace jostle {
 
+/// Tables just made of a file, not yet stored in it.
+struct MadeTables {
+  std::vector<Table> fits = {}, analyses = {};
+};
+
 /// Quantities against the swept value, sweep/<observable>/<quantity> with '_' for '/': over the
 /// points of all files together, each file with its own sweep or none. A strength of taps is drawn
 /// as its control parameter, eps^(1/2) for a dilation. Where other values are swept too, one table
-/// for every combination of them, numbered. Fits and analyses are taken from `made`, tables of the
-/// first file, else from what the files keep. What is not possible gives a table with the note
-/// "refused" alone. Throws BadInput for an observable that there is not, ResultsError.
-std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files,
-                                std::span<const Table> made,
+/// for every combination of them, numbered. Fits and analyses are taken from `made`, of the first
+/// file, else from what the files keep. What is not possible, as of an observable that there is
+/// not, gives a table with the note "refused" alone. Throws ResultsError.
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests);
 
 }  // namespace jostle

@@ -1,5 +1,6 @@
 """The arrows between folders: engine <- structure <- ensemble; fitting stands alone; config and
-results stand on those; cli joins; bench measures. Read off the include lines, whatever CMake links."""
+results stand on those; study joins them; cli is its command line;
+bench measures. Read off the include lines, whatever CMake links."""
 
 import os
 import pathlib
@@ -16,7 +17,7 @@ MAY_INCLUDE = {
     "config": {"engine", "structure", "ensemble", "config"},
     "results": {"engine", "structure", "ensemble", "results"},
     "bench": {"engine", "structure", "fitting", "ensemble", "config", "bench", "tests"},
-    "study": {"engine", "structure", "fitting", "ensemble", "config", "results", "study", "cli"},
+    "study": {"engine", "structure", "fitting", "ensemble", "config", "results", "study"},
     "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "study",
             "cli"},
 }

@@ -48,10 +48,3 @@ TEST_CASE("A value without an error has six digits") {
   CHECK(value_and_error(0.123456789, HUGE_VAL) == "0.123457");
   CHECK(value_and_error(HUGE_VAL, 1) == "inf");
 }
-
-TEST_CASE("Counts and bytes take a unit") {
-  CHECK(format_count(950) == "950");
-  CHECK(format_count(4.1e7) == "41.0 M");
-  CHECK(format_bytes(512) == "512 B");
-  CHECK(format_bytes(3.5 * 1024 * 1024) == "3.5 MiB");
-}

@@ -17,10 +17,7 @@ struct EnoughStatus {
   Table table;
 };
 
-/// `until` has targets, all of observables in the file. Throws ResultsError.
+/// `until` has targets, all of observables in the file. `file` holds its data. Throws ResultsError.
 EnoughStatus enough_status(const ResultsFile& file, const Enough& until);
-
-/// One line for people: whether it is enough, and the target that is farthest from being met.
-std::string enough_line(const EnoughStatus& status);
 
 }  // namespace jostle

@@ -1,11 +1,10 @@
-#include "study/enough.hpp"
+#include "study/tables/enough.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "ensemble/moments.hpp"
-#include "ensemble/statistics/counted.hpp"
 
 namespace jostle {
 
@@ -67,26 +66,6 @@ EnoughStatus enough_status(const ResultsFile& file, const Enough& until) {
                   .notes = {{"realizations", fmt::to_string(status.realizations)},
                             {"verdict", status.met ? "met" : "not met"}}};
   return status;
-}
-
-std::string enough_line(const EnoughStatus& status) {
-  const auto& values = std::get<std::vector<double>>(status.table.quantities[3].values);
-  const auto& limits = std::get<std::vector<double>>(status.table.quantities[4].values);
-  std::size_t farthest = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double excess = values[i] / limits[i], most = values[farthest] / limits[farthest];
-    if (!(excess <= most)) farthest = i;
-  }
-  const auto text = [&](std::size_t column) {
-    return std::get<std::vector<std::string>>(status.table.quantities[column].values)[farthest];
-  };
-  const char* const verdict = status.met                          ? "enough"
-                              : status.next > status.realizations ? "not enough yet"
-                                                                  : "NOT enough, but the limit";
-  return fmt::format("{} {} {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
-                     counted(status.realizations, "realization"),
-                     status.realizations == 1 ? "is" : "are", verdict, text(2), text(1),
-                     values[farthest], limits[farthest]);
 }
 
 }  // namespace jostle

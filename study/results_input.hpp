@@ -1,16 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "results/results_file.hpp"
+#include "study/bad_input.hpp"
 
-namespace CLI {
-class App;
-}
-
-// What commands read results from.
+// What results are read from.
 namespace jostle {
 
 /// By its first bytes.
@@ -22,18 +20,29 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// What is read of a run that goes on or was killed: its file alone, or its checkpoints too.
 enum class Live { no, yes };
 
-/// The flag --live.
-void add_live(CLI::App& command, Live& live);
+/// A run that goes on or was killed has no data yet where they were looked for.
+class NoTapsYet : public BadInput {
+ public:
+  NoTapsYet(const std::string& path, Live live);
+  const std::string& path() const { return path_; }
+  Live live() const { return live_; }
 
-/// A results file whose data are wanted. Throws BadInput for a run that has none yet; says on
-/// stderr where it is unfinished. Throws ResultsError for the file.
+ private:
+  std::string path_;
+  Live live_;
+};
+
+/// A results file whose data are wanted; it may be unfinished (ResultsFile::state). Throws
+/// NoTapsYet, and ResultsError for the file.
 ResultsFile open_results(const std::string& path, Live live = Live::no);
 
 /// Throws BadInput where a file is named twice: it would count as more data than there are.
 void require_different(std::span<const std::string> paths);
+/// The same for copies of a file, which hold the same run.
+void require_different_runs(std::span<const ResultsFile> files);
 
 /// The sweep points that `wanted` names, by number or as "pointer=value"; all where it is empty.
-/// Throws BadInput naming what there is.
+/// Throws BadArgument naming what there is.
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
 
 }  // namespace jostle

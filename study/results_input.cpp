@@ -1,17 +1,14 @@
-#include "cli/terminal/results_input.hpp"
+#include "study/results_input.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
 
-#include "cli/terminal/standard_streams.hpp"
 #include "results/export/input_file.hpp"
 #include "results/live_run.hpp"
-#include "study/scene_file.hpp"
 
 namespace jostle {
 
@@ -57,29 +54,16 @@ bool is_same_file(const std::string& a, const std::string& b) {
          fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
-void add_live(CLI::App& command, Live& live) {
-  command.add_flag_callback(
-      "--live", [&live] { live = Live::yes; },
-      "Read the checkpoints of an unfinished run too; its results file stays as it is");
-}
+NoTapsYet::NoTapsYet(const std::string& path, Live live)
+    : BadInput(
+          fmt::format("{}: its run goes on or was killed, and {}", path,
+                      live == Live::yes ? "it has no checkpoint yet" : "its file has no taps yet")),
+      path_(path),
+      live_(live) {}
 
 ResultsFile open_results(const std::string& path, Live live) {
   ResultsFile file = live == Live::yes ? live_results(path) : ResultsFile(path);
-  if (file.state() == RunState::running) {
-    throw BadInput(fmt::format(
-        "{}: its run goes on or was killed, and {}. Finish it with jostle run SCENE --resume; "
-        "jostle info {} says how far it is.",
-        path,
-        live == Live::yes ? "it has no checkpoint yet"
-                          : "its file has no taps yet; --live reads its checkpoints",
-        path));
-  }
-  if (file.state() == RunState::interrupted) {
-    print_to_standard_error(fmt::format(
-        "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "
-        "jostle run SCENE --resume.\n",
-        path, live == Live::yes ? "checkpoints" : "stop"));
-  }
+  if (file.state() == RunState::running) throw NoTapsYet(path, live);
   return file;
 }
 
@@ -92,6 +76,16 @@ void require_different(std::span<const std::string> paths) {
   }
 }
 
+void require_different_runs(std::span<const ResultsFile> files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[i].run_id() != files[j].run_id()) continue;
+      throw BadInput(fmt::format("{} and {} hold the same run, which counts once", files[j].path(),
+                                 files[i].path()));
+    }
+  }
+}
+
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < study.points.size(); ++i) {
@@ -100,8 +94,7 @@ std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& 
     }
   }
   if (chosen.empty()) {
-    throw BadInput(
-        fmt::format("--sweep-point {}: there is none; the file has{}", wanted, known(study)));
+    throw BadArgument(Argument::sweep_point, wanted, "there is none; the file has" + known(study));
   }
   return chosen;
 }

@@ -1,0 +1,27 @@
+#include "cli/terminal/live_input.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/terminal/standard_streams.hpp"
+
+namespace jostle {
+
+void add_live(CLI::App& command, Live& live) {
+  command.add_flag_callback(
+      "--live", [&live] { live = Live::yes; },
+      "Read the checkpoints of an unfinished run too; its results file stays as it is");
+}
+
+ResultsFile open_to_read(const std::string& path, Live live) {
+  ResultsFile file = open_results(path, live);
+  if (file.state() == RunState::interrupted) {
+    print_to_standard_error(fmt::format(
+        "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "
+        "jostle run SCENE --resume.\n",
+        path, live == Live::yes ? "checkpoints" : "stop"));
+  }
+  return file;
+}
+
+}  // namespace jostle

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/terminal/progress_display.hpp"
+#include "study/run.hpp"
+
+namespace jostle {
+
+/// What a run says while it goes on: how much is to do, progress, how far its targets are met.
+class RunDisplay : public RunObserver {
+ public:
+  /// `file` is said with what is to do; nothing is said where it is empty.
+  RunDisplay(ProgressStyle style, std::string file, int threads, bool prints_targets)
+      : style_(style), file_(std::move(file)), threads_(threads), prints_targets_(prints_targets) {}
+
+  void computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
+                 std::uint64_t all) override;
+  void computed() override;
+  void storing(std::uint64_t done, std::uint64_t of) override;
+  void stored() override { storing_.reset(); }
+  void compared(const EnoughStatus& status) override;
+
+ private:
+  ProgressStyle style_;
+  std::string file_;
+  int threads_;
+  bool prints_targets_;
+  std::optional<ProgressDisplay> computing_;
+  std::optional<StoringDisplay> storing_;
+};
+
+/// One line for people: whether it is enough, and the target that is farthest from being met.
+std::string enough_line(const EnoughStatus& status);
+
+}  // namespace jostle

@@ -1,0 +1,96 @@
+#include "study/cost/cost_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/grids.hpp"
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
+#include "config/sweep.hpp"
+#include "study/cost/rounds.hpp"
+#include "study/results_input.hpp"
+
+namespace jostle {
+namespace {
+
+constexpr std::uint32_t fewest_rounds = 2;  // an error needs two
+
+Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
+  const std::uint32_t point = wanted.empty() ? 0 : chosen_points(study_of(loaded), wanted).front();
+  std::vector<Fault> faults;
+  Scene scene =
+      scene_at(resolved(loaded.scene), sweep_points(loaded.scene.sweep).at(point), faults);
+  if (total_taps(scene.protocol) == 0) {
+    throw BadInput("/protocol: there is no tap whose relaxation could cost anything");
+  }
+  if (scene.observables.empty()) throw BadInput("/observe: there is nothing to be accurate in");
+  if (std::holds_alternative<FullyPeriodicBox>(scene.container)) {
+    throw BadInput("/container: a fluid without gravity does not relax, so nothing is incomplete");
+  }
+  return scene;
+}
+
+/// The pilot with the rounds to begin with.
+const LoadedScene& begun_with(LoadedScene& pilot, std::uint32_t rounds) {
+  pilot.scene.realizations = rounds > 0 ? std::min(fewest_rounds, rounds) : fewest_rounds;
+  return pilot;
+}
+
+}  // namespace
+
+CostPilot make_cost_pilot(const LoadedScene& loaded, const std::string& path,
+                          const std::string& point, std::uint64_t pilot_taps) {
+  CostPilot made{.scene = scene_at_point(loaded, point), .rungs = {}, .pilot = {}};
+  made.taps = total_taps(made.scene.protocol);
+  made.rungs = ladder(made.scene);
+  made.pilot =
+      load_derived(ladder_scene(made.scene, made.rungs, std::min(made.taps, pilot_taps)), path);
+  return made;
+}
+
+std::string cost_observable(const Scene& scene, const std::string& wanted) {
+  std::string found;
+  std::vector<std::string> names;
+  for (const Observable& observable : scene.observables) {
+    const std::string name = label(observable).name;
+    names.push_back(name);
+    if (name == (wanted.empty() ? "bottom_fraction" : wanted)) found = name;
+  }
+  if (!found.empty()) return found;
+  if (wanted.empty()) return names.front();
+  throw BadArgument(
+      Argument::observable, wanted,
+      fmt::format("the scene observes {}.{}", joined(names, ", "), did_you_mean(wanted, names)));
+}
+
+CostRun::CostRun(CostPilot& pilot, const CostBudget& budget, const RunSettings& settings,
+                 RunObserver& observer)
+    : pilot_(pilot),
+      budget_(budget),
+      run_(begun_with(pilot.pilot, budget.rounds), settings, observer),
+      worked_before_(run_.realizations()) {}
+
+bool CostRun::run() {
+  const auto longest = static_cast<std::uint32_t>(most_complete(pilot_.rungs).last);
+  while (run_.compute(longest)) {
+    const std::uint32_t rounds = run_.study().realizations;
+    const std::uint32_t wanted = budget_.rounds > 0 ? budget_.rounds : affordable(rounds);
+    const bool all_failed = run_.summary().failed > 0 && run_.summary().done == 0;
+    if (wanted <= rounds || all_failed) return true;
+    run_.extend(wanted);
+  }
+  return false;
+}
+
+std::uint32_t CostRun::affordable(std::uint32_t done) const {
+  const Seconds spent = std::chrono::steady_clock::now() - began_;
+  return affordable_rounds(done, budget_.time, spent,
+                           rounds_done(worked_before_, run_.results().realizations()));
+}
+
+CostStudy CostRun::study() {
+  return CostStudy(run_.close(), pilot_.rungs, other_windows(pilot_.scene), pilot_.taps);
+}
+
+}  // namespace jostle

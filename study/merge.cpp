@@ -1,0 +1,52 @@
+#include "study/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <vector>
+
+#include "config/sweep.hpp"
+#include "results/error.hpp"
+#include "results/results_file.hpp"
+#include "study/stored_scene.hpp"
+
+namespace jostle {
+
+std::optional<Study> joined_study(std::span<const std::string> inputs) {
+  std::vector<ResultsFile> files;
+  for (const std::string& input : inputs) files.emplace_back(input);
+  const auto same = [&](const ResultsFile& file) {
+    return file.study().resolved_scene == files.front().study().resolved_scene;
+  };
+  if (std::ranges::all_of(files, same)) return std::nullopt;
+  Json scene = stored_scene(files.front());
+  ParsedScene joined;
+  for (const ResultsFile& file : files) {
+    joined = join_sweeps(scene, stored_scene(file));
+    if (!joined.scene) {
+      throw ResultsError(file.path(),
+                         fmt::format("cannot be merged with {}: {}", files.front().path(),
+                                     fault_lines(joined.faults)));
+    }
+    scene = resolved(*joined.scene);
+  }
+  Study study{scene.dump(2), scene.dump(2), files.front().study().realizations, {}};
+  std::unordered_map<std::uint64_t, const StudyPoint*> held;
+  for (const ResultsFile& file : files) {
+    for (const StudyPoint& point : file.study().points) held[point.id] = &point;
+  }
+  for (const SweepPoint& point : sweep_points(joined.scene->sweep)) {
+    const auto holder = held.find(point_id(point));
+    if (holder == held.end()) {
+      throw ResultsError(files.front().path(),
+                         fmt::format("cannot be merged: together the sweeps have the point {}, "
+                                     "which no file holds; run it, as a resume of one of them",
+                                     point_label(point)));
+    }
+    study.points.push_back(*holder->second);
+  }
+  return study;
+}
+
+}  // namespace jostle

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace jostle {
+
+/// "0.1.0".
+const char* version();
+
+/// The commit this was built from, "-dirty" appended where tracked files differed; "unknown" where
+/// it was not built from a git checkout.
+const char* git_revision();
+
+}  // namespace jostle

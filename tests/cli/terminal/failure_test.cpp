@@ -1,0 +1,31 @@
+#include "cli/terminal/failure.hpp"
+
+#include <catch2/catch.hpp>
+#include <new>
+
+#include "study/run.hpp"
+
+using namespace jostle;
+
+TEST_CASE("Errors of the library are said by the names of options") {
+  CHECK(failure_text(BadInput("a sentence")) == "a sentence");
+  CHECK(failure_text(BadArgument(Argument::observable, "Z", "there is none.")) ==
+        "--observable Z: there is none.");
+  CHECK(failure_text(BadArgument(Argument::shard, "", "no share can tell.")) ==
+        "--shard: no share can tell.");
+  CHECK(failure_text(BadArgument(Argument::observable, "Z", "it is at sweep point 1",
+                                 Argument::sweep_point)) ==
+        "--observable Z: it is at sweep point 1: choose one with --sweep-point");
+  CHECK(failure_text(OutputExists("out.h5")) ==
+        "out.h5 exists and is kept. Go on with it with --resume, write elsewhere with -o FILE, or "
+        "replace it with --force.");
+  CHECK(failure_text(OtherShard("out.h5", {1, 2}, {2, 2})) ==
+        "out.h5 holds shard 1/2, not 2/2: resume it with --shard 1/2");
+  CHECK(failure_text(OtherScene("out.h5", "/seed: changed")) ==
+        "out.h5 was begun with another scene and cannot be resumed with this one:\n/seed: changed\n"
+        "Undo the change, or write to another file with -o.");
+}
+
+TEST_CASE("Memory that ran out is said with what to do") {
+  CHECK(failure_text(std::bad_alloc()).starts_with("out of memory; raise the limit"));
+}
