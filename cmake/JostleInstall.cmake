@@ -1,16 +1,15 @@
-# cmake --install gives the program, the libraries with their headers, the scenes and the schema,
+# cmake --install gives the program, the libraries with their public headers, the scenes and the schema,
 # and find_package(jostle).
 include(CMakePackageConfigHelpers)
 get_property(libraries GLOBAL PROPERTY jostle_libraries)
 
 install(TARGETS ${libraries} EXPORT jostle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS jostle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(
-  DIRECTORY engine structure fitting ensemble config results
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle
-  FILES_MATCHING
-  PATTERN "*.hpp"
-  PATTERN "scenes" EXCLUDE)
+include(PublicHeaders)
+foreach(header ${JOSTLE_PUBLIC_HEADERS})
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle/${folder})
+endforeach()
 install(DIRECTORY config/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle)
 install(FILES config/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle)
 install(EXPORT jostle NAMESPACE jostle:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle

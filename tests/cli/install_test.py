@@ -1,11 +1,13 @@
 """cmake --install gives a program that runs and libraries that another project finds."""
 
+import json
 import os
 import pathlib
 import subprocess
 import unittest
 
-from support import SOURCE, TINY, Case
+from public_headers_test import public_headers
+from support import SOURCE, TINY, Case, changed
 
 BUILD = pathlib.Path(os.environ["BUILD"])
 
@@ -33,14 +35,41 @@ class Install(Case):
         self.command(program, "new", "own", "--from", "philippe-bideau-2001/fig2")
         self.command(program, "check", "own.json", "--no-pilot")
 
+        headers = {str(path.relative_to(prefix / "include/jostle"))
+                   for path in (prefix / "include/jostle").rglob("*.*")}
+        self.assertEqual(headers, set(public_headers()))
+        self.assertFalse((prefix / "include/jostle/engine/monte_carlo/kernel").exists())
+
         self.command("cmake", "-G", "Ninja", "-S", SOURCE / "tests/cli/consumer", "-B", "consumer",
                      f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
-                     f"-DEXAMPLES={SOURCE / 'docs/examples'}")
+                     f"-DEXAMPLES={SOURCE / 'docs/examples'}",
+                     f"-DHEADERS={';'.join(public_headers())}")
         self.command("cmake", "--build", "consumer")
         height = float(self.command("consumer/pour"))
         # 300 spheres on 36 d^2 at solids fraction 0.5 to 0.65 make a bed 6.7 to 8.7 d deep.
         self.assertTrue(3.2 < height < 4.5, height)
         self.assertIn("power_approach: X = X_inf", self.command("consumer/own_model"))
+        self.run_own_sink(program)
+
+    def run_own_sink(self, program):
+        """What is run into memory is analysed and fitted to the numbers of the program."""
+        scene = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}])
+        del scene["sweep"], scene["snapshots"]
+        self.write(scene, "own.json")
+        self.command(program, "run", "own.json", "-o", "own.h5", "--quiet")
+        steady = json.loads(self.command(program, "analyse", "own.h5", "steady", "--observable",
+                                         "mean_height", "--last", 32, "--json"))
+        fitted = json.loads(self.command(program, "fit", "own.h5", "--observable", "mean_height",
+                                         "--model", "inverse_log", "--json"))
+        lines = self.command("consumer/own_sink", "own.json").splitlines()
+        numbers = dict(line.split() for line in lines if len(line.split()) == 2)
+        value = steady["tables"][0]["quantities"]["value"]["values"]
+        self.assertEqual(float(numbers["steady"]), value)
+        parameters = fitted["curves"][0]["fits"][0]["parameters"]
+        self.assertEqual(sorted(set(numbers) - {"steady"}), sorted(parameters))
+        for name, parameter in parameters.items():
+            if parameter["value"] is not None:
+                self.assertEqual(float(numbers[name]), parameter["value"])
 
 
 if __name__ == "__main__":
