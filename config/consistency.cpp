@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <type_traits>
 
 #include "config/grids.hpp"
 #include "config/json/suggestion.hpp"
@@ -13,70 +13,64 @@ namespace jostle {
 
 namespace {
 
-constexpr double densest_growth = 0.64;
-
-template <class T>
-bool is(const auto& choice) {
-  return std::holds_alternative<T>(choice);
+/// The start as the engine has it; the packing of a file is read later.
+Start engine_start(const StartChoice& choice) {
+  return std::visit(
+      [](const auto& start) -> Start {
+        if constexpr (std::is_same_v<std::decay_t<decltype(start)>, PackingFile>) {
+          return GivenPacking{};
+        } else {
+          return start;
+        }
+      },
+      choice);
 }
 
-/// Notes faults between parts, each only where the parts it joins have none of their own.
+/// Notes faults between parts, each only where the parts it joins have none of their own. What goes
+/// with what, the engine says; here it gets its place in the scene.
 class Check {
  public:
   Check(const Scene& scene, std::vector<Fault>& faults) : scene_(scene), faults_(faults) {}
 
   void start_suits_container() {
     if (!all_sound({"/start", "/container", "/spheres"})) return;
-    const bool fluid = is<FullyPeriodicBox>(scene_.container);
-    const bool file = is<PackingFile>(scene_.start);
-    if (fluid && !file && !is<Grow>(scene_.start)) {
-      note("/start",
-           "a fully_periodic container has neither floor nor gravity: start it with "
-           "{\"grow\": {}} or from a file");
-    }
-    if (is<Grow>(scene_.start)) growth_is_possible();
-    if (is<FittedPour>(scene_.start) && !is<WalledBox>(scene_.container)) {
-      note("/start/pour",
-           "a fitted pour is fitted between walls: it needs the sides \"walls\" "
-           "(elsewhere take \"steepest_descent\")");
-    }
-    if (is<Crystal>(scene_.start) && is<Cylinder>(scene_.container)) {
-      note("/start/crystal", "a crystal needs a rectangular footprint, a cylinder has none");
+    const Start start = engine_start(scene_.start);
+    if (const auto fault = start_fault(start, scene_.container)) {
+      // Without gravity hardly any start does: the fault is not that of one.
+      const bool of_one = has_gravity(scene_.container);
+      note(of_one ? "/start/" + key_of(scene_.start) : "/start", *fault);
+    } else if (scene_.n_spheres == 0) {
+      return;  // not a scene at all, which is noted
+    } else if (const auto too_many = n_spheres_fault(start, scene_.container, scene_.n_spheres)) {
+      note("/spheres", *too_many);
     }
   }
 
-  void fluid_has_no_gravity() {
-    if (!is<FullyPeriodicBox>(scene_.container) || !all_sound({"/container"})) return;
-    if (all_sound({"/relax"})) {
-      if (is<PolarMove>(scene_.relax.move)) {
-        note("/relax", "polar moves fall: without gravity (fully_periodic) use \"metropolis\"");
-      }
-      if (!is<SweepsStop>(scene_.relax.stop.rule)) {
-        note("/relax/stop",
-             "without gravity (fully_periodic) nothing settles: end a relaxation "
-             "after a number of \"sweeps\"");
-      }
+  void observables_have_a_floor() {
+    if (!all_sound({"/container", "/observe"})) return;
+    for (const Observable& observable : scene_.observables) {
+      const auto fault = observable_fault(observable, scene_.container);
+      if (fault) return note("/observe", *fault);
     }
-    if (all_sound({"/observe"}) && !scene_.observables.empty()) {
-      note("/observe",
-           "these are measured from a floor, a fully_periodic container has none: "
-           "write \"observe\": [] and keep snapshots");
+  }
+
+  void taps_suit_container() {
+    if (!all_sound({"/container", "/protocol"})) return;
+    for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
+      const ProtocolLine& line = scene_.protocol[i];
+      Tap tap = line.tap;
+      if (line.ramp) strength(tap) = std::max(line.ramp->from, line.ramp->to);
+      const auto fault = tap_fault(tap, scene_.container);
+      if (fault) note(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"), *fault);
     }
-    if (all_sound({"/protocol"})) taps_are_idle();
   }
 
   void relaxations_can_be() {
-    sampler_suits_the_move(scene_.relax, "/relax");
-    relaxation_can_end(scene_.relax, "/relax");
+    relaxation_can_be(scene_.relax, "/relax");
     if (!scene_.relax_start) return;
-    sampler_suits_the_move(*scene_.relax_start, "/relax_start");
-    relaxation_can_end(*scene_.relax_start, "/relax_start");
-    const bool settles = is<RandomSettle>(scene_.start) || is<FittedPour>(scene_.start);
-    if (all_sound({"/start"}) && !settles) {
-      note("/relax_start",
-           "this start is at rest from the beginning: only random_settle and a fitted pour can "
-           "be relaxed before tap 0");
-    }
+    relaxation_can_be(*scene_.relax_start, "/relax_start");
+    if (!all_sound({"/start"})) return;
+    if (const auto fault = settling_fault(engine_start(scene_.start))) note("/relax_start", *fault);
   }
 
   void observables_have_names() {
@@ -87,7 +81,7 @@ class Check {
     for (const std::string beside : names_beside_series)
       taken[beside] = "what is stored beside the observables";
     for (std::size_t i = 0; i < scene_.observables.size(); ++i) {
-      const std::string name = name_of(scene_.observables[i]);
+      const std::string name = label(scene_.observables[i]).name;
       const std::string here = fmt::format("/observe/{}", i);
       if (!all_sound({here})) continue;
       const auto [other, is_new] = taken.emplace(name, here);
@@ -99,7 +93,7 @@ class Check {
   void fits_have_curves() {
     if (!all_sound({"/fits", "/observe", "/protocol"})) return;
     std::vector<std::string> names;
-    for (const Observable& observable : scene_.observables) names.push_back(name_of(observable));
+    for (const Observable& observable : scene_.observables) names.push_back(label(observable).name);
     for (std::size_t i = 0; i < scene_.fits.size(); ++i) {
       const FitRequest& fit = scene_.fits[i];
       const std::string place = fmt::format("/fits/{}", i);
@@ -134,65 +128,19 @@ class Check {
   void note(std::string pointer, std::string message) {
     faults_.push_back({std::move(pointer), std::move(message)});
   }
-
-  void growth_is_possible() {
-    const auto* box = std::get_if<FullyPeriodicBox>(&scene_.container);
-    if (!box) {
-      note("/start/grow", "spheres grow in a fully_periodic container only: elsewhere pour them");
-      return;
-    }
-    const double volume = box->width_x * box->width_y * box->height;
-    const double fraction = scene_.n_spheres * sphere_volume / volume;
-    if (fraction <= densest_growth) return;
-    note("/spheres", fmt::format("{} spheres fill {:.4f} of the box: growing without order ends at "
-                                 "{}, that is {:.0f} spheres",
-                                 scene_.n_spheres, fraction, densest_growth,
-                                 std::floor(densest_growth * volume / sphere_volume)));
+  void note_if(std::string pointer, std::optional<std::string> fault) {
+    if (fault) note(std::move(pointer), std::move(*fault));
   }
 
-  /// Without gravity a tap is a relaxation and nothing else: its strength must be zero.
-  void taps_are_idle() {
-    for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
-      const ProtocolLine& line = scene_.protocol[i];
-      if (!line.ramp && (line.tap == Tap{Dilate{0}} || line.tap == Tap{Lift{0}})) continue;
-      note(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"),
-           "a tap has no meaning without gravity (fully_periodic): {\"dilate\": 0} only relaxes");
-    }
-  }
-
-  void sampler_suits_the_move(const Relaxation& relax, const std::string& place) {
-    if (relax.sampler == Sampler::exhaustive || !all_sound({place, "/container"})) return;
-    const std::string instead = ": use \"exhaustive\"";
-    if (is<FullyPeriodicBox>(scene_.container)) {
-      note(place + "/sampler",
-           "skipping needs trials that only fall, and without gravity "
-           "(fully_periodic) none does" +
-               instead);
-    }
-    const auto* move = std::get_if<MetropolisMove>(&relax.move);
-    if (!move) return;
-    if (!std::isinf(move->beta)) {
-      note(place + "/sampler",
-           "skipping needs trials that only fall, and a finite beta lets "
-           "some rise" +
-               instead);
-    }
-    if (move->adaptation && move->adaptation->base == AcceptanceBase::not_upward) {
-      note(place + "/sampler",
-           "skipping does not see the upward trials that the adaptation of the "
-           "step leaves out (\"of\": \"not_upward\")" +
-               instead);
-    }
-  }
-
-  void relaxation_can_end(const Relaxation& relax, const std::string& place) {
+  void relaxation_can_be(const Relaxation& relax, const std::string& place) {
     if (!all_sound({place})) return;
-    const auto* fixed = std::get_if<SweepsStop>(&relax.stop.rule);
-    if (fixed && fixed->sweeps > relax.stop.max_sweeps) {
-      note(place + "/stop/sweeps", fmt::format("{} sweeps are more than the cap max_sweeps of {}: "
-                                               "every relaxation would end capped",
-                                               fixed->sweeps, relax.stop.max_sweeps));
+    if (all_sound({"/container"})) {
+      const Container& container = scene_.container;
+      note_if(place, move_fault(relax.move, container));
+      note_if(place + "/stop", stop_fault(relax.stop.rule, container));
+      note_if(place + "/sampler", sampler_fault(relax.sampler, relax.move, container));
     }
+    note_if(place + "/stop/sweeps", cap_fault(relax.stop));
   }
 
   const Scene& scene_;
@@ -204,8 +152,9 @@ class Check {
 void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   Check check(scene, faults);
   check.start_suits_container();
-  check.fluid_has_no_gravity();
   check.relaxations_can_be();
+  check.observables_have_a_floor();
+  check.taps_suit_container();
   check.observables_have_names();
   check.snapshots_are_reached();
   check.fits_have_curves();

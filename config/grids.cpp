@@ -32,10 +32,7 @@ double root_of_ten(std::uint32_t n) {
 
 /// The tap with another strength.
 Tap with_strength(Tap tap, double strength) {
-  if (auto* dilate = std::get_if<Dilate>(&tap)) dilate->epsilon = strength;
-  if (auto* held = std::get_if<DilateFloorHeld>(&tap)) held->delta = strength;
-  if (auto* lift = std::get_if<Lift>(&tap)) lift->gamma = strength;
-  if (auto* shake = std::get_if<Shake>(&tap)) shake->lambda = strength;
+  jostle::strength(tap) = strength;
   return tap;
 }
 

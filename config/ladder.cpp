@@ -12,7 +12,6 @@ namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_sweeps = 1'000'000'000;
 constexpr std::uint64_t complete_interval = 100;
 constexpr double narrowest_half = 4;  // diameters
 
@@ -158,11 +157,11 @@ class LadderMaker {
   void other_pour() {
     const auto* box = std::get_if<WalledBox>(&scene_.container);
     if (box == nullptr || scene_.relax_start) return;
-    const bool can_be_fitted = std::min(box->width_x, box->width_y) > least_periodic_width;
     if (std::holds_alternative<FittedPour>(scene_.start)) {
       add(Rung::Part::start, "poured between the walls", scene_.relax);
       rungs_.back().start = SteepestDescentPour{};
-    } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) && can_be_fitted) {
+    } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) &&
+               !start_fault(FittedPour{}, *box)) {
       add(Rung::Part::start, "fitted between the walls", scene_.relax);
       rungs_.back().start = FittedPour{};
     }

@@ -1,5 +1,6 @@
 #include "engine/taps.hpp"
 
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -102,7 +103,39 @@ struct Excite {
   }
 };
 
+struct StrengthOf {
+  double& operator()(Dilate& tap) const { return tap.epsilon; }
+  double& operator()(DilateFloorHeld& tap) const { return tap.delta; }
+  double& operator()(Lift& tap) const { return tap.gamma; }
+  double& operator()(Shake& tap) const { return tap.lambda; }
+};
+
+struct ControlOf {
+  Control operator()(const Dilate& tap) const {
+    return {"sqrt_epsilon", "1", std::sqrt(tap.epsilon)};
+  }
+  Control operator()(const DilateFloorHeld& tap) const {
+    return {"sqrt_delta", "1", std::sqrt(tap.delta)};
+  }
+  Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
+  Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
+};
+
 }  // namespace
+
+double& strength(Tap& tap) {
+  return std::visit(StrengthOf{}, tap);
+}
+
+Control control(const Tap& tap) {
+  return std::visit(ControlOf{}, tap);
+}
+
+std::optional<std::string> tap_fault(const Tap& tap, const Container& container) {
+  const bool idle = tap == Tap{Dilate{0}} || tap == Tap{Lift{0}};
+  if (has_gravity(container) || idle) return std::nullopt;
+  return "a tap has no meaning without gravity (fully_periodic): a dilate of 0 only relaxes";
+}
 
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {
   return std::visit(Excite{packing, random}, tap);

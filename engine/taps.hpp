@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <variant>
 
 #include "engine/bed/packing.hpp"
@@ -38,6 +40,25 @@ struct Shake {
 };
 
 using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake>;
+
+/// Taps of a protocol, at most.
+inline constexpr std::uint64_t most_taps = 1'000'000'000;
+
+/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda.
+double& strength(Tap& tap);
+
+/// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
+/// of a lift (Rosato et al. 2010), lambda of a shake.
+struct Control {
+  std::string name;  // "sqrt_epsilon"
+  std::string units;
+  double value = 0;
+};
+Control control(const Tap& tap);
+
+/// Why a bed in the container cannot be tapped so; nothing if it can. Without gravity a tap only
+/// relaxes: a dilation or a lift of strength zero.
+std::optional<std::string> tap_fault(const Tap& tap, const Container& container);
 
 /// What a tap did beyond moving the spheres.
 struct TapReport {

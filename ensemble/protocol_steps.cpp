@@ -8,25 +8,6 @@
 
 namespace jostle {
 
-namespace {
-
-struct ControlOf {
-  Control operator()(const Dilate& tap) const {
-    return {"sqrt_epsilon", "1", std::sqrt(tap.epsilon)};
-  }
-  Control operator()(const DilateFloorHeld& tap) const {
-    return {"sqrt_delta", "1", std::sqrt(tap.delta)};
-  }
-  Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
-  Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
-};
-
-}  // namespace
-
-Control control(const Tap& tap) {
-  return std::visit(ControlOf{}, tap);
-}
-
 std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> protocol,
                                                         std::uint64_t last_taps) {
   assert(last_taps >= 1);

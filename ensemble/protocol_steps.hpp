@@ -11,15 +11,6 @@
 // The stages of a protocol as steps of a control parameter, each with its steady-state value.
 namespace jostle {
 
-/// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
-/// of a lift (Rosato et al. 2010), lambda of a shake.
-struct Control {
-  std::string name;  // "sqrt_epsilon"
-  std::string units;
-  double value = 0;
-};
-Control control(const Tap& tap);
-
 /// Taps first .. last of a step, both included.
 struct StepTaps {
   std::uint64_t first = 0, last = 0;

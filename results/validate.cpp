@@ -18,7 +18,7 @@ namespace {
 // The limits of scenes, which docs/scene.md gives, and beyond them what no scene comes to.
 constexpr std::uint32_t most_realizations = 1'000'000;
 constexpr std::uint32_t most_spheres = 10'000'000;
-constexpr std::uint64_t most_taps = std::uint64_t{1} << 40;
+constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
 constexpr double widest = 10'000;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
 constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols
@@ -67,7 +67,7 @@ void validate_snapshots(const Snapshots& snapshots, std::uint64_t taps, const st
 void validate_point(const StudyPoint& point, const std::string& name) {
   require(point.n_spheres >= 1 && point.n_spheres <= most_spheres,
           fmt::format("{} has {} spheres", name, point.n_spheres));
-  require(point.taps <= most_taps, fmt::format("{} has {} taps", name, point.taps));
+  require(point.taps <= most_total_taps, fmt::format("{} has {} taps", name, point.taps));
   require(point.label.size() <= longest_label, name + " has a label that is too long");
   for (const auto& [pointer, value] : point.sweep_values) {
     require(nesting_of(value) <= deepest_nesting, name + " has a value nested too deep");

@@ -60,6 +60,14 @@ struct Measure {
 
 }  // namespace
 
+std::optional<std::string> observable_fault(const Observable& observable,
+                                            const Container& container) {
+  if (has_gravity(container)) return std::nullopt;
+  return label(observable).name +
+         " is measured from a floor, a fully_periodic container has none: write \"observe\": [] "
+         "and keep snapshots";
+}
+
 Column label(const Observable& observable) {
   return std::visit(Label{}, observable);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -42,6 +43,10 @@ struct BulkFraction {
 };
 
 using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction>;
+
+/// Why it cannot be measured in the container; nothing if it can. All are measured from a floor.
+std::optional<std::string> observable_fault(const Observable& observable,
+                                            const Container& container);
 
 /// How an observable is stored; its name is also that in scenes.
 Column label(const Observable& observable);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "config/json/json_text.hpp"
@@ -59,6 +60,18 @@ class Reader {
   std::optional<std::string> text() const;
   /// One of `names`.
   std::optional<std::string> one_of(const std::vector<std::string>& names) const;
+  /// The enumerator that this names; `names` is a table of (name, enumerator).
+  template <class Names>
+  auto named(const Names& names) const {
+    std::vector<std::string> allowed;
+    for (const auto& [name, value] : names) allowed.emplace_back(name);
+    const auto written = one_of(allowed);
+    std::optional<std::decay_t<decltype(names.begin()->second)>> found;
+    for (const auto& [name, value] : names) {
+      if (written && *written == name) found = value;
+    }
+    return found;
+  }
   /// {"name": settings} with one of `names`.
   std::optional<Choice> choice(const std::vector<std::string>& names) const;
   /// "name" or {"name": settings}.
@@ -78,15 +91,7 @@ class Reader {
   /// A member that names an enumerator; `names` is a table of (name, enumerator).
   template <class Names, class Enum>
   void read_name(const std::string& key, Enum& into, const Names& names) const {
-    const auto member = find(key);
-    if (!member) return;
-    std::vector<std::string> allowed;
-    for (const auto& [name, value] : names) allowed.emplace_back(name);
-    const auto written = member->one_of(allowed);
-    if (!written) return;
-    for (const auto& [name, value] : names) {
-      if (*written == name) into = value;
-    }
+    if (const auto member = find(key)) into = member->named(names).value_or(into);
   }
 
  private:

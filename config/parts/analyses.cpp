@@ -8,7 +8,6 @@ namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_taps = 1'000'000'000;
 constexpr std::uint64_t shortest_segment = 16;
 
 constexpr NameTable<Taper, 2> windows{{{"hann", Taper::hann}, {"boxcar", Taper::boxcar}}};

@@ -23,7 +23,8 @@ class AnalysisCheck {
         observables_sound_(sound(faults, "/observe")),
         protocol_sound_(sound(faults, "/protocol")),
         taps_(protocol_sound_ ? total_taps(scene.protocol) : 0) {
-    for (const Observable& observable : scene.observables) observed_.push_back(name_of(observable));
+    for (const Observable& observable : scene.observables)
+      observed_.push_back(label(observable).name);
   }
 
   template <class Settings>

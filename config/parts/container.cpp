@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle {
@@ -70,49 +71,46 @@ Container read_box(const Reader& in) {
   return box;
 }
 
-Json written_width(double x, double y) {
-  return x == y ? plain_number(x) : written_bounds(x, y);
+Json written_widths(const char* sides, double x, double y) {
+  return {{"sides", sides}, {"width", x == y ? plain_number(x) : written_bounds(x, y)}};
 }
 
-struct Writer {
-  Json operator()(const PeriodicBox& box) const {
-    return {{"sides", "periodic"}, {"width", written_width(box.width_x, box.width_y)}};
-  }
-  Json operator()(const WalledBox& box) const {
-    return {{"sides", "walls"}, {"width", written_width(box.width_x, box.width_y)}};
-  }
-  Json operator()(const Cylinder& tube) const {
-    return {{"sides", "cylinder"}, {"diameter", plain_number(tube.diameter)}};
-  }
-  Json operator()(const FullyPeriodicBox& box) const {
-    return {{"sides", "fully_periodic"},
-            {"width", written_width(box.width_x, box.width_y)},
-            {"height", plain_number(box.height)}};
-  }
-};
+Json written_fully_periodic(const FullyPeriodicBox& box) {
+  Json out = written_widths("fully_periodic", box.width_x, box.width_y);
+  out["height"] = plain_number(box.height);
+  return out;
+}
+
+constexpr Kinds<Container> kinds{
+    {"periodic", read_box<PeriodicBox>,
+     [](const PeriodicBox& box) { return written_widths("periodic", box.width_x, box.width_y); }},
+    {"walls", read_box<WalledBox>,
+     [](const WalledBox& box) { return written_widths("walls", box.width_x, box.width_y); }},
+    {"cylinder", read_cylinder,
+     [](const Cylinder& tube) -> Json {
+       return {{"sides", "cylinder"}, {"diameter", plain_number(tube.diameter)}};
+     }},
+    {"fully_periodic", read_fully_periodic, written_fully_periodic}};
 
 }  // namespace
 
 Container read_container(const Reader& in) {
-  const std::vector<std::string> kinds{"periodic", "walls", "cylinder", "fully_periodic"};
   const auto sides = in.find("sides");
   if (!sides) {
     if (in.is_object_of({"sides", "width", "height", "diameter"})) {
-      in.missing("sides", "one of the strings " + listed(kinds));
+      in.missing("sides", "one of the strings " + listed(names_of(kinds)));
     }
     return {};
   }
-  const auto kind = sides->one_of(kinds);
-  if (kind == "periodic") return read_box<PeriodicBox>(in);
-  if (kind == "walls") return read_box<WalledBox>(in);
-  if (kind == "cylinder") return read_cylinder(in);
-  if (kind == "fully_periodic") return read_fully_periodic(in);
+  if (const auto kind = sides->one_of(names_of(kinds))) {
+    return read_kind(kinds, Choice{*kind, in});
+  }
   in.is_object_of({"sides", "width", "height", "diameter"});
   return {};
 }
 
 Json written(const Container& container) {
-  return std::visit(Writer{}, container);
+  return written_settings(kinds, container);
 }
 
 }  // namespace jostle

@@ -6,8 +6,6 @@ namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_taps = 1'000'000'000;
-
 FitRequest read_fit(const Reader& in) {
   FitRequest fit;
   if (!in.is_object_of({"observable", "model", "range"})) return fit;

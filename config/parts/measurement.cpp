@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_taps = 1'000'000'000;
 constexpr std::size_t longest_name = 64;
 constexpr double highest = 1e6;
 
@@ -61,20 +61,49 @@ Observable read_bulk_fraction(const Reader& in) {
   return bulk;
 }
 
+Observable read_corrected_fraction(const Reader& in) {
+  CorrectedFraction corrected;
+  if (in.is_object_of({"depth"})) in.read("depth", corrected.depth, above(0, 1));
+  return corrected;
+}
+
+template <class Plain>
+Observable read_plain(const Reader& in) {
+  in.is_object_of({});
+  return Plain{};
+}
+
+/// Of an observable without settings: its name alone stands for it.
+template <class Plain>
+Json written_plain(const Plain&) {
+  return nullptr;
+}
+
+Json written_corrected_fraction(const CorrectedFraction& corrected) {
+  return {{"depth", plain_number(corrected.depth)}};
+}
+
+Json written_bulk_fraction(const BulkFraction& bulk) {
+  Json settings{{"name", bulk.name}};
+  settings.update(written(bulk.window));
+  return settings;
+}
+
+constexpr Kinds<Observable> kinds{
+    {"mean_height", read_plain<MeanHeight>, written_plain<MeanHeight>},
+    {"bottom_fraction", read_plain<BottomFraction>, written_plain<BottomFraction>},
+    {"corrected_fraction", read_corrected_fraction, written_corrected_fraction},
+    {"bulk_fraction", read_bulk_fraction, written_bulk_fraction}};
+
 Observable read_observable(const Reader& in) {
-  const auto choice =
-      in.named_choice({"mean_height", "bottom_fraction", "corrected_fraction", "bulk_fraction"});
+  const auto choice = in.named_choice(names_of(kinds));
   if (!choice) return MeanHeight{};
-  const Reader& settings = choice->settings;
-  if (choice->name == "bulk_fraction") return read_bulk_fraction(settings);
-  if (choice->name == "corrected_fraction") {
-    CorrectedFraction corrected;
-    if (settings.is_object_of({"depth"})) settings.read("depth", corrected.depth, above(0, 1));
-    return corrected;
-  }
-  settings.is_object_of({});
-  if (choice->name == "bottom_fraction") return BottomFraction{};
-  return MeanHeight{};
+  return read_kind(kinds, *choice);
+}
+
+Json written(const Observable& observable) {
+  const bool plain = written_settings(kinds, observable).is_null();
+  return plain ? Json(name_of(kinds, observable)) : written_kind(kinds, observable);
 }
 
 std::vector<std::uint64_t> read_tap_list(const Reader& in) {
@@ -173,13 +202,6 @@ SnapshotChoice read_snapshots(const Reader& in) {
   return snapshots;
 }
 
-std::string name_of(const Observable& observable) {
-  if (const auto* bulk = std::get_if<BulkFraction>(&observable)) return bulk->name;
-  if (std::holds_alternative<CorrectedFraction>(observable)) return "corrected_fraction";
-  if (std::holds_alternative<BottomFraction>(observable)) return "bottom_fraction";
-  return "mean_height";
-}
-
 std::vector<Observable> default_observables() {
   return {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
 }
@@ -194,17 +216,7 @@ Json written(const Window& window) {
 
 Json written(const std::vector<Observable>& observables) {
   Json list = Json::array();
-  for (const Observable& observable : observables) {
-    if (const auto* corrected = std::get_if<CorrectedFraction>(&observable)) {
-      list.push_back({{"corrected_fraction", {{"depth", plain_number(corrected->depth)}}}});
-    } else if (const auto* bulk = std::get_if<BulkFraction>(&observable)) {
-      Json settings{{"name", bulk->name}};
-      settings.update(written(bulk->window));
-      list.push_back({{"bulk_fraction", settings}});
-    } else {
-      list.push_back(name_of(observable));
-    }
-  }
+  for (const Observable& observable : observables) list.push_back(written(observable));
   return list;
 }
 

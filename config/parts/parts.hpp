@@ -26,7 +26,8 @@ StructureSettings read_structure(const Reader& in);
 
 Json written(const Container& container);
 Json written(const StartChoice& start);
-Json written(const Tap& tap);
+/// What scenes call the kind of start: "pour", ...
+std::string key_of(const StartChoice& start);
 Json written(const std::vector<ProtocolLine>& protocol);
 Json written(const Relaxation& relaxation);
 Json written(const Window& window);
@@ -43,8 +44,6 @@ Json written_bounds(double low, double high);
 /// A number as a person writes it: 16, not 16.0.
 Json plain_number(double value);
 
-/// What an observable is called in the scene and in the results.
-std::string name_of(const Observable& observable);
 /// Default of "observe": one of each kind.
 std::vector<Observable> default_observables();
 

@@ -3,18 +3,16 @@
 #include <cmath>
 
 #include "config/grids.hpp"
+#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_taps = 1'000'000'000;
 constexpr std::uint64_t most_strengths = 1000;
 constexpr Range dilations = between(0, 10);
 constexpr Range lifts = between(0, 100);
-
-const std::vector<std::string> tap_kinds{"dilate", "dilate_floor_held", "lift", "shake"};
 
 /// {"from", "to", "step"} or, for what is best stepped in its square root, {"sqrt_from", ...}.
 Ramp read_ramp(const Reader& in, Range strengths, bool may_be_square_root) {
@@ -52,15 +50,40 @@ Ramp read_ramp(const Reader& in, Range strengths, bool may_be_square_root) {
   return ramp;
 }
 
-Shake read_shake(const Reader& in, std::optional<Ramp>* ramp) {
+enum class Rooted { no, yes };
+
+/// Reads the strength of a tap: a number, or in its place a ramp.
+struct StrengthReader {
+  std::optional<Ramp>* ramp = nullptr;  // null: a number
+
+  double operator()(const Reader& in, Range strengths, Rooted rooted) const {
+    if (!ramp) return in.number(strengths).value_or(0);
+    *ramp = read_ramp(in, strengths, rooted == Rooted::yes);
+    return 0;
+  }
+};
+
+/// Writes it.
+struct StrengthWriter {
+  const std::optional<Ramp>& ramp;
+
+  Json operator()(double value) const;
+};
+
+template <class TapKind>
+struct TapEntry {
+  using Part = TapKind;
+  std::string_view name;
+  Tap (*read)(const Reader&, const StrengthReader&);
+  Json (*write)(const TapKind&, const StrengthWriter&);
+};
+
+Tap read_shake(const Reader& in, const StrengthReader& strength) {
   Shake shake;
   if (!in.is_object_of({"lambda", "lateral_radius", "retries"})) return shake;
-  if (!ramp) {
-    in.read("lambda", shake.lambda, dilations);
-  } else if (const auto lambda = in.find("lambda")) {
-    *ramp = read_ramp(*lambda, dilations, true);
-    shake.lambda = 0;
-  } else {
+  if (const auto lambda = in.find("lambda")) {
+    shake.lambda = strength(*lambda, dilations, Rooted::yes);
+  } else if (strength.ramp) {
     in.missing("lambda", "the ramp of a shake is an object here");
   }
   in.read("lateral_radius", shake.lateral_radius, between(0, 1));
@@ -68,32 +91,43 @@ Shake read_shake(const Reader& in, std::optional<Ramp>* ramp) {
   return shake;
 }
 
-Tap read_tap(const Reader& in) {
-  const auto tap = in.choice(tap_kinds);
-  if (!tap) return Dilate{};
-  if (tap->name == "dilate") {
-    return Dilate{tap->settings.number(dilations).value_or(0)};
-  }
-  if (tap->name == "dilate_floor_held") {
-    return DilateFloorHeld{tap->settings.number(dilations).value_or(0)};
-  }
-  if (tap->name == "lift") return Lift{tap->settings.number(lifts).value_or(0)};
-  return read_shake(tap->settings, nullptr);
+Json written_shake(const Shake& tap, const StrengthWriter& strength) {
+  return {{"lambda", strength(tap.lambda)},
+          {"lateral_radius", plain_number(tap.lateral_radius)},
+          {"retries", tap.retries}};
 }
 
-void read_ramped_tap(const Reader& in, ProtocolLine& line) {
-  line.ramp = Ramp{};
-  const auto tap = in.choice(tap_kinds);
-  if (!tap) return;
-  if (tap->name == "shake") {
-    line.tap = read_shake(tap->settings, &line.ramp);
-    return;
-  }
-  line.ramp =
-      read_ramp(tap->settings, tap->name == "lift" ? lifts : dilations, tap->name != "lift");
-  if (tap->name == "dilate") line.tap = Dilate{0};
-  if (tap->name == "dilate_floor_held") line.tap = DilateFloorHeld{0};
-  if (tap->name == "lift") line.tap = Lift{0};
+constexpr TableOf<TapEntry, Tap>::Type taps{
+    {"dilate",
+     [](const Reader& in, const StrengthReader& strength) -> Tap {
+       return Dilate{strength(in, dilations, Rooted::yes)};
+     },
+     [](const Dilate& tap, const StrengthWriter& strength) { return strength(tap.epsilon); }},
+    {"dilate_floor_held",
+     [](const Reader& in, const StrengthReader& strength) -> Tap {
+       return DilateFloorHeld{strength(in, dilations, Rooted::yes)};
+     },
+     [](const DilateFloorHeld& tap, const StrengthWriter& strength) {
+       return strength(tap.delta);
+     }},
+    {"lift",
+     [](const Reader& in, const StrengthReader& strength) -> Tap {
+       return Lift{strength(in, lifts, Rooted::no)};
+     },
+     [](const Lift& tap, const StrengthWriter& strength) { return strength(tap.gamma); }},
+    {"shake", read_shake, written_shake}};
+
+Tap read_tap(const Reader& in, const StrengthReader& strength) {
+  const auto choice = in.choice(names_of(taps));
+  if (!choice) return Dilate{};
+  return read_kind(taps, choice->name,
+                   [&](const auto& kind) { return kind.read(choice->settings, strength); });
+}
+
+Json written(const Tap& tap, const StrengthWriter& strength) {
+  const Json settings = with_kind(
+      taps, tap, [&](const auto& kind, const auto& part) { return kind.write(part, strength); });
+  return {{name_of(taps, tap), settings}};
 }
 
 ProtocolLine read_line(const Reader& in) {
@@ -101,8 +135,11 @@ ProtocolLine read_line(const Reader& in) {
   if (!in.is_object_of({"tap", "ramp", "count"})) return line;
   const auto tap = in.find("tap");
   const auto ramp = in.find("ramp");
-  if (tap) line.tap = read_tap(*tap);
-  if (ramp) read_ramped_tap(*ramp, line);
+  if (tap) line.tap = read_tap(*tap, {});
+  if (ramp) {
+    line.ramp = Ramp{};
+    line.tap = read_tap(*ramp, {&line.ramp});
+  }
   if (tap && ramp) in.fault("expected only one of the keys tap, ramp");
   if (!tap && !ramp) in.fault("expected one of the keys tap, ramp");
   if (!in.find("count")) {
@@ -123,23 +160,9 @@ Json written(const Ramp& ramp) {
           {"step", plain_number(ramp.step)}};
 }
 
-/// Writes a tap; a ramp, if any, stands in the place of the strength.
-struct TapWriter {
-  const std::optional<Ramp>& ramp;
-
-  Json strength(double value) const { return ramp ? written(*ramp) : plain_number(value); }
-  Json operator()(const Dilate& tap) const { return {{"dilate", strength(tap.epsilon)}}; }
-  Json operator()(const DilateFloorHeld& tap) const {
-    return {{"dilate_floor_held", strength(tap.delta)}};
-  }
-  Json operator()(const Lift& tap) const { return {{"lift", strength(tap.gamma)}}; }
-  Json operator()(const Shake& tap) const {
-    return {{"shake",
-             {{"lambda", strength(tap.lambda)},
-              {"lateral_radius", plain_number(tap.lateral_radius)},
-              {"retries", tap.retries}}}};
-  }
-};
+Json StrengthWriter::operator()(double value) const {
+  return ramp ? written(*ramp) : plain_number(value);
+}
 
 }  // namespace
 
@@ -150,14 +173,10 @@ std::vector<ProtocolLine> read_protocol(const Reader& in) {
   return protocol;
 }
 
-Json written(const Tap& tap) {
-  return std::visit(TapWriter{std::nullopt}, tap);
-}
-
 Json written(const std::vector<ProtocolLine>& protocol) {
   Json lines = Json::array();
   for (const ProtocolLine& line : protocol) {
-    lines.push_back({{line.ramp ? "ramp" : "tap", std::visit(TapWriter{line.ramp}, line.tap)},
+    lines.push_back({{line.ramp ? "ramp" : "tap", written(line.tap, StrengthWriter{line.ramp})},
                      {"count", line.count}});
   }
   return lines;

@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "config/names.hpp"
+#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle {
 
 namespace {
 
-constexpr std::uint64_t most_sweeps = 1'000'000'000;
-constexpr std::uint64_t most_trials = 1'000'000'000'000;
 // A longer step could go round the narrowest periodic box.
 constexpr Range steps = between(1e-9, least_periodic_width);
 
@@ -81,67 +80,73 @@ StopRule read_bulk_fraction_stop(const Reader& in) {
   return stop;
 }
 
-StopRule read_stop(const Reader& in) {
-  const auto rule = in.choice({"mean_height", "bulk_fraction", "sweeps"});
-  if (!rule) return MeanHeightStop{};
-  if (rule->name == "mean_height") return read_mean_height_stop(rule->settings);
-  if (rule->name == "bulk_fraction") return read_bulk_fraction_stop(rule->settings);
-  return SweepsStop{rule->settings.whole_number(1, most_sweeps).value_or(1)};
+StopRule read_sweeps_stop(const Reader& in) {
+  return SweepsStop{in.whole_number(1, most_sweeps).value_or(1)};
 }
 
-struct MoveWriter {
-  Json& out;
+Json written_bulk_fraction_stop(const BulkFractionStop& stop) {
+  return {{"change", plain_number(stop.change)},
+          {"every_trials", stop.every_trials},
+          {"times", stop.times},
+          {"measure_start", stop.measure_start},
+          {"window", written(stop.window)}};
+}
 
-  void operator()(const PolarMove& move) const {
-    out["polar"] = {{"max_step", plain_number(move.max_step)},
-                    {"theta0", plain_number(move.theta0)},
-                    {"law", name_in(theta_laws, move.law)}};
-  }
-  void operator()(const MetropolisMove& move) const {
-    Json& metropolis = out["metropolis"];
-    metropolis["max_step"] = plain_number(move.max_step);
-    metropolis["beta"] = std::isinf(move.beta) ? Json("infinity") : plain_number(move.beta);
-    metropolis["adapt"] = "never";
-    if (!move.adaptation) return;
-    const StepAdaptation& adaptation = *move.adaptation;
-    metropolis["adapt"] = {{"factor", plain_number(adaptation.factor)},
-                           {"every_trials", adaptation.every_trials},
-                           {"threshold", plain_number(adaptation.threshold)},
-                           {"of", name_in(acceptance_bases, adaptation.base)},
-                           {"reset_each_tap", adaptation.reset_each_tap}};
-  }
-};
+constexpr Kinds<StopRule> stops{
+    {"mean_height", read_mean_height_stop,
+     [](const MeanHeightStop& stop) -> Json {
+       return {{"eta", plain_number(stop.eta)}, {"every_sweeps", stop.every_sweeps}};
+     }},
+    {"bulk_fraction", read_bulk_fraction_stop, written_bulk_fraction_stop},
+    {"sweeps", read_sweeps_stop, [](const SweepsStop& stop) { return Json(stop.sweeps); }},
+    {"mean_height", read_mean_height_stop, [](const HeightChangeStop& stop) -> Json {
+       return {{"change", plain_number(stop.change)}, {"every_sweeps", stop.every_sweeps}};
+     }}};
 
-struct StopWriter {
-  Json operator()(const MeanHeightStop& stop) const {
-    return {
-        {"mean_height", {{"eta", plain_number(stop.eta)}, {"every_sweeps", stop.every_sweeps}}}};
-  }
-  Json operator()(const HeightChangeStop& stop) const {
-    return {{"mean_height",
-             {{"change", plain_number(stop.change)}, {"every_sweeps", stop.every_sweeps}}}};
-  }
-  Json operator()(const BulkFractionStop& stop) const {
-    return {{"bulk_fraction",
-             {{"change", plain_number(stop.change)},
-              {"every_trials", stop.every_trials},
-              {"times", stop.times},
-              {"measure_start", stop.measure_start},
-              {"window", written(stop.window)}}}};
-  }
-  Json operator()(const SweepsStop& stop) const { return {{"sweeps", stop.sweeps}}; }
-};
+StopRule read_stop(const Reader& in) {
+  const auto rule = in.choice(names_of(stops));
+  if (!rule) return MeanHeightStop{};
+  return read_kind(stops, *rule);
+}
+
+Json written_polar(const PolarMove& move) {
+  return {{"max_step", plain_number(move.max_step)},
+          {"theta0", plain_number(move.theta0)},
+          {"law", name_in(theta_laws, move.law)}};
+}
+
+Json written_metropolis(const MetropolisMove& move) {
+  Json metropolis = {{"max_step", plain_number(move.max_step)}};
+  metropolis["beta"] = std::isinf(move.beta) ? Json("infinity") : plain_number(move.beta);
+  metropolis["adapt"] = "never";
+  if (!move.adaptation) return metropolis;
+  const StepAdaptation& adaptation = *move.adaptation;
+  metropolis["adapt"] = {{"factor", plain_number(adaptation.factor)},
+                         {"every_trials", adaptation.every_trials},
+                         {"threshold", plain_number(adaptation.threshold)},
+                         {"of", name_in(acceptance_bases, adaptation.base)},
+                         {"reset_each_tap", adaptation.reset_each_tap}};
+  return metropolis;
+}
+
+constexpr Kinds<Move> moves{{"polar", read_polar, written_polar},
+                            {"metropolis", read_metropolis, written_metropolis}};
 
 }  // namespace
 
 Relaxation read_relaxation(const Reader& in) {
   Relaxation relaxation;
-  if (!in.is_object_of({"polar", "metropolis", "stop", "max_sweeps", "sampler"})) return relaxation;
-  const auto polar = in.find("polar");
-  const auto metropolis = in.find("metropolis");
-  if (polar) relaxation.move = read_polar(*polar);
-  if (metropolis) relaxation.move = read_metropolis(*metropolis);
-  if (polar && metropolis) in.fault("expected only one of the keys polar, metropolis");
+  std::vector<std::string> keys = names_of(moves);
+  keys.insert(keys.end(), {"stop", "max_sweeps", "sampler"});
+  if (!in.is_object_of(keys)) return relaxation;
+  std::size_t n_moves = 0;
+  for (const std::string& name : names_of(moves)) {
+    const auto move = in.find(name);
+    if (!move) continue;
+    relaxation.move = read_kind(moves, Choice{name, *move});
+    ++n_moves;
+  }
+  if (n_moves > 1) in.fault("expected only one of the keys " + listed(names_of(moves)));
   if (const auto stop = in.find("stop")) relaxation.stop.rule = read_stop(*stop);
   in.read_whole("max_sweeps", relaxation.stop.max_sweeps, 1, most_sweeps);
   in.read_name("sampler", relaxation.sampler, samplers);
@@ -149,9 +154,8 @@ Relaxation read_relaxation(const Reader& in) {
 }
 
 Json written(const Relaxation& relaxation) {
-  Json out;
-  std::visit(MoveWriter{out}, relaxation.move);
-  out["stop"] = std::visit(StopWriter{}, relaxation.stop.rule);
+  Json out = written_kind(moves, relaxation.move);
+  out["stop"] = written_kind(stops, relaxation.stop.rule);
   out["max_sweeps"] = relaxation.stop.max_sweeps;
   out["sampler"] = name_in(samplers, relaxation.sampler);
   return out;

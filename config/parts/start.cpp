@@ -1,13 +1,12 @@
 #include <algorithm>
 
 #include "config/names.hpp"
+#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle {
 
 namespace {
-
-constexpr std::uint64_t most_sweeps = 1'000'000'000;
 
 StartChoice read_pour(const Reader& in) {
   const auto pour = in.named_choice({"steepest_descent", "fitted"});
@@ -38,14 +37,10 @@ StartChoice read_random_settle(const Reader& in) {
   return settle;
 }
 
-Lattice lattice_named(const std::string& name) {
-  return name == "fcc" ? Lattice::fcc : Lattice::hcp;
-}
-
 StartChoice read_crystal(const Reader& in) {
   Crystal crystal;
   if (in.value().is_string()) {
-    if (const auto name = in.one_of({"hcp", "fcc"})) crystal.lattice = lattice_named(*name);
+    if (const auto lattice = in.named(lattices)) crystal.lattice = *lattice;
   } else if (in.is_object_of({"lattice", "stretch"})) {
     if (!in.find("lattice")) in.missing("lattice", "one of the strings hcp, fcc");
     in.read_name("lattice", crystal.lattice, lattices);
@@ -118,43 +113,48 @@ Json number_or_last(const std::optional<std::uint64_t>& number) {
   return number ? Json(*number) : Json("last");
 }
 
-struct Writer {
-  Json operator()(const SteepestDescentPour&) const { return {{"pour", "steepest_descent"}}; }
-  Json operator()(const FittedPour&) const { return {{"pour", "fitted"}}; }
-  Json operator()(const RandomSettle& settle) const {
-    return {{"random_settle", {{"dilute_fraction", plain_number(settle.dilute_fraction)}}}};
+Json written_crystal(const Crystal& crystal) {
+  return {{"lattice", name_in(lattices, crystal.lattice)}, {"stretch", crystal.stretch}};
+}
+
+Json written_file(const PackingFile& file) {
+  if (ends_with_one_of(file.path, {".xyz", ".extxyz"})) {
+    return {{"path", file.path}, {"frame", number_or_last(file.frame)}};
   }
-  Json operator()(const Crystal& crystal) const {
-    return {{"crystal",
-             {{"lattice", name_in(lattices, crystal.lattice)}, {"stretch", crystal.stretch}}}};
-  }
-  Json operator()(const Grow& grow) const { return {{"grow", {{"max_sweeps", grow.max_sweeps}}}}; }
-  Json operator()(const PackingFile& file) const {
-    if (ends_with_one_of(file.path, {".xyz", ".extxyz"})) {
-      return {{"file", {{"path", file.path}, {"frame", number_or_last(file.frame)}}}};
-    }
-    return {{"file",
-             {{"path", file.path},
-              {"point", file.point},
-              {"realization", file.realization},
-              {"tap", number_or_last(file.tap)}}}};
-  }
-};
+  return {{"path", file.path},
+          {"point", file.point},
+          {"realization", file.realization},
+          {"tap", number_or_last(file.tap)}};
+}
+
+constexpr Kinds<StartChoice> kinds{
+    {"pour", read_pour, [](const SteepestDescentPour&) { return Json("steepest_descent"); }},
+    {"pour", read_pour, [](const FittedPour&) { return Json("fitted"); }},
+    {"random_settle", read_random_settle,
+     [](const RandomSettle& settle) -> Json {
+       return {{"dilute_fraction", plain_number(settle.dilute_fraction)}};
+     }},
+    {"crystal", read_crystal, written_crystal},
+    {"grow", read_grow,
+     [](const Grow& grow) -> Json {
+       return {{"max_sweeps", grow.max_sweeps}};
+     }},
+    {"file", read_file, written_file}};
 
 }  // namespace
 
 StartChoice read_start(const Reader& in) {
-  const auto start = in.choice({"pour", "random_settle", "crystal", "grow", "file"});
+  const auto start = in.choice(names_of(kinds));
   if (!start) return SteepestDescentPour{};
-  if (start->name == "pour") return read_pour(start->settings);
-  if (start->name == "random_settle") return read_random_settle(start->settings);
-  if (start->name == "crystal") return read_crystal(start->settings);
-  if (start->name == "grow") return read_grow(start->settings);
-  return read_file(start->settings);
+  return read_kind(kinds, *start);
+}
+
+std::string key_of(const StartChoice& start) {
+  return name_of(kinds, start);
 }
 
 Json written(const StartChoice& start) {
-  return std::visit(Writer{}, start);
+  return written_kind(kinds, start);
 }
 
 }  // namespace jostle

@@ -67,7 +67,7 @@ void check_until(const Scene& scene, std::vector<Fault>& faults) {
                                                     scene.until.at_most, scene.realizations)});
   }
   std::vector<std::string> observed;
-  for (const Observable& observable : scene.observables) observed.push_back(name_of(observable));
+  for (const Observable& observable : scene.observables) observed.push_back(label(observable).name);
   const std::uint64_t taps = total_taps(scene.protocol);
   for (std::size_t i = 0; i < scene.until.targets.size(); ++i) {
     const SpreadTarget& target = scene.until.targets[i];

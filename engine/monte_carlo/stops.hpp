@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <variant>
 
+#include "engine/bed/container.hpp"
 #include "engine/bed/window.hpp"
 
 // When the relaxation after a tap ends. A sweep is n_spheres trials.
@@ -45,11 +48,22 @@ struct SweepsStop {
 
 using StopRule = std::variant<MeanHeightStop, BulkFractionStop, SweepsStop, HeightChangeStop>;
 
+/// Sweeps and trials that a rule or a cap may name, at most.
+inline constexpr std::uint64_t most_sweeps = 1'000'000'000;
+inline constexpr std::uint64_t most_trials = 1'000'000'000'000;
+
 /// A rule and the cap that ends a relaxation which never meets it. A capped relaxation is reported.
 struct Stop {
   StopRule rule = MeanHeightStop{};
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Stop&) const = default;
 };
+
+/// Why a relaxation in the container cannot end by the rule; nothing if it can. Without gravity
+/// nothing comes to rest, so only a number of sweeps ends one.
+std::optional<std::string> stop_fault(const StopRule& rule, const Container& container);
+
+/// Why the cap ends every relaxation before the rule does; nothing if it need not.
+std::optional<std::string> cap_fault(const Stop& stop);
 
 }  // namespace jostle

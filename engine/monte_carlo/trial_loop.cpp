@@ -12,26 +12,6 @@ namespace jostle {
 
 namespace {
 
-void require_no_rises(const Container& container, const Move& move) {
-  if (!has_gravity(container)) {
-    throw std::invalid_argument(
-        "the skipping sampler needs gravity, which a fully periodic box has not: use the "
-        "exhaustive sampler");
-  }
-  const auto* metropolis = std::get_if<MetropolisMove>(&move);
-  if (metropolis == nullptr) return;
-  if (metropolis->beta != std::numeric_limits<double>::infinity()) {
-    throw std::invalid_argument(
-        "the skipping sampler is for trials that never rise, and a finite beta lets them: use the "
-        "exhaustive sampler");
-  }
-  if (metropolis->adaptation && metropolis->adaptation->base != AcceptanceBase::all_trials) {
-    throw std::invalid_argument(
-        "the skipping sampler does not count rising trials, of which the adaptation of the step "
-        "asks: count all trials or use the exhaustive sampler");
-  }
-}
-
 // Calls act(box, policy) with the container and the move as the loop is compiled for them: a move
 // without a policy does not compile.
 template <class Act>
@@ -50,9 +30,7 @@ struct WithTypes {
     return act(box, ZeroTemperature(move));
   }
   std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox&, const PolarMove&) const {
-    throw std::invalid_argument(
-        "the polar move only goes down and a fully periodic box has no down: use the Metropolis "
-        "move");
+    return nullptr;  // move_fault
   }
   std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox& box,
                                         const MetropolisMove& move) const {
@@ -95,9 +73,12 @@ struct MakeRejectionFree {
 
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
                                            StreamKey key, InstructionSet set, Sampler sampler) {
+  if (const auto fault = move_fault(move, container)) throw std::invalid_argument(*fault);
+  if (const auto fault = sampler_fault(sampler, move, container)) {
+    throw std::invalid_argument(*fault);
+  }
   const Kernels kernels = kernels_for(set);
   if (sampler == Sampler::skipping) {
-    require_no_rises(container, move);
     const MakeRejectionFree make{key, kernels};
     return std::visit(WithTypes<MakeRejectionFree>{key, make}, container, move);
   }

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/bed/packing.hpp"
@@ -85,10 +87,17 @@ class TrialLoop {
   virtual std::size_t bytes() const = 0;
 };
 
+/// Why spheres in the container cannot move so; nothing if they can. A polar move needs gravity.
+std::optional<std::string> move_fault(const Move& move, const Container& container);
+
+/// Why the sampler does not suit the move in the container; nothing if it does. The skipping
+/// sampler needs trials that never rise: gravity, and of the Metropolis move beta = infinity and an
+/// adaptation that counts all trials.
+std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
+                                         const Container& container);
+
 /// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials.
-/// Throws std::invalid_argument for a polar move without gravity (FullyPeriodicBox), and for the
-/// skipping sampler unless trials never rise: it needs gravity, and of the Metropolis move
-/// beta = infinity and an adaptation that counts all trials.
+/// Throws std::invalid_argument with move_fault or sampler_fault where there is one.
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
                                            StreamKey key,
                                            InstructionSet set = best_instruction_set(),

@@ -109,11 +109,6 @@ CrystalPlan plan_periodic(const Crystal& crystal, const Boundary& boundary) {
 // Between walls the lattice is the perfect one, with a row along the walls x = 0 and y = 0, or with
 // a site on the axis of a tube; sites too near a wall are left out.
 CrystalPlan plan_between_walls(const Crystal& crystal, const Boundary& boundary) {
-  if (crystal.stretch) {
-    throw StartError(std::string(name(crystal.lattice)) +
-                     ": stretch spaces rows out to a period, and there is none between walls; "
-                     "leave it out or use periodic sides");
-  }
   const Rows across = {static_cast<long>(boundary.width_x) + 2, 1};
   const Rows rows = {static_cast<long>(boundary.width_y / row_spacing(crystal.lattice)) + 2,
                      row_spacing(crystal.lattice)};

@@ -77,15 +77,8 @@ double growth_limit(double least) {
 
 std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
                        RandomStream& random, const StopAsked& stop) {
-  constexpr double most_fraction = 0.64;
   const double volume = box.width_x * box.width_y * box.height;
   const double fraction = n_spheres * sphere_volume / volume;
-  if (fraction > most_fraction) {
-    throw StartError("grow: " + std::to_string(n_spheres) + " spheres would fill " +
-                     std::to_string(fraction) +
-                     " of the box, and random packings end at 0.64; enlarge the box, take fewer "
-                     "spheres, or use a crystal");
-  }
   std::vector<Vec3> points;
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
     const double x = box.width_x * random.uniform(), y = box.width_y * random.uniform();

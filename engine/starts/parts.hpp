@@ -8,8 +8,8 @@
 #include "engine/starts/pour_bed.hpp"
 #include "engine/starts/starts.hpp"
 
-// One function for each start. All throw StartError as make_start does; n_spheres > 0 and legal
-// widths are required.
+// One function for each start. All throw StartError as make_start does, which has asked before for
+// the faults of the start, the container and the number of spheres.
 namespace jostle {
 
 /// What a pour cost. A drop whose path is degenerate is drawn anew.

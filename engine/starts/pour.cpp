@@ -33,11 +33,6 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, Po
 
 std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
                        const StopAsked& stop, PourTally* tally) {
-  if (!Boundary(container).floor) {
-    throw StartError(
-        "steepest-descent pour: a fully periodic box has no floor to pour on; use the start grow "
-        "or a crystal");
-  }
   PourBed bed(container, n_spheres);
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
     throw_if_stopped(stop);

@@ -12,11 +12,6 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
   constexpr double most_dilute_fraction = 0.25;
   constexpr int max_draws = 20'000;  // of one sphere
   const Boundary boundary(container);
-  if (!boundary.floor) {
-    throw StartError(
-        "random settle: a fully periodic box has no gravity to settle in; use the start grow or a "
-        "crystal");
-  }
   if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= most_dilute_fraction)) {
     throw StartError("random settle: dilute_fraction is " + std::to_string(settle.dilute_fraction) +
                      ", but non-overlapping random places are found only up to 0.25; choose one in "

@@ -1,5 +1,7 @@
 #include "engine/starts/starts.hpp"
 
+#include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "engine/starts/parts.hpp"
@@ -19,20 +21,11 @@ struct Builder {
     return pour(container, n_spheres, random, stop);
   }
   std::vector<Vec3> operator()(const FittedPour&) const {
-    const auto* box = std::get_if<WalledBox>(&container);
-    if (box == nullptr) {
-      throw StartError(
-          "fitted pour: it fits a periodic pour between four flat walls, and this container has "
-          "none; use a steepest-descent pour");
-    }
-    const PeriodicBox sides{box->width_x, box->width_y};
-    if (const auto fault = width_fault(sides)) {
-      throw StartError("fitted pour: the pour before the fitting needs periodic sides, and their " +
-                       *fault + "; widen the box or use a steepest-descent pour");
-    }
+    const auto& box = std::get<WalledBox>(container);
+    const PeriodicBox sides{box.width_x, box.width_y};
     std::vector<Vec3> poured = pour(sides, n_spheres, random, stop);
     if (before_fitting != nullptr) *before_fitting = {sides, poured};
-    return fit_pour(*box, std::move(poured), random, stop);
+    return fit_pour(box, std::move(poured), random, stop);
   }
   std::vector<Vec3> operator()(const RandomSettle& start) const {
     return scatter(start, container, n_spheres, random);
@@ -41,25 +34,86 @@ struct Builder {
     return build_crystal(start, container, n_spheres);
   }
   std::vector<Vec3> operator()(const Grow& start) const {
-    const auto* box = std::get_if<FullyPeriodicBox>(&container);
-    if (box == nullptr) {
-      throw StartError(
-          "grow: it fills a fully periodic box, and this container has a floor; use a pour, a "
-          "random settle or a crystal");
-    }
-    return grow(start, *box, n_spheres, random, stop);
+    return grow(start, std::get<FullyPeriodicBox>(container), n_spheres, random, stop);
   }
   std::vector<Vec3> operator()(const GivenPacking& start) const {
     return check_given(start, container, n_spheres);
   }
 };
 
+struct StartFault {
+  const Container& container;
+
+  using Fault = std::optional<std::string>;
+  Fault needs_gravity() const {
+    if (has_gravity(container)) return std::nullopt;
+    return "a fully_periodic container has neither floor nor gravity: start it with grow, with a "
+           "crystal or from a file";
+  }
+  Fault operator()(const SteepestDescentPour&) const { return needs_gravity(); }
+  Fault operator()(const RandomSettle&) const { return needs_gravity(); }
+  Fault operator()(const FittedPour&) const {
+    if (const auto fault = needs_gravity()) return fault;
+    const auto* box = std::get_if<WalledBox>(&container);
+    if (box == nullptr) {
+      return "a fitted pour is fitted between walls: it needs the sides \"walls\" (elsewhere take "
+             "\"steepest_descent\")";
+    }
+    const auto fault = width_fault(PeriodicBox{box->width_x, box->width_y});
+    if (!fault) return std::nullopt;
+    return "the pour before the fitting needs periodic sides, and their " + *fault +
+           " (widen the box or take \"steepest_descent\")";
+  }
+  Fault operator()(const Crystal& crystal) const {
+    const bool periodic = std::holds_alternative<PeriodicBox>(container) || !has_gravity(container);
+    if (periodic || !crystal.stretch) return std::nullopt;
+    return "stretch spaces rows out to a period, and there is none between walls: leave it out or "
+           "use periodic sides";
+  }
+  Fault operator()(const Grow&) const {
+    if (!has_gravity(container)) return std::nullopt;
+    return "spheres grow in a fully_periodic container only: elsewhere pour them";
+  }
+  Fault operator()(const GivenPacking&) const { return std::nullopt; }
+};
+
 }  // namespace
+
+std::optional<std::string> start_fault(const Start& start, const Container& container) {
+  return std::visit(StartFault{container}, start);
+}
+
+std::optional<std::string> n_spheres_fault(const Start& start, const Container& container,
+                                           std::uint32_t n_spheres) {
+  if (n_spheres == 0) return "no spheres are asked for: ask for at least one";
+  const auto* box = std::get_if<FullyPeriodicBox>(&container);
+  if (box == nullptr || !std::holds_alternative<Grow>(start)) return std::nullopt;
+  const double volume = box->width_x * box->width_y * box->height;
+  const double fraction = n_spheres * sphere_volume / volume;
+  if (fraction <= densest_growth) return std::nullopt;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%u spheres fill %.4f of the box: growing without order ends at %g, that is %.0f "
+                "spheres",
+                n_spheres, fraction, densest_growth,
+                std::floor(densest_growth * volume / sphere_volume));
+  return text;
+}
+
+std::optional<std::string> settling_fault(const Start& start) {
+  if (std::holds_alternative<RandomSettle>(start) || std::holds_alternative<FittedPour>(start)) {
+    return std::nullopt;
+  }
+  return "this start is at rest from the beginning: only random_settle and a fitted pour can be "
+         "relaxed before tap 0";
+}
 
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
                    RandomStream& random, const StopAsked& stop, Packing* before_fitting) {
-  if (n_spheres == 0) throw StartError("start: no spheres are asked for; ask for at least one");
-  if (const auto fault = width_fault(container)) throw StartError("start: " + *fault);
+  for (const auto& fault : {width_fault(container), start_fault(start, container),
+                            n_spheres_fault(start, container, n_spheres)}) {
+    if (fault) throw StartError("start: " + *fault);
+  }
   const Builder build{container, n_spheres, random, stop, before_fitting};
   return {container, std::visit(build, start)};
 }

@@ -4,7 +4,9 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -71,6 +73,22 @@ struct GivenPacking {
 
 using Start =
     std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
+
+/// Spheres that grow without order jam beyond this solids fraction.
+inline constexpr double densest_growth = 0.64;
+
+/// Why the container, however many spheres it is to hold, cannot be filled in this way; nothing if
+/// it can. Without floor and gravity only growth, a crystal and a given packing do; growth does
+/// nowhere else; a fitted pour needs walls more than 2 diameters apart; rows are stretched to a
+/// period only.
+std::optional<std::string> start_fault(const Start& start, const Container& container);
+
+/// Why so many spheres cannot start so in the container; nothing if they may.
+std::optional<std::string> n_spheres_fault(const Start& start, const Container& container,
+                                           std::uint32_t n_spheres);
+
+/// Why it makes no sense to relax this start before tap 0: it is at rest. Nothing if it may move.
+std::optional<std::string> settling_fault(const Start& start);
 
 /// A start that cannot fit; what() says what, why and what to do.
 class StartError : public std::runtime_error {

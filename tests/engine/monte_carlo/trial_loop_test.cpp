@@ -189,5 +189,5 @@ TEST_CASE("steps of any size leave no overlap") {
 
 TEST_CASE("without gravity the polar move is refused") {
   CHECK_THROWS_WITH(make_trial_loop(FullyPeriodicBox{}, PolarMove{}, key),
-                    Catch::Contains("use the Metropolis move"));
+                    Catch::Contains("use \"metropolis\""));
 }

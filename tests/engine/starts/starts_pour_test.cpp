@@ -175,7 +175,7 @@ TEST_CASE("Pours depend on the stream alone") {
 TEST_CASE("Pours that cannot be are refused") {
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   CHECK_THROWS_WITH(make_start(SteepestDescentPour{}, FullyPeriodicBox{}, 10, random),
-                    Catch::Contains("no floor"));
+                    Catch::Contains("neither floor"));
   CHECK_THROWS_WITH(make_start(SteepestDescentPour{}, PeriodicBox{16, 16}, 0, random),
                     Catch::Contains("at least one"));
   CHECK_THROWS_AS(make_start(SteepestDescentPour{}, PeriodicBox{2, 16}, 10, random), StartError);

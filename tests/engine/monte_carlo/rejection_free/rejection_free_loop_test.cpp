@@ -158,10 +158,11 @@ TEST_CASE("rejection-free sampling is an error where trials may rise") {
   const auto make = [](const Container& container, const Move& move) {
     make_trial_loop(container, move, key, best_instruction_set(), Sampler::skipping);
   };
-  CHECK_THROWS_WITH(make(FullyPeriodicBox{}, MetropolisMove{}), Catch::Contains("needs gravity"));
+  CHECK_THROWS_WITH(make(FullyPeriodicBox{}, MetropolisMove{}), Catch::Contains("without gravity"));
   CHECK_THROWS_WITH(make(PeriodicBox{}, MetropolisMove{0.1, 3.0}), Catch::Contains("finite beta"));
   MetropolisMove adaptive{0.1};
   adaptive.adaptation = StepAdaptation{};
   adaptive.adaptation->base = AcceptanceBase::not_upward;
-  CHECK_THROWS_WITH(make(PeriodicBox{}, adaptive), Catch::Contains("does not count rising"));
+  CHECK_THROWS_WITH(make(PeriodicBox{}, adaptive),
+                    Catch::Contains("does not see the upward trials"));
 }

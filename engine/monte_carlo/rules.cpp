@@ -1,0 +1,36 @@
+#include <limits>
+
+#include "engine/monte_carlo/trial_loop.hpp"
+
+// What goes with what among containers, moves and samplers.
+namespace jostle {
+
+std::optional<std::string> move_fault(const Move& move, const Container& container) {
+  if (has_gravity(container) || !std::holds_alternative<PolarMove>(move)) return std::nullopt;
+  return "polar moves fall: without gravity (fully_periodic) use \"metropolis\"";
+}
+
+std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
+                                         const Container& container) {
+  if (sampler == Sampler::exhaustive) return std::nullopt;
+  std::string why;
+  if (!has_gravity(container)) {
+    why = "skipping needs trials that only fall, and without gravity (fully_periodic) none does";
+  }
+  if (const auto* metropolis = std::get_if<MetropolisMove>(&move)) {
+    const auto add = [&](const char* reason) {
+      why += (why.empty() ? "" : "; ") + std::string(reason);
+    };
+    if (metropolis->beta != std::numeric_limits<double>::infinity()) {
+      add("skipping needs trials that only fall, and a finite beta lets some rise");
+    }
+    if (metropolis->adaptation && metropolis->adaptation->base != AcceptanceBase::all_trials) {
+      add("skipping does not see the upward trials that the adaptation of the step leaves out "
+          "(\"of\": \"not_upward\")");
+    }
+  }
+  if (why.empty()) return std::nullopt;
+  return why + ": use \"exhaustive\"";
+}
+
+}  // namespace jostle

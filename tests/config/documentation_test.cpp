@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include "engine/monte_carlo/rejection_free/directions.hpp"
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+namespace {
+
+/// 1 000 000 as pages write it.
+std::string spaced(std::uint64_t value) {
+  std::string text = fmt::to_string(value);
+  if (text.size() < 5) return text;
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, " ");
+  return text;
+}
+
+/// 1e9, 1e12.
+std::string power_of_ten(std::uint64_t value) {
+  std::size_t zeros = 0;
+  for (; value > 1; value /= 10) {
+    REQUIRE(value % 10 == 0);
+    ++zeros;
+  }
+  return fmt::format("1e{}", zeros);
+}
+
+}  // namespace
+
+TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
+  const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
+  const StepAdaptation adapt;
+  const BulkFractionStop bulk;
+  const MeanHeightStop mean_height;
+  for (const std::string& quoted : {
+           fmt::format("width above {}", least_periodic_width),
+           fmt::format("width at least {}", least_walled_width),
+           fmt::format("n taps of one kind (0 to {})", power_of_ten(most_taps)),
+           fmt::format(
+               "`lambda` 0 to 10 ({}), `lateral_radius` 0 to 1 ({}), `retries` 0 to 1000 ({})",
+               Shake{}.lambda, Shake{}.lateral_radius, Shake{}.retries),
+           fmt::format("at most 0.25; {})", RandomSettle{}.dilute_fraction),
+           fmt::format("`max_sweeps` (1 to {}, {})", power_of_ten(most_sweeps),
+                       spaced(Grow{}.max_sweeps)),
+           fmt::format("solids fraction at most {}", densest_growth),
+           fmt::format("a solids fraction of {};", densest_growth),
+           fmt::format("`max_step` (1e-9 to {}; {})", least_periodic_width, PolarMove{}.max_step),
+           fmt::format("`eta` (between 0 and 1; 1e-5) or `change` (above 0, at most 1), "
+                       "`every_sweeps` (1 to {}; {})",
+                       power_of_ten(most_sweeps), mean_height.every_sweeps),
+           fmt::format(
+               "`change` (0 to 1; {}), `every_trials` (1 to {}; {}), `times` (1 to 1000; {})",
+               bulk.change, power_of_ten(most_trials), spaced(bulk.every_trials), bulk.times),
+           fmt::format("`max_sweeps` | whole, 1 to {} | {} |", power_of_ten(most_sweeps),
+                       spaced(Stop{}.max_sweeps)),
+           fmt::format("(1 to {}; {}) the step is multiplied by `factor` (between 0\nand 1; {})",
+                       power_of_ten(most_trials), spaced(adapt.every_trials), adapt.factor),
+           fmt::format("fewer than {:g} % of polar trials ({:g} % of Metropolis ones)",
+                       100 * PolarDirections::least_acceptance,
+                       100 * CubicDirections::least_acceptance),
+           fmt::format("`threshold` (above 0, at most 1; {})", adapt.threshold),
+       }) {
+    INFO(quoted);
+    CHECK(page.find(quoted) != std::string::npos);
+  }
+  CHECK(mean_height.eta == 1e-5);
+}
+
+}  // namespace jostle
