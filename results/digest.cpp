@@ -231,7 +231,7 @@ std::string digest_of(const std::string& path) {
   verify_seal(path);
   silence_hdf5();
   return naming_file(path, [&] {
-    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle file = open_to_read(path);
     return Digest().of(file);
   });
 }

@@ -19,9 +19,7 @@ namespace {
 Hdf5Handle open_sealed(const std::string& path, const std::string& known_as) {
   verify_seal(path);
   silence_hdf5();
-  return naming_file(known_as, [&] {
-    return Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  });
+  return naming_file(known_as, [&] { return open_to_read(path); });
 }
 
 std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& each) {

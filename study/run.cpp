@@ -65,10 +65,11 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   store_ = RunStore::resume(
       output, [this](const ResultsFile& file) { return study_for(file); }, settings.shard, by,
       settings.take_over);
-  const auto pending = store_->pending(retry_failed_);
+  auto pending = store_->pending(retry_failed_);
+  std::ranges::sort(pending);
   for (const RealizationSummary& one : store_->realizations()) {
-    const bool counts = one.status == RealizationStatus::running &&
-                        std::ranges::find(pending, one.id) != pending.end();
+    const bool counts =
+        one.status == RealizationStatus::running && std::ranges::binary_search(pending, one.id);
     if (counts && one.rows > 0) taps_recorded_ += one.rows - 1;  // row 0 is the start
   }
 }

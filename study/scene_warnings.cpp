@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <variant>
 
 #include "study/amounts.hpp"
@@ -17,6 +18,7 @@ constexpr double largest_angle = 2, largest_degrees = 180;  // theta0 of 1000 me
 constexpr double largest_stretch = 1;                       // twice as high; the papers end at 0.5
 constexpr double largest_lift = 5;                          // diameters; the papers' end at 0.5
 constexpr double much_disk = 1e12;                          // bytes
+constexpr std::size_t most_warnings = 50;
 
 class Warnings {
  public:
@@ -27,9 +29,16 @@ class Warnings {
     }
   }
   void add(std::string text) {
-    if (std::ranges::find(texts_, text) == texts_.end()) texts_.push_back(std::move(text));
+    if (known_.insert(text).second && known_.size() <= most_warnings) {
+      texts_.push_back(std::move(text));
+    }
   }
-  std::vector<std::string> texts() && { return std::move(texts_); }
+  std::vector<std::string> texts() && {
+    if (known_.size() > most_warnings) {
+      texts_.push_back(fmt::format("... and {} more", known_.size() - most_warnings));
+    }
+    return std::move(texts_);
+  }
 
  private:
   void look_at_engine(const MonteCarlo& engine) {
@@ -60,7 +69,8 @@ class Warnings {
                     name, strength, 1 + strength, strength, strength / 100));
   }
 
-  std::vector<std::string> texts_;
+  std::set<std::string> known_;
+  std::vector<std::string> texts_;  // the first of them
 };
 
 }  // namespace

@@ -10,6 +10,9 @@
 // and for what hdf5_write.hpp never writes (hdf5_policy.hpp).
 namespace jostle {
 
+/// Opens a file that is not written to, and keeps little of it in memory.
+Hdf5Handle open_to_read(const std::string& path);
+
 Hdf5Handle open_group(hid_t parent, const std::string& name);
 Hdf5Handle open_dataset(hid_t parent, const std::string& name);
 /// Whether the path exists, intermediate groups included.

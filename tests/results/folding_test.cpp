@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -11,6 +13,7 @@
 #include "results/axes.hpp"
 #include "results/checkpoints/part.hpp"
 #include "results/checkpoints/run_parts.hpp"
+#include "results/merge.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 
@@ -164,5 +167,38 @@ TEST_CASE("a fold takes little memory, however large the run") {
   });
   std::ifstream messages(folder / "messages");
   CAPTURE(of_series, std::string(std::istreambuf_iterator<char>(messages), {}));
+  CHECK(ending.code == 0);
+}
+
+TEST_CASE("a merge takes 32 MB for every input, however large they are") {
+  if (memory_is_watched) return;
+  const synthetic::Sizes sizes{
+      .points = 1, .realizations = 8, .spheres = 2, .taps = 200'000, .snapshot_taps = {}};
+  constexpr double an_input = 34, besides = 60;  // megabytes
+  const std::uint32_t n_inputs = GENERATE(2u, 4u, 8u);
+  const TemporaryFolder folder;
+  std::vector<std::string> inputs;
+  for (std::uint32_t i = 1; i <= n_inputs; ++i) inputs.push_back(folder / std::to_string(i));
+  // In a process of its own: what it gives back would be taken again unseen.
+  const Ending made = run_forked({}, folder / "messages", [&] {
+    const Study study = synthetic::study(sizes);
+    for (std::uint32_t i = 1; i <= n_inputs; ++i) {
+      const auto store = RunStore::create(inputs[i - 1], study, {i, n_inputs}, provenance());
+      synthetic::run_pending(*store, study, {.checkpoint_every = 100'000});
+      store->finish();
+    }
+  });
+  REQUIRE(made.code == 0);
+  const Ending ending = run_forked({}, folder / "messages", [&] {
+    const double before = peak_megabytes();
+    merge_files(inputs, folder / "merged.h5", provenance());
+    const double grown = peak_megabytes() - before;
+    fmt::print("a merge of {} inputs takes {:.0f} MB\n", n_inputs, grown);
+    std::fflush(stdout);
+    if (grown > besides + n_inputs * an_input)
+      throw std::runtime_error("took " + std::to_string(grown) + " MB");
+  });
+  std::ifstream messages(folder / "messages");
+  CAPTURE(n_inputs, std::string(std::istreambuf_iterator<char>(messages), {}));
   CHECK(ending.code == 0);
 }

@@ -8,13 +8,17 @@
 #include <functional>
 #include <limits>
 
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
+#include "results/export/packing_file.hpp"
 #include "results/results_writer.hpp"
 #include "runs.hpp"
+#include "structure/measure.hpp"
 #include "temporary_folder.hpp"
 
-// What files of many points and realizations cost, and files of long plans of which little is done:
-// in proportion to what is in them. Ratios of processor time, the least of three, with room for a
-// machine that does other work: in proportion is 4, its square 16.
+// What files of many points and realizations cost, files of long plans of which little is done, and
+// packings in wide boxes: in proportion to what is in them. Ratios of processor time, the least of
+// three, with room for a machine that does other work: in proportion is 4, its square 16.
 using namespace jostle;
 
 namespace {
@@ -40,7 +44,23 @@ double processor_seconds(const std::function<void()>& work) {
 constexpr std::uint32_t times = 4;
 constexpr double most_growth = 2.5 * 2.5;  // of two doublings
 
+/// Work of a size, and what it is called.
+template <class Size>
+using Steps = std::vector<std::pair<const char*, std::function<void(const Size&)>>>;
+
 /// How much longer each step takes with `large` than with `small`.
+template <class Size>
+void check_steps(const char* what, const Steps<Size>& steps, const Size& small, const Size& large) {
+  for (const auto& [step, work] : steps) {
+    const double one = processor_seconds([&, &run = work] { run(small); });
+    const double more = processor_seconds([&, &run = work] { run(large); });
+    fmt::print("{} times the {}: {:12} {:7.1f} ms, {:7.1f} ms, {:.2f} times\n", times, what, step,
+               1e3 * one, 1e3 * more, more / one);
+    CAPTURE(what, step, one, more);
+    CHECK(more < most_growth * one);
+  }
+}
+
 void check_growth(const char* what, const synthetic::Sizes& small, const synthetic::Sizes& large) {
   const TemporaryFolder folder;
   const auto path = [&](const synthetic::Sizes& sizes) {
@@ -59,16 +79,36 @@ void check_growth(const char* what, const synthetic::Sizes& small, const synthet
     REQUIRE(file.realizations().size() == std::size_t{sizes.points} * sizes.realizations);
   };
   const auto digested = [&](const synthetic::Sizes& sizes) { digest_of(path(sizes)); };
-  const std::pair<const char*, std::function<void(const synthetic::Sizes&)>> steps[] = {
+  const Steps<synthetic::Sizes> steps = {
       {"run and fold", written}, {"open", opened}, {"digest", digested}};
-  for (const auto& [step, work] : steps) {
-    const double one = processor_seconds([&, &run = work] { run(small); });
-    const double more = processor_seconds([&, &run = work] { run(large); });
-    fmt::print("{} times the {}: {:12} {:7.1f} ms, {:7.1f} ms, {:.2f} times\n", times, what, step,
-               1e3 * one, 1e3 * more, more / one);
-    CAPTURE(what, step, one, more);
-    CHECK(more < most_growth * one);
-  }
+  check_steps(what, steps, small, large);
+}
+
+/// A bed of as many spheres in a wider box.
+void check_growth_of_sides(double side) {
+  constexpr std::uint32_t n_spheres = 2000;
+  const StreamKey key = stream_key(14, 0, 0, Purpose::start);
+  const TemporaryFolder folder;
+  const auto bed = [&](double width) {
+    RandomStream random(key);
+    return make_start(SteepestDescentPour{}, PeriodicBox{width, width}, n_spheres, random);
+  };
+  const auto path = [&](double width) { return folder / fmt::format("{}.xyz", width); };
+  for (const double width : {side, times * side}) write_extended_xyz(path(width), bed(width));
+  const auto relaxed = [&](double width) {
+    const Packing packing = read_packing(path(width));
+    const auto loop = make_trial_loop(packing.container, PolarMove{}, key);
+    loop->load(packing);
+    loop->run(100 * n_spheres);
+  };
+  const auto measured = [&](double width) {
+    REQUIRE(measure(read_packing(path(width)), all_structure(), key).size() >= 9);
+  };
+  const Steps<double> steps = {{"pour", bed},
+                               {"read", [&](double width) { read_packing(path(width)); }},
+                               {"relax", relaxed},
+                               {"structure", measured}};
+  check_steps("sides", steps, side, times * side);
 }
 
 }  // namespace
@@ -87,6 +127,11 @@ TEST_CASE(
     check_growth("taps", {.points = 1, .realizations = 1, .taps = 20'000},
                  {.points = 1, .realizations = 1, .taps = times * 20'000});
   }
+}
+
+// As many spheres: area alone costs nothing, up to the widest box of all.
+TEST_CASE("a wider box takes no longer than its spheres and its bins") {
+  check_growth_of_sides(GENERATE(40.0, 2500.0));
 }
 
 TEST_CASE("thousands of points and realizations take time in proportion too", "[nightly]") {

@@ -21,7 +21,31 @@ std::string report_of(std::uint64_t steps) {
   return report(ResultsFile(folder / "a.h5"));
 }
 
+/// The report of a run whose <Z> is so high at its last tap.
+std::string report_of_height(double last) {
+  const TemporaryFolder folder;
+  const Study study =
+      synthetic::study({.points = 1, .realizations = 1, .taps = 1, .snapshot_taps = {}});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  store->begin({0, 0});
+  for (std::uint64_t tap = 0; tap < 2; ++tap) {
+    TapRow row = synthetic::expected_row(study, {0, 0}, tap);
+    row.observables[0] = tap == 0 ? 5 : last;
+    store->append({0, 0}, row);
+  }
+  RealizationState state;
+  state.rows = 2;
+  store->end({0, 0}, state, {.status = RealizationStatus::done, .reason = {}});
+  store->finish();
+  return report(ResultsFile(folder / "a.h5"));
+}
+
 }  // namespace
+
+TEST_CASE("A report says where taps make a bed grow without end") {
+  CHECK(report_of_height(49).find("<Z> has grown") == std::string::npos);
+  CHECK(report_of_height(51).find("<Z> has grown from 5 d to 51 d") != std::string::npos);
+}
 
 TEST_CASE("A report has the number of realizations a row where not all reached every tap") {
   const std::string partial = report_of(7), whole = report_of(100);
