@@ -13,7 +13,7 @@ namespace {
 std::string spaced(std::uint64_t value) {
   std::string text = fmt::to_string(value);
   if (text.size() < 5) return text;
-  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, " ");
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, 1, ' ');
   return text;
 }
 

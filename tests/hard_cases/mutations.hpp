@@ -90,13 +90,12 @@ inline void collect(nlohmann::ordered_json& value, std::vector<nlohmann::ordered
 /// scene, made larger or smaller, removed, doubled, or given another key.
 inline nlohmann::ordered_json mutated_structure(nlohmann::ordered_json scene,
                                                 RandomStream& random) {
-  using Json = nlohmann::ordered_json;
   static constexpr std::array factors = {-1.0, 0.0, 0.5, 2.0, 1e-3, 1e3, 1e12};
   for (std::uint64_t change = 0, n = 1 + random.below(3); change < n; ++change) {
-    std::vector<Json*> all;
+    std::vector<nlohmann::ordered_json*> all;
     collect(scene, all);
-    Json& value = *all[random.below(all.size())];
-    const Json other = *all[random.below(all.size())];
+    nlohmann::ordered_json& value = *all[random.below(all.size())];
+    const nlohmann::ordered_json other = *all[random.below(all.size())];
     switch (random.below(6)) {
       case 0:
         value = surprising_value(random);
