@@ -104,10 +104,11 @@ void check_growth_of_sides(double side) {
   const auto measured = [&](double width) {
     REQUIRE(measure(read_packing(path(width)), all_structure(), key).size() >= 9);
   };
-  const Steps<double> steps = {{"pour", bed},
-                               {"read", [&](double width) { read_packing(path(width)); }},
-                               {"relax", relaxed},
-                               {"structure", measured}};
+  Steps<double> steps = {{"pour", bed},
+                         {"read", [&](double width) { read_packing(path(width)); }},
+                         {"relax", relaxed}};
+  // Structure refuses spheres that are all far apart.
+  if (side < 100) steps.emplace_back("structure", measured);
   check_steps("sides", steps, side, times * side);
 }
 
