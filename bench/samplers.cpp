@@ -112,7 +112,7 @@ void compare(const Course& course, int taps) {
   RandomStream tap_random(stream_key(seed, 0, 0, Purpose::tap));
   Packing bed = make_start(SteepestDescentPour{}, course.container, course.n_spheres, start_random);
   Side exhaustive = side_of(course, Sampler::exhaustive);
-  Side rejection_free = side_of(course, Sampler::skipping);
+  Side rejection_free = side_of(course, Sampler::rejection_free);
   const Stop stop{MeanHeightStop{.eta = course.eta, .every_sweeps = 100}, 100'000'000};
   for (int k = 0; k < taps; ++k) {
     excite(bed, course.tap, tap_random);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How well `jostle cost` foretells the time of a run.
 
-time_estimates.py JOSTLE FOLDER [SCENE ...]: for each scene (without a sweep) a pilot of two rounds, then the
+time_estimates.py JOSTLE FOLDER [SCENE ...]: for each scene (without a sweep) a pilot of two replicates, then the
 whole run, both on two threads; prints the estimated and the real core time and their ratio, and
 exits with 1 where one is more than 25 % off."""
 import pathlib
@@ -41,7 +41,7 @@ def main(jostle, folder, scenes):
     for scene in map(pathlib.Path, scenes or DEFAULT):
         name = f"{scene.parent.parent.name}-{scene.stem}"
         pilot, whole = folder / f"{name}-cost.h5", folder / f"{name}.h5"
-        run(jostle, "cost", scene, "--rounds", 2, "-o", pilot, "--force")
+        run(jostle, "cost", scene, "--replicates", 2, "-o", pilot, "--force")
         run(jostle, "run", scene, "-o", whole, "--force")
         estimated, real = estimated_seconds(pilot), real_seconds(whole)
         worst = max(worst, abs(estimated / real - 1))

@@ -15,7 +15,7 @@ namespace jostle::bench {
 namespace {
 
 // States take seconds to make: each is made once, when a benchmark first asks for it.
-const Case& made(StandardState state, std::uint32_t n_spheres) {
+const Case& case_of(StandardState state, std::uint32_t n_spheres) {
   static std::map<std::pair<StandardState, std::uint32_t>, Case> cases;
   const auto found = cases.find({state, n_spheres});
   if (found != cases.end()) return found->second;
@@ -23,7 +23,7 @@ const Case& made(StandardState state, std::uint32_t n_spheres) {
 }
 
 void trials(benchmark::State& run, StandardState state, std::uint32_t n_spheres) {
-  const Case& start = made(state, n_spheres);
+  const Case& start = case_of(state, n_spheres);
   const auto loop = make_trial_loop(start.packing.container, start.move,
                                     stream_key(20010222, 0, 1, Purpose::trials));
   loop->load(start.packing);

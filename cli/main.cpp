@@ -3,18 +3,17 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
-#include <sstream>
 #include <stdexcept>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/options/command_line.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/version.hpp"
 #include "results/export/printable.hpp"
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 constexpr const char* footer =
@@ -33,10 +32,11 @@ constexpr const char* footer =
     "goes on.";
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App app{"Ensembles of tapped granular packings", "jostle"};
-  app.set_version_flag("--version", version_text());
+  CommandLine line("jostle", "Ensembles of tapped granular packings");
+  line.set_version(version_text());
+  Command app = line.program();
   app.footer(footer);
-  app.require_subcommand(1);
+  app.require_command();
   int code = exit_ok;
   add_new(app, code);
   add_run(app, code);
@@ -51,19 +51,10 @@ int parse_and_run(int argc, char** argv) {
   add_analyse(app, code);
   add_structure(app, code);
   add_export(app, code);
-  refuse_negative_counts(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(app);
-    if (!unknown.empty()) throw BadInput(unknown);
-    std::ostringstream asked_for, fault;  // a help or the version; what is wrong
-    const int refused = app.exit(error, asked_for, fault);
-    print(asked_for.str());
-    print_to_standard_error(fault.str());
-    return refused == 0 ? exit_ok : exit_bad_input;
-  }
-  return code;
+  const CommandLine::Outcome outcome = line.parse_and_run(argc, argv);
+  print(outcome.asked_for);
+  print_to_standard_error(outcome.fault);
+  return outcome.refused ? exit_bad_input : code;
 }
 
 void say(const std::string& what) {
@@ -78,7 +69,7 @@ int run_program(int argc, char** argv) {
     log->set_pattern("%T jostle: %v");
     spdlog::set_default_logger(log);
     const int code = parse_and_run(argc, argv);
-    return code == exit_ok && output_is_lost() ? exit_broken_surroundings : code;
+    return code == exit_ok && output_is_lost() ? exit_io_error : code;
   } catch (const BadInput& error) {
     say(failure_text(error));
     return exit_bad_input;
@@ -87,17 +78,17 @@ int run_program(int argc, char** argv) {
     return exit_bad_input;
   } catch (const JsonError& error) {
     say(fmt::format("a stored scene is not as jostle writes it: {}", error.what()));
-    return exit_broken_surroundings;
+    return exit_io_error;
   } catch (const std::exception& error) {
     say(failure_text(error));
-    return exit_broken_surroundings;
+    return exit_io_error;
   }
 }
 
 }  // namespace
-}  // namespace jostle
+}  // namespace jostle::inline cli
 
 int main(int argc, char** argv) {
-  jostle::guard_files();
+  jostle::reserve_standard_fds();
   return jostle::run_program(argc, argv);
 }

@@ -10,8 +10,8 @@ if(JOSTLE_WARNINGS_AS_ERRORS)
   target_compile_options(jostle_options INTERFACE -Werror)
 endif()
 
-# What no run spends its time in - reading scenes, commands, text - is compiled with -O1 where users
-# build: that takes half the time of -O3. Numbers are the same at every level.
+# What no run spends its time in - reading scenes, files, commands, text, tests - is compiled with -O1
+# where users build: that takes half the time of -O3. Numbers are the same at every level.
 add_library(jostle_not_hot INTERFACE)
 target_compile_options(jostle_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 

@@ -39,7 +39,6 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/structure_tables.hpp
     ensemble/analysis/sweep_curve.hpp
     ensemble/analysis/table.hpp
-    ensemble/enough.hpp
     ensemble/fitting_report.hpp
     ensemble/fold.hpp
     ensemble/moments.hpp
@@ -56,6 +55,7 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/statistics/student_tests.hpp
     ensemble/statistics/trend.hpp
     ensemble/tap_rows.hpp
+    ensemble/target_precision.hpp
     fitting/counts.hpp
     fitting/curve.hpp
     fitting/fit.hpp
@@ -96,17 +96,17 @@ set(JOSTLE_PUBLIC_HEADERS
     study/provenance.hpp
     study/results_input.hpp
     study/run.hpp
-    study/scene_file.hpp
-    study/scene_tables.hpp
-    study/scene_warnings.hpp
+    study/scenes/scene_file.hpp
+    study/scenes/scene_tables.hpp
+    study/scenes/scene_warnings.hpp
     study/seconds.hpp
     study/self_checks.hpp
     study/tables/analyse.hpp
     study/tables/curve_file.hpp
-    study/tables/enough.hpp
     study/tables/fit_source.hpp
     study/tables/fits.hpp
     study/tables/half_widths.hpp
     study/tables/structure.hpp
     study/tables/sweep.hpp
+    study/tables/target_precision.hpp
     study/version.hpp)

@@ -20,9 +20,9 @@ endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
 #include "study/version.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 const char* git_revision() { return "${revision}"; }
 
-}  // namespace jostle
+}  // namespace jostle::inline study
 ]])

@@ -9,7 +9,7 @@
 #include "config/parts/parts.hpp"
 #include "ensemble/sink.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -163,4 +163,4 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check_structure(scene, faults);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

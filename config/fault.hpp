@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// What is wrong with one value of a scene.
 struct Fault {
@@ -11,4 +11,4 @@ struct Fault {
   bool operator==(const Fault&) const = default;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline config

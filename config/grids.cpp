@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::vector<std::uint64_t> chosen_taps(const TapChoice& choice) {
   return taps;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

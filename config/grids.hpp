@@ -6,7 +6,7 @@
 #include "config/scene.hpp"
 
 // Lists that a scene gives by a rule.
-namespace jostle {
+namespace jostle::inline config {
 
 /// How many steps lead from one end of a ramp to the other; nothing where no whole number does, to
 /// one part in 1e6 of a step.
@@ -20,4 +20,4 @@ std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol);
 /// The taps that are chosen, ascending, none twice.
 std::vector<std::uint64_t> chosen_taps(const TapChoice& choice);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -6,7 +6,7 @@
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -84,4 +84,4 @@ ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) 
   return parse_scene(resolved(*first.scene).dump());
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

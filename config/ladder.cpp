@@ -8,7 +8,7 @@
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -29,15 +29,15 @@ std::uint64_t raised(std::uint64_t sweeps, double factor) {
 class LadderMaker {
  public:
   explicit LadderMaker(const Scene& scene) : scene_(scene) {
-    add(Rung::Part::scene, "as the scene", scene.relax);
+    add(PilotSetting::Part::scene, "as the scene", scene.relax);
   }
 
-  std::vector<Rung> make() {
+  std::vector<PilotSetting> make() {
     std::visit([&](const auto& rule) { stops(rule); }, scene_.relax.stop.rule);
     std::visit([&](const auto& move) { steps(move); }, scene_.relax.move);
     half_the_spheres();
     other_pour();
-    return std::move(rungs_);
+    return std::move(settings_);
   }
 
  private:
@@ -67,7 +67,7 @@ class LadderMaker {
       other.every_sweeps = interval;
       Relaxation relax = scene_.relax;
       relax.stop.rule = other;
-      add(Rung::Part::interval, fmt::format("test every {} sweeps", interval), relax);
+      add(PilotSetting::Part::interval, fmt::format("test every {} sweeps", interval), relax);
     }
   }
 
@@ -94,7 +94,7 @@ class LadderMaker {
     Relaxation relax = scene_.relax;
     relax.stop.rule = rule;
     relax.stop.max_sweeps = raised(relax.stop.max_sweeps, std::max(1.0, 1 / factor));
-    add(Rung::Part::stop, std::move(name), relax);
+    add(PilotSetting::Part::stop, std::move(name), relax);
   }
 
   template <class AnyMove>
@@ -105,7 +105,7 @@ class LadderMaker {
       if (other.max_step > 2) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
-      add(Rung::Part::step, fmt::format("{} = {:.3g}", name, other.max_step), relax);
+      add(PilotSetting::Part::step, fmt::format("{} = {:.3g}", name, other.max_step), relax);
     }
   }
 
@@ -117,20 +117,20 @@ class LadderMaker {
       if (other.theta0 < 1e-6 || other.theta0 > 1000) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
-      add(Rung::Part::step, fmt::format("theta_0 = {:.3g}", other.theta0), relax);
+      add(PilotSetting::Part::step, fmt::format("theta_0 = {:.3g}", other.theta0), relax);
     }
   }
 
   void steps(const MetropolisMove& move) {
     largest_steps(move, "delta");
     const auto adapted = [&](const char* name, std::optional<StepAdaptation> adaptation) {
-      const bool skips = scene_.relax.sampler == Sampler::skipping;
+      const bool skips = scene_.relax.sampler == Sampler::rejection_free;
       if (skips && adaptation && adaptation->base == AcceptanceBase::not_upward) return;
       MetropolisMove other = move;
       other.adaptation = adaptation;
       Relaxation relax = scene_.relax;
       relax.move = other;
-      add(Rung::Part::adaptation, name, relax);
+      add(PilotSetting::Part::adaptation, name, relax);
     };
     adapted("published delta rule", StepAdaptation{});
     adapted("delta of falling trials, 2 %",
@@ -149,47 +149,48 @@ class LadderMaker {
     double& width = periodic ? periodic->width_x : walled->width_x;
     width *= 0.5;
     if (width < narrowest_half) return;
-    add(Rung::Part::spheres, "half the footprint", scene_.relax);
-    rungs_.back().n_spheres /= 2;
-    rungs_.back().container = half;
+    add(PilotSetting::Part::spheres, "half the footprint", scene_.relax);
+    settings_.back().n_spheres /= 2;
+    settings_.back().container = half;
   }
 
   void other_pour() {
     const auto* box = std::get_if<WalledBox>(&scene_.container);
     if (box == nullptr || scene_.relax_start) return;
     if (std::holds_alternative<FittedPour>(scene_.start)) {
-      add(Rung::Part::start, "poured between the walls", scene_.relax);
-      rungs_.back().start = SteepestDescentPour{};
+      add(PilotSetting::Part::start, "poured between the walls", scene_.relax);
+      settings_.back().start = SteepestDescentPour{};
     } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) &&
                !start_fault(FittedPour{}, *box)) {
-      add(Rung::Part::start, "fitted between the walls", scene_.relax);
-      rungs_.back().start = FittedPour{};
+      add(PilotSetting::Part::start, "fitted between the walls", scene_.relax);
+      settings_.back().start = FittedPour{};
     }
   }
 
-  void add(Rung::Part part, std::string name, const Relaxation& relax) {
-    const bool known =
-        part != Rung::Part::spheres && part != Rung::Part::start &&
-        std::ranges::any_of(rungs_, [&](const Rung& rung) { return rung.relax == relax; });
+  void add(PilotSetting::Part part, std::string name, const Relaxation& relax) {
+    const bool known = part != PilotSetting::Part::spheres && part != PilotSetting::Part::start &&
+                       std::ranges::any_of(settings_, [&](const PilotSetting& setting) {
+                         return setting.relax == relax;
+                       });
     if (known) return;
-    rungs_.push_back(
+    settings_.push_back(
         {part, std::move(name), relax, scene_.n_spheres, scene_.container, scene_.start});
   }
 
   const Scene& scene_;
-  std::vector<Rung> rungs_;
+  std::vector<PilotSetting> settings_;
 };
 
 }  // namespace
 
-std::vector<Rung> ladder(const Scene& scene) {
+std::vector<PilotSetting> ladder(const Scene& scene) {
   return LadderMaker(scene).make();
 }
 
-MostComplete most_complete(const std::vector<Rung>& rungs) {
+MostComplete most_complete(const std::vector<PilotSetting>& settings) {
   MostComplete found;
-  for (std::size_t i = 0; i < rungs.size(); ++i) {
-    if (rungs[i].part == Rung::Part::stop) found = {found.last, i};
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (settings[i].part == PilotSetting::Part::stop) found = {found.last, i};
   }
   return found;
 }
@@ -224,7 +225,8 @@ std::vector<OtherWindow> other_windows(const Scene& scene) {
   return windows;
 }
 
-Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps) {
+Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings,
+                   std::uint64_t taps) {
   Scene out = scene;
   out.name = scene.name + "-cost";
   out.streams = Streams::matched;
@@ -246,17 +248,18 @@ Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint
   SweepAxis axis;
   axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};
   // The values of a point are part of its random streams: without another start, none is named.
-  const bool starts_differ =
-      std::ranges::any_of(rungs, [](const Rung& rung) { return rung.part == Rung::Part::start; });
+  const bool starts_differ = std::ranges::any_of(settings, [](const PilotSetting& setting) {
+    return setting.part == PilotSetting::Part::start;
+  });
   if (starts_differ) axis.columns.push_back({"/start", {}});
-  for (const Rung& rung : rungs) {
-    axis.columns[0].second.push_back(written(rung.relax));
-    axis.columns[1].second.push_back(rung.n_spheres);
-    axis.columns[2].second.push_back(written(rung.container));
-    if (starts_differ) axis.columns[3].second.push_back(written(rung.start));
+  for (const PilotSetting& setting : settings) {
+    axis.columns[0].second.push_back(written(setting.relax));
+    axis.columns[1].second.push_back(setting.n_spheres);
+    axis.columns[2].second.push_back(written(setting.container));
+    if (starts_differ) axis.columns[3].second.push_back(written(setting.start));
   }
   out.sweep = {axis};
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

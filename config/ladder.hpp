@@ -5,10 +5,10 @@
 
 #include "config/scene.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// One setting of a scene's accuracy, everything else as the scene has it.
-struct Rung {
+struct PilotSetting {
   enum class Part { scene, stop, interval, step, adaptation, spheres, start };
   Part part = Part::scene;
   std::string name;  // "eta = 1e-06"
@@ -24,14 +24,14 @@ struct Rung {
 /// of polar moves; of Metropolis moves the published adaptation, this project's, and none; half the
 /// spheres on half the footprint, where the start fills any; between walls the other of the two
 /// pours, fitted or direct, unless the start is relaxed. Caps on sweeps are raised with the stops.
-std::vector<Rung> ladder(const Scene& scene);
+std::vector<PilotSetting> ladder(const Scene& scene);
 
-/// The rungs whose stops are most complete. The last is what the others are compared with; the
-/// scene's own, rung 0, stands before both.
+/// The settings whose stops are most complete. The last is what the others are compared with; the
+/// scene's own, setting 0, stands before both.
 struct MostComplete {
   std::size_t before = 0, last = 0;
 };
-MostComplete most_complete(const std::vector<Rung>& rungs);
+MostComplete most_complete(const std::vector<PilotSetting>& settings);
 
 /// A bulk fraction of the scene, read through another window.
 struct OtherWindow {
@@ -44,10 +44,11 @@ struct OtherWindow {
 /// ("_narrow", "_wide"); those whose name is taken or too long are left out.
 std::vector<OtherWindow> other_windows(const Scene& scene);
 
-/// The scene without its sweep, cut to `taps` taps, as a sweep over the rungs in their order, with
-/// matched streams, and with starts relaxed as the scene has it: so that realization m begins at
-/// every rung from the same bed, but where the rung is another start. Observes other_windows(),
-/// too. Keeps no snapshots.
-Scene ladder_scene(const Scene& scene, const std::vector<Rung>& rungs, std::uint64_t taps);
+/// The scene without its sweep, cut to `taps` taps, as a sweep over the settings in their order,
+/// with matched streams, and with starts relaxed as the scene has it: so that realization m begins
+/// at every setting from the same bed, but where the setting is another start. Observes
+/// other_windows(), too. Keeps no snapshots.
+Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings,
+                   std::uint64_t taps);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

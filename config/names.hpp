@@ -8,7 +8,7 @@
 #include "ensemble/plan.hpp"
 
 // What scenes call the enumerators.
-namespace jostle {
+namespace jostle::inline config {
 
 template <class Enum, std::size_t n>
 using NameTable = std::array<std::pair<std::string_view, Enum>, n>;
@@ -20,7 +20,7 @@ inline constexpr NameTable<AcceptanceBase, 2> acceptance_bases{
     {{"all_trials", AcceptanceBase::all_trials}, {"not_upward", AcceptanceBase::not_upward}}};
 inline constexpr NameTable<Lattice, 2> lattices{{{"hcp", Lattice::hcp}, {"fcc", Lattice::fcc}}};
 inline constexpr NameTable<Sampler, 2> samplers{
-    {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::skipping}}};
+    {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::rejection_free}}};
 inline constexpr NameTable<Streams, 2> stream_kinds{
     {{"independent", Streams::independent}, {"matched", Streams::matched}}};
 
@@ -32,4 +32,4 @@ std::string name_in(const NameTable<Enum, n>& names, Enum value) {
   return {};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

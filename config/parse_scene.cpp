@@ -1,7 +1,7 @@
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 ParsedScene parse_scene(std::string_view json_text) {
   ParsedScene parsed;
@@ -15,4 +15,4 @@ ParsedScene parse_scene(std::string_view json_text) {
   return parsed;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

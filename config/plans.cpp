@@ -7,7 +7,7 @@
 #include "config/sweep.hpp"
 #include "ensemble/statistics/counted.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -17,15 +17,15 @@ class StartMaker {
   explicit StartMaker(const PackingLoader& load) : load_(load) {}
 
   Start operator()(const StartChoice& choice, std::uint32_t n_spheres) {
-    return std::visit([&](const auto& start) { return made(start, n_spheres); }, choice);
+    return std::visit([&](const auto& start) { return start_of(start, n_spheres); }, choice);
   }
 
  private:
   template <class Other>
-  Start made(const Other& start, std::uint32_t) {
+  Start start_of(const Other& start, std::uint32_t) {
     return start;
   }
-  Start made(const PackingFile& file, std::uint32_t n_spheres) {
+  Start start_of(const PackingFile& file, std::uint32_t n_spheres) {
     auto& centres = loaded_[file];
     if (!centres) centres = std::make_shared<const std::vector<Vec3>>(load_(file));
     if (centres->size() != n_spheres) {
@@ -84,4 +84,4 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
   return plans;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -5,7 +5,7 @@
 #include "config/names.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -103,4 +103,4 @@ Scene read_scene(const Reader& in) {
   return scene;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -3,7 +3,7 @@
 #include "config/names.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 Json plain_number(double value) {
   if (value == std::trunc(value) && std::abs(value) < 0x1p53) {
@@ -35,4 +35,4 @@ Json resolved(const Scene& scene) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

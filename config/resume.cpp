@@ -7,7 +7,7 @@
 #include "config/sweep.hpp"
 #include "ensemble/statistics/counted.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
   return faults;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

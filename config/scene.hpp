@@ -13,12 +13,12 @@
 #include "config/fault.hpp"
 #include "config/json/json.hpp"
 #include "ensemble/analysis/analyses.hpp"
-#include "ensemble/enough.hpp"
 #include "ensemble/plan.hpp"
+#include "ensemble/target_precision.hpp"
 #include "structure/measure.hpp"
 
 // A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
-namespace jostle {
+namespace jostle::inline config {
 
 /// "start": {"file": ...}: a packing saved by an earlier run (.h5, .hdf5: point, realization, tap)
 /// or extended XYZ (.xyz, .extxyz: frame).
@@ -130,7 +130,7 @@ struct Scene {
   std::vector<Observable> observables;
   SnapshotChoice snapshots;
   std::vector<SweepAxis> sweep;
-  Enough until;
+  TargetPrecision until;
   std::vector<FitRequest> fits;
   Analyses analyse;
   StructureSettings structure;
@@ -193,4 +193,4 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
 /// both, the first one's first. Faults where anything else differs.
 ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

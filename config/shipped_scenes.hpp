@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// A scene of config/scenes, which the program carries.
 struct ShippedScene {
@@ -14,4 +14,4 @@ struct ShippedScene {
 /// All of them, by name.
 std::span<const ShippedScene> shipped_scenes();
 
-}  // namespace jostle
+}  // namespace jostle::inline config

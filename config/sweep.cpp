@@ -8,7 +8,7 @@
 #include "config/json/suggestion.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -242,4 +242,4 @@ void check_sweep(const Scene& scene, const Json& written_sweep, std::vector<Faul
   SweepCheck{scene, written_sweep, faults}();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -7,7 +7,7 @@
 #include "config/json/json_text.hpp"
 #include "config/scene.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// One point of a sweep: the values it sets, and the index of each in its axis.
 struct SweepPoint {
@@ -36,4 +36,4 @@ Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<
 /// of a swept value points to where the sweep lists it; one that several points have is noted once.
 void check_sweep(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -11,7 +11,7 @@
 #include <vector>
 
 // Plain values to bytes and back: little-endian, no padding, lengths as 64-bit counts.
-namespace jostle {
+namespace jostle::inline engine {
 
 static_assert(std::endian::native == std::endian::little,
               "states and results are written little-endian");
@@ -107,4 +107,4 @@ class ByteReader {
   std::uint64_t size_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

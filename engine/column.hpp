@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// How a report of taps shows what an ensemble has in a column.
 enum class Shown {
@@ -25,4 +25,4 @@ struct Column {
   bool operator==(const Column&) const = default;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

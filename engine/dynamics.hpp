@@ -12,7 +12,7 @@
 #include "engine/taps.hpp"
 
 // The seam between what moves spheres and what runs ensembles of beds: one virtual call a slice.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// How far a bed is after a tap: it moves, it is at rest, or a limit ended it before it was.
 enum class DynamicsStatus : std::uint32_t { running = 0, settled = 1, capped = 2 };
@@ -54,7 +54,7 @@ class Dynamics {
   virtual void load(const Packing& bed) = 0;
   /// Begins to bring a start, made in this way, to rest. One that needs none is at rest at once.
   virtual void settle(const Start& start) = 0;
-  /// Of a bed at rest: excites it, or begins to. `random` is the stream of Purpose::tap.
+  /// Excites the bed as it is, or begins to. `random` is the stream of Purpose::tap.
   virtual void tap(const Tap& tap, RandomStream& random) = 0;
   /// Goes on for about so many units, or until the bed is at rest. At rest it does nothing. Throws
   /// std::invalid_argument where the engine's settings do not suit the container.
@@ -78,4 +78,4 @@ class Dynamics {
   virtual void restore(std::span<const std::byte> state) = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -1,6 +1,6 @@
 #include "engine/engines.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 std::vector<Column> columns(const EngineSettings& settings) {
   return std::visit([](const auto& engine) { return columns(engine); }, settings);
@@ -11,4 +11,4 @@ std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,
   return std::visit([&](const auto& engine) { return make_dynamics(engine, streams); }, settings);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

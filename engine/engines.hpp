@@ -9,7 +9,7 @@
 #include "engine/monte_carlo/monte_carlo.hpp"
 
 // The engines there are. Who runs ensembles knows no engine but through this file.
-namespace jostle {
+namespace jostle::inline engine {
 
 using EngineSettings = std::variant<MonteCarlo>;
 
@@ -20,4 +20,4 @@ std::vector<Column> columns(const EngineSettings& settings);
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,
                                         const DynamicsStreams& streams);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -141,4 +141,4 @@ TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {
   return std::visit(Excite{packing, random}, tap);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

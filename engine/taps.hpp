@@ -9,7 +9,7 @@
 #include "engine/bed/random.hpp"
 
 // The excitation of one tap. Strengths are dimensionless or in diameters.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// z -> z (1 + epsilon). Philippe & Bideau 2001, sec. II.
 struct Dilate {
@@ -68,4 +68,4 @@ struct TapReport {
 /// Applies the tap to every centre. Only Shake draws from `random`.
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "structure/density/profiles.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -43,4 +43,4 @@ FittingReport fitting_report(const Packing& poured, const Packing& fitted) {
   return report;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -2,7 +2,7 @@
 
 #include "engine/bed/packing.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// What it took to fit a periodic pour between walls (FittedPour), and what that made of the bed.
 struct FittingReport {
@@ -38,4 +38,4 @@ inline constexpr FittingColumn fitting_columns[] = {
     {"central_fraction_after", "1", "solids fraction away from the walls, once fitted",
      &FittingReport::central_fraction_after}};
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -6,7 +6,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -57,4 +57,4 @@ void SeriesBlock::set(std::size_t column, std::uint64_t tap, std::uint32_t reali
   columns_[column][tap * realizations_ + realization] = std::isnan(value) ? nan : value;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 #include "ensemble/sink.hpp"
 
 // The fold over the realizations of a sweep point, for results files and for sinks of one's own.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// What an ensemble has in one column, [n_taps] each. See Moments for what is NaN.
 struct FoldedColumn {
@@ -45,4 +45,4 @@ class SeriesBlock {
   std::vector<std::vector<double>> columns_;  // [n_columns] of [n_taps, n_realizations]
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -34,4 +34,4 @@ double Moments::standard_error() const {
   return std::sqrt(sum_of_squares_ / (m * (m - 1)));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

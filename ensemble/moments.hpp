@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Mean and spread of one observable at one tap over realizations, folded one value at a time in
 /// the order of realizations (Welford 1962, on the differences from the first value, which are
@@ -27,4 +27,4 @@ class Moments {
   double sum_of_squares_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

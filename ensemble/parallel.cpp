@@ -14,7 +14,7 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -55,4 +55,4 @@ void on_threads(int threads, const std::function<void()>& work) {
   acquire(&ended);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 std::uint64_t total_taps(const Plan& plan) {
   std::uint64_t total = 0;
@@ -17,4 +17,4 @@ const Tap& tap_number(const Plan& plan, std::uint64_t t) {
   return stage->tap;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

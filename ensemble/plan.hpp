@@ -12,7 +12,7 @@
 #include "engine/taps.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// `count` taps of the same kind and strength.
 struct Stage {
@@ -62,4 +62,4 @@ std::uint64_t total_taps(const Plan& plan);
 /// The tap with number t in 1 .. total_taps(plan).
 const Tap& tap_number(const Plan& plan, std::uint64_t t);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

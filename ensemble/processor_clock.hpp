@@ -3,7 +3,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Processor time of the calling thread: what others make of the machine meanwhile does not count.
 struct ProcessorClock {
@@ -20,4 +20,4 @@ struct ProcessorClock {
   }
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

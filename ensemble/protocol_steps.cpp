@@ -6,7 +6,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> protocol,
                                                         std::uint64_t last_taps) {
@@ -50,4 +50,4 @@ std::vector<double> means_over_rows(std::span<const double> rows, std::uint32_t 
   return means;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -9,7 +9,7 @@
 #include "ensemble/plan.hpp"
 
 // The stages of a protocol as steps of a control parameter, each with its steady-state value.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Taps first .. last of a step, both included.
 struct StepTaps {
@@ -32,4 +32,4 @@ std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> p
 /// Means over rows [n_rows, n_realizations] of each realization; NaN where a row has none.
 std::vector<double> means_over_rows(std::span<const double> rows, std::uint32_t realizations);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

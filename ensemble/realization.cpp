@@ -7,7 +7,7 @@
 #include "ensemble/processor_clock.hpp"
 #include "structure/snapshot_statistics.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -112,4 +112,4 @@ RealizationState Realization::state() const {
   return state;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

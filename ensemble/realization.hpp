@@ -13,7 +13,7 @@
 #include "ensemble/sink.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// What one call of Realization::advance did.
 struct Slice {
@@ -66,4 +66,4 @@ class Realization {
   std::optional<Observer> observer_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -10,7 +10,7 @@
 #include "ensemble/processor_clock.hpp"
 #include "ensemble/realization.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -58,7 +58,7 @@ class EnsembleRun {
 
  private:
   void work() noexcept;
-  void carry_out(RealizationId id);
+  void run_one(RealizationId id);
   void carry_on(RealizationId id, Realization& realization, ProcessorClock::time_point began,
                 Outcome& outcome);
   void hand_over(RealizationId id, const Slice& slice);
@@ -85,7 +85,7 @@ void EnsembleRun::work() noexcept {
     while (!stopping()) {
       const std::size_t mine = next_.fetch_add(1);
       if (mine >= realizations_.size()) return;
-      carry_out(realizations_[mine]);
+      run_one(realizations_[mine]);
     }
   } catch (...) {
     const std::scoped_lock lock(sink_failure_mutex_);
@@ -94,7 +94,7 @@ void EnsembleRun::work() noexcept {
   }
 }
 
-void EnsembleRun::carry_out(RealizationId id) {
+void EnsembleRun::run_one(RealizationId id) {
   struct Running {
     std::atomic<std::uint64_t>& count;
     explicit Running(std::atomic<std::uint64_t>& c) : count(c) { ++count; }
@@ -177,4 +177,4 @@ RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<Realizati
   return EnsembleRun(plans, realizations, options, sink, progress)();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -10,7 +10,7 @@
 #include "ensemble/plan.hpp"
 #include "ensemble/sink.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Live counts for a progress display, read while the run goes on.
 struct Progress {
@@ -48,4 +48,4 @@ struct RunSummary {
 RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
                         const RunOptions& options, Sink& sink, Progress& progress);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

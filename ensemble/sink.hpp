@@ -12,7 +12,7 @@
 #include "ensemble/fitting_report.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// One realization of one sweep point: both are indices into the study.
 struct RealizationId {
@@ -91,4 +91,4 @@ class Sink {
   virtual void end(RealizationId id, const RealizationState& state, const Outcome& outcome) = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

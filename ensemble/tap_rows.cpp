@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 std::span<const double> TapRows::row(std::uint64_t tap) const {
   const auto found = std::ranges::lower_bound(taps, tap);
@@ -44,4 +44,4 @@ std::vector<std::uint64_t> logarithmic_taps(std::uint64_t first, std::uint64_t l
   return taps;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

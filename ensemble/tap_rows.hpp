@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// One observable over all realizations at chosen taps: as little of a long series as an analysis
 /// of a few taps needs.
@@ -27,4 +27,4 @@ TapRows choose_taps(std::span<const double> series, std::uint32_t realizations,
 std::vector<std::uint64_t> logarithmic_taps(std::uint64_t first, std::uint64_t last,
                                             double per_decade);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -44,4 +44,4 @@ Curve binned(const Curve& curve, std::size_t most) {
   return bins;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -2,7 +2,7 @@
 
 #include "fitting/curve.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A long curve as means over at most 1 % of t. They lose nothing of a law X(t) that is smooth in
 /// ln t: over such a bin its mean differs from its value at the bin's mean t by 1e-4 / 24 of
@@ -11,4 +11,4 @@ namespace jostle {
 /// those with negative t or not spanning a factor 100, stay as they are. Realizations are left out.
 Curve binned(const Curve& curve, std::size_t most = 5000);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

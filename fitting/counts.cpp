@@ -1,6 +1,5 @@
 #include "fitting/counts.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +9,7 @@
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -169,4 +168,4 @@ CountsFit fit_counts(const Model& law, const std::vector<Bin>& bins,
   return most_likely(binned, curve, std::get<ParameterValues>(guess));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

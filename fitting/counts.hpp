@@ -9,7 +9,7 @@
 // Laws of distributions, fitted to counts in bins by maximum likelihood. Least squares weighted by
 // the counts observed trust bins that came out low by chance and are biased: Baker & Cousins 1984,
 // doi:10.1016/0167-5087(84)90016-4.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Where a bin lies along the law's variable. low == high: a whole number, whose expected count is
 /// the law's value there; else the integral over the bin.
@@ -29,4 +29,4 @@ struct CountsFit {
 CountsFit fit_counts(const Model& law, const std::vector<Bin>& bins,
                      const std::vector<double>& counts, const ParameterValues& start = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

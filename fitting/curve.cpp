@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -131,4 +131,4 @@ Curve thinned(const Curve& curve, std::size_t n) {
   return chosen(curve, points);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A measured or simulated curve X(t).
 struct Curve {
@@ -39,4 +39,4 @@ Curve within(const Curve& curve, double first, double last);
 /// every t > 0 and they span more than a factor 100) or in rank. Deterministic.
 Curve thinned(const Curve& curve, std::size_t n);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -14,7 +14,7 @@
 #include "fitting/refusal.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -337,4 +337,4 @@ std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const Fit
   return fitter();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -13,7 +13,7 @@
 #include "fitting/models/model.hpp"
 #include "fitting/solver/levenberg_marquardt.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 struct FitOptions {
   /// The first start tried, [n_parameters]; without one, starts come from the data.
@@ -130,4 +130,4 @@ struct Refusal {
 std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve,
                                const FitOptions& options = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std:
   return std::nullopt;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

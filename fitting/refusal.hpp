@@ -4,7 +4,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Why there can be no fit of this model with these options, or of this curve: parameters and
 /// starts that do not exist, fewer different t than the `n_free` parameters, constant X, t or X
@@ -12,4 +12,4 @@ namespace jostle {
 std::optional<Refusal> refuse_options(const Model& model, const FitOptions& options);
 std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std::size_t n_free);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

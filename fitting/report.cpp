@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -173,4 +173,4 @@ std::string compare(const std::vector<Fit>& fits) {
   return table(rows);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -5,7 +5,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 enum class ReportDetail {
   brief,  // values with errors, 95 % intervals, verdicts, remarks
@@ -21,4 +21,4 @@ std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
 /// distance from the best.
 std::string compare(const std::vector<Fit>& fits);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

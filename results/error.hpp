@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// A results file, a part or the disk below them is not as it must be. what() names the path, the
 /// reason and, where there is one, the way out.
@@ -18,4 +18,4 @@ class ResultsError : public std::runtime_error {
   std::string path_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -11,9 +11,9 @@
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/run_parts.hpp"
 #include "results/error.hpp"
-#include "results/results_writer.hpp"
+#include "results/file/results_writer.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// Replaces what a part knows better; a part may vanish while a live run folds.
@@ -119,4 +119,4 @@ RunStatus run_status(const std::string& named) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

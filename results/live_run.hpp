@@ -7,7 +7,7 @@
 
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// Who holds NAME.lock.
 struct LockOwner {
@@ -34,4 +34,4 @@ RunStatus run_status(const std::string& results_path);
 /// that TMPDIR names, which is gone when this returns. Throws ResultsError.
 ResultsFile live_results(const std::string& results_path, Content content = Content::everything);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

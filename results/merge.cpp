@@ -12,10 +12,10 @@
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
+#include "results/file/results_writer.hpp"
 #include "results/results_file.hpp"
-#include "results/results_writer.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// Where a realization of the merged study is read from.
@@ -134,4 +134,4 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
                          }});
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

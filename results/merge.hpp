@@ -6,7 +6,7 @@
 
 #include "results/study.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// Joins the complete files of all shards of one study into one whose digest is that of a single
 /// run. Files of different studies are joined to `whole`, of which each holds some sweep points.
@@ -17,4 +17,4 @@ void merge_files(std::span<const std::string> inputs, const std::string& output,
                  const Provenance& provenance, bool force = false,
                  const std::optional<Study>& whole = std::nullopt);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 #include "ensemble/sink.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// What is stored of one realization but for its series and its snapshots.
 struct RealizationHead {
@@ -23,4 +23,4 @@ struct RealizationRecord : RealizationHead {
   std::vector<SnapshotRecord> snapshots;  // ascending taps
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <span>
 
-#include "results/axes.hpp"
 #include "results/checkpoints/part.hpp"
 #include "results/checkpoints/seal.hpp"
+#include "results/file/axes.hpp"
+#include "results/file/layout.hpp"
+#include "results/file/results_file_impl.hpp"
+#include "results/file/validate.hpp"
 #include "results/hdf5/read.hpp"
-#include "results/layout.hpp"
-#include "results/results_file_impl.hpp"
-#include "results/validate.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 Hdf5Handle open_sealed(const std::string& path, const std::string& known_as) {
@@ -54,13 +54,20 @@ ResultsFile::Impl::Impl(const std::string& name, const std::string& known_as)
     study = read_study(file);
     provenance = read_provenance(file);
     validate(study, provenance);
-    has_points = exists(file, "observables");
   });
 }
 
 PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   PointTables tables;
   tables.point = point;
+  const auto missing = static_cast<std::uint8_t>(RealizationStatus::missing);
+  if (!has_point(point)) {
+    tables.statuses.assign(study.realizations, missing);
+    tables.rows.resize(study.realizations);
+    tables.reasons.resize(study.realizations);
+    tables.work.resize(study.realizations);
+    return tables;
+  }
   const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
   const Shape each{study.realizations};
   tables.statuses = read_numbers<std::uint8_t>(observables, "status", &each);
@@ -114,13 +121,11 @@ std::vector<RealizationSummary> ResultsFile::realizations() const {
     for (std::uint32_t p = 0; p < study().points.size(); ++p) {
       for (std::uint32_t r = 0; r < study().realizations; ++r) {
         RealizationSummary summary{.id = {p, r}, .reason = {}};
-        if (impl_->has_points) {
-          const PointTables& tables = impl_->tables(p);
-          summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
-          summary.rows = tables.rows.at(r);
-          summary.reason = tables.reasons.at(r);
-          summary.work = tables.work.at(r);
-        }
+        const PointTables& tables = impl_->tables(p);
+        summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
+        summary.rows = tables.rows.at(r);
+        summary.reason = tables.reasons.at(r);
+        summary.work = tables.work.at(r);
         all.push_back(summary);
       }
     }
@@ -138,8 +143,8 @@ std::vector<Series> ResultsFile::series(std::uint32_t point) const {
 }
 
 std::uint64_t ResultsFile::n_stored_rows(std::uint32_t point) const {
-  if (!impl_->has_points) return 0;
-  return naming_file(impl_->path, [&] {
+  return naming_file(impl_->path, [&]() -> std::uint64_t {
+    if (!impl_->has_point(point)) return 0;
     return impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point);
   });
 }
@@ -153,8 +158,8 @@ std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& c
   assert(taps.first <= taps.end && taps.end <= study().points.at(point).taps + 1);
   assert(chosen.first <= chosen.end && chosen.end <= study().realizations);
   const std::uint64_t n_taps = taps.end - taps.first, n_realizations = chosen.end - chosen.first;
-  if (!impl_->has_points) return std::vector<double>(n_taps * n_realizations, std::nan(""));
   return naming_file(impl_->path, [&] {
+    if (!impl_->has_point(point)) return std::vector<double>(n_taps * n_realizations, std::nan(""));
     const Hdf5Handle group = open_group(impl_->file, "observables/" + point_name(point));
     const std::uint64_t rows = impl_->stored_rows(group, point);
     require_shape(group, column, {rows, study().realizations});
@@ -166,10 +171,10 @@ std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& c
 }
 
 std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
-  if (!impl_->has_points) return {};
   return naming_file(impl_->path, [&] {
-    const Hdf5Handle group = open_group(impl_->file, "ensemble/" + point_name(point));
     std::vector<EnsembleSeries> all;
+    if (!impl_->has_point(point)) return all;
+    const Hdf5Handle group = open_group(impl_->file, "ensemble/" + point_name(point));
     const Shape taps{
         impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point)};
     for (const Column& label : study().points.at(point).columns())
@@ -207,7 +212,7 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
   return naming_file(impl_->path, [&]() -> std::optional<RealizationState> {
     const std::string name =
         "restart/" + point_name(id.point) + "/" + realization_name(id.realization);
-    if (!impl_->has_points || !exists(impl_->file, name)) return std::nullopt;
+    if (!impl_->has_point(id.point) || !exists(impl_->file, name)) return std::nullopt;
     const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
     ByteReader reader(std::as_bytes(std::span(bytes)));
     try {
@@ -223,4 +228,4 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

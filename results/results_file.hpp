@@ -12,7 +12,7 @@
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// Written on the file: `running` until the first fold, then `interrupted` while realizations of
 /// the shard have taps left, else `complete` (with or without failed realizations).
@@ -123,4 +123,4 @@ class ResultsFile {
 /// checksum is verified first.
 std::string digest_of(const std::string& path);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -16,9 +16,9 @@
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
-#include "results/results_writer.hpp"
+#include "results/file/results_writer.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 bool file_exists(const std::string& path) {
@@ -311,4 +311,4 @@ void RunStore::finish(const StoringProgress& progress) {
   impl_->in_parts.clear();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

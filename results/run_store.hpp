@@ -11,7 +11,7 @@
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// The results of one run on disk: a file NAME that always opens, parts under NAME.parts/ while the
 /// run goes on, and NAME.lock. Killed at any instant, it leaves its last checkpoints.
@@ -74,4 +74,4 @@ class RunStore : public Sink {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 class InMemory : public StoredRealization {
@@ -63,4 +63,4 @@ RealizationRecord record_of(StoredRealization& realization, std::size_t n_column
   return record;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 #include "results/record.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// A snapshot without what of it takes room.
 struct SnapshotOutline {
@@ -48,4 +48,4 @@ std::unique_ptr<StoredRealization> in_memory(RealizationRecord record = {},
 std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization);
 RealizationRecord record_of(StoredRealization& realization, std::size_t n_columns);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

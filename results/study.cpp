@@ -14,7 +14,7 @@
 #include "engine/bed/boundary.hpp"
 #include "results/checkpoints/checksum.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// The scene names a file only by its path: what it held when the run began is known by this.
@@ -152,4 +152,4 @@ Provenance provenance_of_this_machine() {
   return provenance;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -13,7 +13,7 @@
 #include "ensemble/sink.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// What a results file must know of one sweep point to lay out and read back its numbers.
 struct StudyPoint {
@@ -91,4 +91,4 @@ struct Provenance {
 /// caller's.
 Provenance provenance_of_this_machine();
 
-}  // namespace jostle
+}  // namespace jostle::inline results

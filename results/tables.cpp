@@ -6,19 +6,19 @@
 #include <map>
 #include <stdexcept>
 
-#include "results/axes.hpp"
 #include "results/checkpoints/lock.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/seal.hpp"
 #include "results/checkpoints/temporary_file.hpp"
+#include "results/file/axes.hpp"
+#include "results/file/results_file_impl.hpp"
 #include "results/hdf5/axes.hpp"
 #include "results/hdf5/policy.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
-#include "results/results_file_impl.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr const char* axes_attribute = "jostle_axes";
@@ -248,4 +248,4 @@ std::vector<std::string> table_names(const std::string& path) {
   return ResultsFile(path).table_names();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -9,7 +9,7 @@
 
 // What is derived from a run's data and kept in its file: the groups /fits, /analysis and
 // /structure. They can be made again from the data at any time, and are not part of the digest.
-namespace jostle {
+namespace jostle::inline results {
 
 inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"};
 
@@ -39,4 +39,4 @@ std::vector<Table> read_tables(const std::string& path, const std::string& group
 /// Names of all tables of the file with their group first, in order: "fits/point_0000/...".
 std::vector<std::string> table_names(const std::string& path);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

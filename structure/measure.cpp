@@ -11,7 +11,7 @@
 #include "structure/order/neighbours.hpp"
 #include "structure/voids/pores.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::vector<double> shares(std::span<const std::uint64_t> counts) {
   return parts;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -13,7 +13,7 @@
 
 // The structure of a packing, part by part: docs/structure.md says what each quantity means.
 // Lengths in diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Packing fraction against height, and how it thins out upwards.
 struct ProfileSettings {
@@ -119,4 +119,4 @@ Region bulk_of(const Packing& packing);
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

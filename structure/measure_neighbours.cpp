@@ -8,7 +8,7 @@
 #include "structure/order/pair_correlation.hpp"
 #include "structure/snapshot_statistics.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -149,4 +149,4 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -6,7 +6,7 @@
 #include "structure/voids/voronoi.hpp"
 
 // The parts of measure().
-namespace jostle {
+namespace jostle::inline structure {
 
 /// What parts share: the packing, the region, and cells that are made once.
 struct MeasuredPacking {
@@ -49,4 +49,4 @@ void require_bins(double length, double width);
 /// Each count over their sum, [n_counts].
 std::vector<double> shares(std::span<const std::uint64_t> counts);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -10,7 +10,7 @@
 #include "structure/measure_parts.hpp"
 #include "structure/snapshot_statistics.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -200,4 +200,4 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

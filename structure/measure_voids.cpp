@@ -6,7 +6,7 @@
 #include "structure/measure_parts.hpp"
 #include "structure/voids/pores.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -244,4 +244,4 @@ Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

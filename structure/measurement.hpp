@@ -8,7 +8,7 @@
 
 // What is measured inside one packing, in a form that can be averaged over packings whatever it is.
 // Names, units and sources are views of text that lives as long as the program: literals.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Where the values of a quantity stand: heights, distances, numbers of neighbours, names.
 struct Places {
@@ -59,4 +59,4 @@ struct Measurement {
   }
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

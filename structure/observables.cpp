@@ -6,7 +6,7 @@
 
 #include "engine/bed/slab.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::vector<double> Observer::operator()(const Packing& packing) const {
   return values;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -11,7 +11,7 @@
 
 // What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
 // list of them is all that is computed.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// <Z>, mean height of the centres, diameters. Philippe & Bideau 2001.
 struct MeanHeight {
@@ -68,4 +68,4 @@ class Observer {
   std::vector<HeightWindow> windows_;  // [n_observables]; unused entries are {0, 0}
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -5,7 +5,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 bool Region::contains(const Container& container, Vec3 r) const {
   if (r.z < low || r.z > high) return false;
@@ -40,4 +40,4 @@ double Region::volume(const Container& container) const {
   return depth * std::numbers::pi * reach * reach;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -3,7 +3,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Part of a container: between two heights, at least `from_sides` away from the walls (counted
 /// from the walls themselves; without effect where sides are periodic).
@@ -15,4 +15,4 @@ struct Region {
   bool operator==(const Region&) const = default;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -7,7 +7,7 @@
 
 #include "structure/order/neighbours.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 std::vector<unsigned> coordination_numbers(const Packing& packing, double cut) {
   const NeighbourFinder finder(packing, cut);
@@ -80,4 +80,4 @@ std::vector<double> height_histogram(const Packing& packing, double bin_width) {
   return fractions;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

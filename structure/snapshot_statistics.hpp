@@ -9,7 +9,7 @@
 #include "structure/region.hpp"
 
 // What is measured of a packing at snapshots only.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// N_c: mean number of other centres within `cut` diameters (at the cut included) of a centre,
 /// every periodic image being a centre of its own. Rosato et al. 2010: cut = 1.05. Requires a
@@ -39,4 +39,4 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
 /// Rosato et al. 2010, fig. 6.
 std::vector<double> height_histogram(const Packing& packing, double bin_width = 0.1);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

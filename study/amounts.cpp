@@ -5,7 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 std::string scaled(double number, double base, std::initializer_list<const char*> units) {
@@ -28,4 +28,4 @@ std::string format_bytes(double bytes) {
   return scaled(bytes, 1024, {" B", " KiB", " MiB", " GiB", " TiB"});
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

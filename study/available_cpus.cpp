@@ -11,7 +11,7 @@
 #include <string_view>
 #include <thread>
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ int available_cpus() {
   return std::max(cpus, 1);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// CPUs that this process may use: the least of its affinity mask, its cgroup's quota (rounded up)
 /// and SLURM_CPUS_PER_TASK. At least 1.
@@ -14,4 +14,4 @@ int available_cpus();
 std::optional<double> cgroup_quota(const std::filesystem::path& self,
                                    const std::filesystem::path& mount);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -1,6 +1,6 @@
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 std::string message(Argument argument, const std::string& value, const std::string& reason,
@@ -34,4 +34,4 @@ BadArgument::BadArgument(Argument argument, const std::string& value, const std:
       reason_(reason),
       remedy_(remedy) {}
 
-}  // namespace jostle
+}  // namespace jostle::inline study

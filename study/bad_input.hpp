@@ -6,7 +6,7 @@
 
 // What the functions of study/ refuse. They know no command line: where a message must name an
 // option, the caller makes it from the fields below.
-namespace jostle {
+namespace jostle::inline study {
 
 /// What is asked for cannot be done; what() says what, why and what to do.
 class BadInput : public std::runtime_error {
@@ -37,4 +37,4 @@ class BadArgument : public BadInput {
   std::optional<Argument> remedy_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -9,9 +9,9 @@
 #include "config/sweep.hpp"
 #include "results/error.hpp"
 #include "results/results_file.hpp"
-#include "study/stored_scene.hpp"
+#include "study/scenes/stored_scene.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 std::optional<Study> joined_study(std::span<const std::string> inputs) {
   std::vector<ResultsFile> files;
@@ -49,4 +49,4 @@ std::optional<Study> joined_study(std::span<const std::string> inputs) {
   return study;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -11,7 +11,7 @@
 #include "ensemble/moments.hpp"
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::vector<double> ObservableSeries::rows(std::span<const std::uint64_t> taps) 
   return rows;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

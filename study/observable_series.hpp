@@ -8,7 +8,7 @@
 
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// One observable at one sweep point of a results file, read in pieces of at most 128 MB, whatever
 /// the number of taps and realizations. Realizations that failed or have no taps are left out, and
@@ -45,4 +45,4 @@ class ObservableSeries {
   std::uint64_t n_rows_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline study

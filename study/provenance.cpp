@@ -7,7 +7,7 @@
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "study/version.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 bool needs_no_quotes(unsigned char c) {
@@ -56,4 +56,4 @@ Provenance provenance_of_this_run(const std::string& threads) {
   return provenance;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -5,7 +5,7 @@
 
 #include "results/study.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// The arguments this process was started with, from /proc.
 std::vector<std::string> command_line();
@@ -16,4 +16,4 @@ std::string shell_words(const std::vector<std::string>& arguments);
 /// Version, revision, machine and command line; `threads` is for people.
 Provenance provenance_of_this_run(const std::string& threads);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -10,7 +10,7 @@
 #include "results/export/input_file.hpp"
 #include "results/live_run.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& 
   return chosen;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

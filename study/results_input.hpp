@@ -9,7 +9,7 @@
 #include "study/bad_input.hpp"
 
 // What results are read from.
-namespace jostle {
+namespace jostle::inline study {
 
 /// By its first bytes.
 bool is_results_file(const std::string& path);
@@ -45,4 +45,4 @@ void require_different_runs(std::span<const ResultsFile> files);
 /// Throws BadArgument naming what there is.
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "study/provenance.hpp"
-#include "study/stored_scene.hpp"
+#include "study/scenes/stored_scene.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 /// An observer is told of an end that an exception makes, too.
@@ -118,11 +118,11 @@ void SceneRun::fold() {
   store_->finish([this](std::uint64_t done, std::uint64_t of) { observer_.storing(done, of); });
 }
 
-bool SceneRun::compute_until_enough() {
-  const Enough& until = loaded_.scene.until;
+bool SceneRun::compute_until_precise() {
+  const TargetPrecision& until = loaded_.scene.until;
   while (compute()) {
     if (until.targets.empty()) return true;
-    const EnoughStatus status = enough_status(results(), until);
+    const PrecisionStatus status = precision_status(results(), until);
     observer_.compared(status);
     if (status.next == status.realizations) return true;
     extend(status.next);
@@ -149,4 +149,4 @@ ResultsFile SceneRun::close() {
   return RunStore::close(std::move(store_));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -10,11 +10,11 @@
 #include "ensemble/run.hpp"
 #include "results/run_store.hpp"
 #include "study/bad_input.hpp"
-#include "study/scene_file.hpp"
+#include "study/scenes/scene_file.hpp"
 #include "study/seconds.hpp"
-#include "study/tables/enough.hpp"
+#include "study/tables/target_precision.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// What may be done where the results file is there already.
 enum class Existing { keep, resume, replace };
@@ -83,8 +83,8 @@ class RunObserver {
   /// So many realizations are in the new file.
   virtual void storing(std::uint64_t /*done*/, std::uint64_t /*of*/) {}
   virtual void stored() {}
-  /// How far the scene's targets are met, after every round.
-  virtual void compared(const EnoughStatus&) {}
+  /// How far the scene's targets are met, after every comparison with the targets.
+  virtual void compared(const PrecisionStatus&) {}
 };
 
 /// A run of a scene into a results file, which it opens once and holds, with its lock, to the end.
@@ -99,7 +99,7 @@ class SceneRun {
   /// before the others. Returns whether all of it was computed, not stopped. Throws ResultsError.
   bool compute(std::optional<std::uint32_t> first = std::nullopt);
   /// The same, and more realizations until the scene's targets are met, if it has any.
-  bool compute_until_enough();
+  bool compute_until_precise();
   /// Makes room for more realizations of every point: so many in all.
   void extend(std::uint32_t realizations);
 
@@ -135,4 +135,4 @@ class SceneRun {
   RunSummary summary_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -2,8 +2,8 @@
 
 #include <chrono>
 
-namespace jostle {
+namespace jostle::inline study {
 
 using Seconds = std::chrono::duration<double>;
 
-}  // namespace jostle
+}  // namespace jostle::inline study

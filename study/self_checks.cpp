@@ -20,7 +20,7 @@
 #include "results/run_store.hpp"
 #include "study/provenance.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 void require(bool holds, const std::string& otherwise) {
@@ -48,7 +48,7 @@ std::vector<Plan> small_plans() {
   plan.observables = {MeanHeight{}, BottomFraction{}, BulkFraction{}};
   plan.snapshots.taps = {0, 15};
   std::vector<Plan> plans = {plan};
-  engine.relax.sampler = Sampler::skipping;
+  engine.relax.sampler = Sampler::rejection_free;
   plan.engine = engine;
   plans.push_back(plan);
   plan.container = WalledBox{4.5, 4};
@@ -209,4 +209,4 @@ std::vector<SelfCheck> self_checks(const std::string& folder) {
   return checks;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// Something that must hold on every machine does not; what() says what and why.
 class SelfCheckFailure : public std::runtime_error {
@@ -23,4 +23,4 @@ struct SelfCheck {
 /// is empty: files are written there.
 std::vector<SelfCheck> self_checks(const std::string& folder);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

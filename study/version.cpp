@@ -1,9 +1,9 @@
 #include "study/version.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 const char* version() {
   return JOSTLE_VERSION;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// "0.1.0".
 const char* version();
@@ -9,4 +9,4 @@ const char* version();
 /// it was not built from a git checkout.
 const char* git_revision();
 
-}  // namespace jostle
+}  // namespace jostle::inline study

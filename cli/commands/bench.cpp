@@ -12,7 +12,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 struct BenchArguments {
@@ -84,15 +84,15 @@ void run_bench(const BenchArguments& arguments) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("bench", "Measure the rate of trials on this machine");
+void add_bench(Command& app, int& code) {
+  Command command = app.add_command("bench", "Measure the rate of trials on this machine");
   auto arguments = std::make_shared<BenchArguments>();
   command
-      ->add_option("states", arguments->states,
-                   "Only these states, of those that a run without any lists")
-      ->check(CLI::IsMember(state_names()));
-  command->add_flag("--json", arguments->json, "Print JSON instead of one line a state");
-  command->footer(
+      .add_option("states", arguments->states,
+                  "Only these states, of those that a run without any lists")
+      .one_of(state_names());
+  command.add_flag("--json", arguments->json, "Print JSON instead of one line a state");
+  command.footer(
       "Examples:\n"
       "  jostle bench                                       about half a minute\n"
       "  jostle bench tapped_bed --json\n"
@@ -100,10 +100,10 @@ void add_bench(CLI::App& app, int& code) {
       "\n"
       "The states: a bed of 4096 spheres poured, dilated and settled; one lifted and settled by\n"
       "Metropolis moves; a dense disordered packing and two fluids.");
-  command->callback([arguments, &code] {
+  command.run([arguments, &code] {
     run_bench(*arguments);
     code = exit_ok;
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

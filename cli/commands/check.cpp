@@ -7,19 +7,19 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/durations.hpp"
-#include "cli/terminal/effects.hpp"
+#include "cli/reports/durations.hpp"
+#include "cli/reports/effects.hpp"
+#include "cli/reports/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/text_table.hpp"
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/cost/pilot.hpp"
-#include "study/scene_file.hpp"
-#include "study/scene_warnings.hpp"
+#include "study/scenes/scene_file.hpp"
+#include "study/scenes/scene_warnings.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
@@ -93,10 +93,10 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   }
   const std::size_t realizations = loaded.plans.size() * loaded.scene.realizations;
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
-  const std::size_t rounds = (realizations + threads - 1) / threads;
+  const std::size_t turns = (realizations + threads - 1) / threads;
   const char* const about = settled ? "about" : "at least";
   print(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
-                    format_duration(mean * static_cast<double>(rounds)), counted(threads, "thread"),
+                    format_duration(mean * static_cast<double>(turns)), counted(threads, "thread"),
                     mean.count() * static_cast<double>(realizations) / 3600));
   print(fmt::format("  memory: about {}\n",
                     format_bytes(process_bytes + static_cast<double>(threads * bytes))));
@@ -119,27 +119,27 @@ void check(const CheckArguments& arguments) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("check", "Say what a scene means and what it will cost");
+void add_check(Command& app, int& code) {
+  Command command = app.add_command("check", "Say what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("scene", arguments->scene, "The scene, a JSON file")->required();
+  command.add_option("scene", arguments->scene, "The scene, a JSON file").required();
   command
-      ->add_option("--threads", arguments->threads,
-                   "Estimate for so many (default: the CPUs this process may use)")
-      ->check(CLI::Range(1, 4096))
-      ->envname("JOSTLE_THREADS");
-  command->add_flag("--no-pilot", arguments->no_pilot,
-                    "Leave out the short trial that time and memory are estimated from");
-  command->footer(
+      .add_option("--threads", arguments->threads,
+                  "Estimate for so many (default: the CPUs this process may use)")
+      .between(1, 4096)
+      .environment("JOSTLE_THREADS");
+  command.add_flag("--no-pilot", arguments->no_pilot,
+                   "Leave out the short trial that time and memory are estimated from");
+  command.footer(
       "Examples:\n"
       "  jostle check scene.json              up to about ten seconds\n"
       "  jostle check scene.json --no-pilot   at once, without estimates of time and memory\n"
       "\n"
       "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
-  command->callback([arguments, &code] {
+  command.run([arguments, &code] {
     check(*arguments);
     code = exit_ok;
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

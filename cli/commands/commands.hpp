@@ -1,25 +1,24 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "cli/options/command.hpp"
 #include "cli/terminal/exit_codes.hpp"
 
 // One function a subcommand: it describes its options to the parser, and leaves its exit code in
 // `code` once the parser has called it.
-namespace jostle {
+namespace jostle::inline cli {
 
-void add_new(CLI::App& app, int& code);
-void add_run(CLI::App& app, int& code);
-void add_check(CLI::App& app, int& code);
-void add_cost(CLI::App& app, int& code);
-void add_schema(CLI::App& app, int& code);
-void add_info(CLI::App& app, int& code);
-void add_merge(CLI::App& app, int& code);
-void add_bench(CLI::App& app, int& code);
-void add_selftest(CLI::App& app, int& code);
-void add_fit(CLI::App& app, int& code);
-void add_analyse(CLI::App& app, int& code);
-void add_export(CLI::App& app, int& code);
-void add_structure(CLI::App& app, int& code);
+void add_new(Command& app, int& code);
+void add_run(Command& app, int& code);
+void add_check(Command& app, int& code);
+void add_cost(Command& app, int& code);
+void add_schema(Command& app, int& code);
+void add_info(Command& app, int& code);
+void add_merge(Command& app, int& code);
+void add_bench(Command& app, int& code);
+void add_selftest(Command& app, int& code);
+void add_fit(Command& app, int& code);
+void add_analyse(Command& app, int& code);
+void add_export(Command& app, int& code);
+void add_structure(Command& app, int& code);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

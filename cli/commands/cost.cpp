@@ -5,22 +5,21 @@
 #include <memory>
 #include <optional>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/cost_report.hpp"
-#include "cli/terminal/durations.hpp"
+#include "cli/reports/cost_report.hpp"
+#include "cli/reports/durations.hpp"
+#include "cli/reports/table_output.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
-#include "cli/terminal/table_output.hpp"
 #include "study/available_cpus.hpp"
 #include "study/cost/cost_run.hpp"
 #include "study/provenance.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 constexpr std::uint64_t default_taps = 10;
@@ -29,7 +28,7 @@ struct CostArguments {
   std::string scene, output, observable, point, csv, figure;
   double target = 0;
   Seconds budget{600};
-  std::uint32_t rounds = 0;  // 0: as many as the budget allows
+  std::uint32_t replicates = 0;  // 0: as many as the budget allows
   std::uint64_t taps = 0;
   int threads = 0;
   bool resume = false, force = false, no_progress = false;
@@ -83,7 +82,7 @@ RunSettings settings_of(const CostArguments& arguments, const std::string& outpu
 }
 
 int run_cost(const CostArguments& arguments) {
-  outlive_readers();
+  ignore_sigpipe();
   const LoadedScene loaded = load_scene(arguments.scene);
   CostPilot pilot = make_cost_pilot(loaded, arguments.scene, arguments.point,
                                     arguments.taps > 0 ? arguments.taps : default_taps);
@@ -96,7 +95,7 @@ int run_cost(const CostArguments& arguments) {
     const StopRequest stop;
     RunDisplay display(arguments.no_progress ? ProgressStyle::none : ProgressStyle::plain, "",
                        threads, false);
-    CostRun run(pilot, {arguments.budget, arguments.rounds},
+    CostRun run(pilot, {arguments.budget, arguments.replicates},
                 settings_of(arguments, output, threads, stop), display);
     if (!run.run()) {
       print_to_standard_error(
@@ -114,67 +113,66 @@ int run_cost(const CostArguments& arguments) {
     throw;
   } catch (const std::exception& error) {
     print_to_standard_error(
-        fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, "
-                    "--resume goes on with {}\n",
+        fmt::format("jostle: {}\njostle: what was checkpointed is kept; after fixing this, "
+                    "--resume continues {}\n",
                     failure_text(error), output));
-    return exit_broken_surroundings;
+    return exit_io_error;
   }
 }
 
-void add_duration(CLI::App& command, CostArguments& arguments) {
-  command.add_option_function<std::string>(
+void add_duration(Command& command, CostArguments& arguments) {
+  command.add_reader(
       "--budget",
       [&arguments](const std::string& text) {
         const auto duration = parse_duration(text);
         if (!duration) {
-          throw CLI::ValidationError("--budget",
-                                     fmt::format("\"{}\" is not a duration, as 10m", text));
+          throw BadValue(fmt::format("\"{}\" is not a duration, as 10m", text));
         }
         arguments.budget = *duration;
       },
-      "How long to run, in whole rounds, at least two (default: 10m)");
+      "How long to run, in whole replicates, at least two (default: 10m)");
 }
 
 }  // namespace
 
-void add_cost(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("cost", "What a scene's accuracy costs in time");
+void add_cost(Command& app, int& code) {
+  Command command = app.add_command("cost", "What a scene's accuracy costs in time");
   auto arguments = std::make_shared<CostArguments>();
   CostArguments& a = *arguments;
-  command->add_option("scene", a.scene, "The scene, a JSON file")->required();
-  command->add_option("--observable", a.observable,
-                      "What is to be accurate (default: bottom_fraction, or the first observed)");
-  command->add_option("--target", a.target, "Recommend the cheapest way to this total error")
-      ->check(positive_number());
-  add_duration(*command, a);
-  command->add_option("--rounds", a.rounds, "Run so many rounds instead: the same give the same")
-      ->check(CLI::Range(1, 1000000));
-  command->add_option("--taps", a.taps, "Of the pilot (default: 10, or all of fewer)")
-      ->check(CLI::Range(1, 1000000000));
-  command->add_option("--sweep-point", a.point,
-                      "Its number, or POINTER=VALUE of the sweep (default: the first)");
-  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
-      ->check(CLI::Range(1, 4096))
-      ->envname("JOSTLE_THREADS");
-  command->add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
-      ->check(file_to_write());
-  command->add_flag("--resume", a.resume, "Go on with the output file");
-  command->add_flag(
+  command.add_option("scene", a.scene, "The scene, a JSON file").required();
+  command.add_option("--observable", a.observable,
+                     "What is to be accurate (default: bottom_fraction, or the first observed)");
+  command.add_option("--target", a.target, "Recommend the cheapest way to this total error")
+      .positive_number();
+  add_duration(command, a);
+  command
+      .add_option("--replicates", a.replicates,
+                  "Run so many replicates instead: the same give the same")
+      .between(1, 1000000);
+  command.add_option("--taps", a.taps, "Of the pilot (default: 10, or all of fewer)")
+      .between(1, 1000000000);
+  command.add_option("--sweep-point", a.point,
+                     "Its number, or POINTER=VALUE of the sweep (default: the first)");
+  command.add_threads(a.threads);
+  command.add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
+      .file_to_write();
+  command.add_flag("--resume", a.resume, "Go on with the output file");
+  command.add_flag(
       "--force", a.force,
       "Replace existing output files; with --resume, only those of --csv and --figure");
-  command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
-  command->add_option("--figure", a.figure, "Also write a gnuplot script to this file")
-      ->check(file_to_write());
-  command->add_flag("--no-progress", a.no_progress, "Print no progress")
-      ->envname("JOSTLE_NO_PROGRESS");
-  command->footer(
+  command.add_option("--csv", a.csv, "Also write the tables to this file").file_to_write();
+  command.add_option("--figure", a.figure, "Also write a gnuplot script to this file")
+      .file_to_write();
+  command.add_flag("--no-progress", a.no_progress, "Print no progress")
+      .environment("JOSTLE_NO_PROGRESS");
+  command.footer(
       "Example:\n"
       "  jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 30m\n"
       "\n"
       "A ladder of settings is run for a few taps, in pairs from the same packings: stop rules,\n"
       "test intervals, step lengths, theta_0, half the spheres, the other pour between walls. "
       "docs/accuracy.md says how to read it.");
-  command->callback([arguments, &code] { code = run_cost(*arguments); });
+  command.run([arguments, &code] { code = run_cost(*arguments); });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

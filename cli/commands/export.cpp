@@ -5,19 +5,18 @@
 #include <map>
 #include <memory>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/reports/text_table.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/text_table.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/export.hpp"
 #include "results/results_file.hpp"
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 const std::map<std::string, ExportFormat> formats = {{"extxyz", ExportFormat::extended_xyz},
@@ -105,33 +104,33 @@ int export_packings(const ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("export", "Write packings for OVITO, ParaView and others");
+void add_export(Command& app, int& code) {
+  Command command = app.add_command("export", "Write packings for OVITO, ParaView and others");
   auto arguments = std::make_shared<ExportArguments>();
   ExportArguments& a = *arguments;
-  command->add_option("file", a.input, "Results, or a packing in extended XYZ")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command->add_option("--format", a.format, "extxyz, lammps (text dump), vtp (VTK points)")
-      ->required()
-      ->check(CLI::IsMember({"extxyz", "lammps", "vtp"}));
+  command.add_option("file", a.input, "Results, or a packing in extended XYZ")
+      .required()
+      .existing_file();
+  command.add_option("--format", a.format, "extxyz, lammps (text dump), vtp (VTK points)")
+      .required()
+      .one_of({"extxyz", "lammps", "vtp"});
   command
-      ->add_option("-o,--output", a.output,
-                   "The file to write (default: the input's name, of a sweep with _pointP, with "
-                   ".xyz, .dump or .vtp, in the current folder)")
-      ->check(file_to_write());
-  command->add_option("--sweep-point", a.point,
-                      "Its number, or POINTER=VALUE of the sweep (default: the first)");
-  auto* realization =
-      command->add_option("--realization", a.realization, "Its number (default: 0)");
+      .add_option("-o,--output", a.output,
+                  "The file to write (default: the input's name, of a sweep with _pointP, with "
+                  ".xyz, .dump or .vtp, in the current folder)")
+      .file_to_write();
+  command.add_option("--sweep-point", a.point,
+                     "Its number, or POINTER=VALUE of the sweep (default: the first)");
+  const Option realization =
+      command.add_option("--realization", a.realization, "Its number (default: 0)");
   command
-      ->add_option("--tap", a.taps,
-                   "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
-                   "commas, or all (default: the last)")
-      ->delimiter(',');
-  add_live(*command, a.live);
-  command->add_flag("--force", a.force, "Replace files that exist");
-  command->footer(
+      .add_option("--tap", a.taps,
+                  "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
+                  "commas, or all (default: the last)")
+      .separated_by(',');
+  add_live(command, a.live);
+  command.add_flag("--force", a.force, "Replace files that exist");
+  command.footer(
       "Examples:\n"
       "  jostle export quickstart.h5 --format extxyz            writes quickstart.xyz\n"
       "  jostle export quickstart.h5 --format lammps --tap all  every snapshot, a frame each\n"
@@ -142,10 +141,10 @@ void add_export(CLI::App& app, int& code) {
       "Every sphere with its radius, coordination (centres within 1.05 diameters), the volume of\n"
       "its Voronoi cell, q6 and crystal structure. A scene can start from the extended XYZ: the\n"
       "same bits.");
-  command->callback([arguments, realization, &code] {
-    arguments->realization_given = realization->count() > 0;
+  command.run([arguments, realization, &code] {
+    arguments->realization_given = realization.count() > 0;
     code = export_packings(*arguments);
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

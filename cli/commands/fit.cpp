@@ -5,9 +5,9 @@
 #include <map>
 #include <memory>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/fit_output.hpp"
+#include "cli/options/values.hpp"
+#include "cli/reports/fit_output.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
@@ -21,7 +21,7 @@
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 namespace {
 
@@ -169,46 +169,44 @@ int run_fits(const FitArguments& arguments) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("fit", "Fit the papers' laws to results or a measured curve");
+void add_fit(Command& app, int& code) {
+  Command command = app.add_command("fit", "Fit the papers' laws to results or a measured curve");
   auto arguments = std::make_shared<FitArguments>();
   FitArguments& a = *arguments;
   command
-      ->add_option("input", a.input,
-                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command->add_option("--observable", a.observable, "Which column of the results");
-  command->add_option("--sweep-point", a.point,
-                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
-  command->add_option("--model", a.model,
-                      "A law of docs/fitting.md, or all: every law of relaxation (default)");
-  command->add_option("--range", a.range,
-                      "FIRST:LAST of t, either may be left out (default: results from tap 1)");
-  command->add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
-  command->add_flag("--realizations", a.realizations,
-                    "The text file has a column t and one column of X a realization, two or more");
-  auto* resample =
+      .add_option("input", a.input,
+                  "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
+      .required()
+      .existing_file();
+  command.add_option("--observable", a.observable, "Which column of the results");
+  command.add_option("--sweep-point", a.point,
+                     "Its number, or POINTER=VALUE of the sweep (default: every point)");
+  command.add_option("--model", a.model,
+                     "A law of docs/fitting.md, or all: every law of relaxation (default)");
+  command.add_option("--range", a.range,
+                     "FIRST:LAST of t, either may be left out (default: results from tap 1)");
+  command.add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
+  command.add_flag("--realizations", a.realizations,
+                   "The text file has a column t and one column of X a realization, two or more");
+  const Option resample =
       command
-          ->add_option(
+          .add_option(
               "--resample", a.resample,
               "Also errors from resampled realizations: jackknife, bootstrap, none (default)")
-          ->check(CLI::IsMember({"jackknife", "bootstrap", "none"}));
-  auto* count = command->add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
-                    ->check(CLI::Range(2, 1000000));
-  auto* seed = command->add_option("--seed", a.seed, "Of the bootstrap (default 1)");
-  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
-      ->check(CLI::Range(1, 4096))
-      ->envname("JOSTLE_THREADS");
-  command->add_flag("--verbose", a.verbose,
-                    "Also linear errors, 68 % intervals and the statistics of each fit");
-  command->add_flag("--json", a.json, "Print JSON, for programs");
-  command->add_option("--csv", a.csv, "Also write the curve with its fits to this file")
-      ->check(file_to_write());
-  command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
-  add_live(*command, a.live);
-  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
-  command->footer(
+          .one_of({"jackknife", "bootstrap", "none"});
+  const Option count = command.add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
+                           .between(2, 1000000);
+  const Option seed = command.add_option("--seed", a.seed, "Of the bootstrap (default 1)");
+  command.add_threads(a.threads);
+  command.add_flag("--verbose", a.verbose,
+                   "Also linear errors, 68 % intervals and the statistics of each fit");
+  command.add_flag("--json", a.json, "Print JSON, for programs");
+  command.add_option("--csv", a.csv, "Also write the curve with its fits to this file")
+      .file_to_write();
+  command.add_flag("--no-store", a.not_stored, "Leave the results file as it is");
+  add_live(command, a.live);
+  command.add_flag("--force", a.force, "Replace the file of --csv if it exists");
+  command.footer(
       "Examples:\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
@@ -218,11 +216,11 @@ void add_fit(CLI::App& app, int& code) {
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");
-  command->callback([=, &code] {
-    arguments->resampling_asked_for = (resample->count() > 0 && arguments->resample != "none") ||
-                                      count->count() > 0 || seed->count() > 0;
+  command.run([=, &code] {
+    arguments->resampling_asked_for = (resample.count() > 0 && arguments->resample != "none") ||
+                                      count.count() > 0 || seed.count() > 0;
     code = run_fits(*arguments);
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -5,16 +5,16 @@
 #include <string>
 
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/effects.hpp"
-#include "cli/terminal/report.hpp"
+#include "cli/reports/effects.hpp"
+#include "cli/reports/report.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/amounts.hpp"
-#include "study/stored_scene.hpp"
+#include "study/scenes/stored_scene.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 const char* name(RunState state) {
@@ -180,21 +180,22 @@ void info(const InfoArguments& arguments) {
 
 }  // namespace
 
-void add_info(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("info", "Summarise a results file, also of a live run");
+void add_info(Command& app, int& code) {
+  Command command = app.add_command("info", "Summarise a results file, also of a live run");
   auto arguments = std::make_shared<InfoArguments>();
-  command->add_option("file", arguments->file, "The results")->required();
-  auto* digest = command->add_flag("--digest", arguments->digest,
-                                   "Print the SHA-256 of the data alone, the same for equal runs");
-  command->add_flag("--json", arguments->json, "Print the summary as JSON")->excludes(digest);
-  command->footer(
+  command.add_option("file", arguments->file, "The results").required();
+  const Option digest =
+      command.add_flag("--digest", arguments->digest,
+                       "Print the SHA-256 of the data alone, the same for equal runs");
+  command.add_flag("--json", arguments->json, "Print the summary as JSON").excludes(digest);
+  command.footer(
       "Examples:\n"
       "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
       "  jostle info quickstart.h5 --digest   tells whether two runs gave the same numbers");
-  command->callback([arguments, &code] {
+  command.run([arguments, &code] {
     info(*arguments);
     code = exit_ok;
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

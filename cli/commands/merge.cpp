@@ -5,20 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/reports/tables_display.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/tables_display.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/merge.hpp"
 #include "study/available_cpus.hpp"
 #include "study/bad_input.hpp"
 #include "study/merge.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_tables.hpp"
+#include "study/scenes/scene_tables.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 struct MergeArguments {
@@ -41,20 +40,20 @@ void require_output(const MergeArguments& arguments) {
 
 }  // namespace
 
-void add_merge(CLI::App& app, int& code) {
-  auto* command =
-      app.add_subcommand("merge", "Join shards of a run, or runs whose sweeps differ, into one");
+void add_merge(Command& app, int& code) {
+  Command command =
+      app.add_command("merge", "Join shards of a run, or runs whose sweeps differ, into one");
   auto arguments = std::make_shared<MergeArguments>();
   command
-      ->add_option(
+      .add_option(
           "files", arguments->inputs,
           "Results: the shards, in any order, or runs of one scene with other values of its sweep")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "The file to write")
-      ->required()
-      ->check(file_to_write());
-  command->add_flag("--force", arguments->force, "Replace the output file if it exists");
-  command->footer(
+      .required();
+  command.add_option("-o,--output", arguments->output, "The file to write")
+      .required()
+      .file_to_write();
+  command.add_flag("--force", arguments->force, "Replace the output file if it exists");
+  command.footer(
       "Examples:\n"
       "  jostle run scene.json --shard 1/2 -o a.h5\n"
       "  jostle run scene.json --shard 2/2 -o b.h5\n"
@@ -63,11 +62,11 @@ void add_merge(CLI::App& app, int& code) {
       "\n"
       "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
       "scenes that differ in more than the values of their sweeps, naming which.");
-  command->callback([arguments, &code] {
+  command.run([arguments, &code] {
     require_output(*arguments);
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"), arguments->force,
                 joined_study(arguments->inputs));
-    outlive_readers();
+    ignore_sigpipe();
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
     TablesDisplay display(Quiet::no);
@@ -76,4 +75,4 @@ void add_merge(CLI::App& app, int& code) {
   });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -14,9 +14,9 @@
 #include "config/json/suggestion.hpp"
 #include "config/shipped_scenes.hpp"
 #include "results/export/input_file.hpp"
-#include "study/scene_file.hpp"
+#include "study/scenes/scene_file.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,21 +88,21 @@ int write_new_scene(const NewArguments& arguments) {
 
 }  // namespace
 
-void add_new(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("new", "Write a scene of your own, from one that is shipped");
+void add_new(Command& app, int& code) {
+  Command command = app.add_command("new", "Write a scene of your own, from one that is shipped");
   auto arguments = std::make_shared<NewArguments>();
-  command->add_option("name", arguments->name, "Of the scene: NAME.json is written")->required();
-  command->add_option("--from", arguments->from,
-                      "A shipped scene (default: quickstart); an unknown name lists them");
-  command->add_flag("--force", arguments->force, "Replace files that exist");
-  command->footer(
+  command.add_option("name", arguments->name, "Of the scene: NAME.json is written").required();
+  command.add_option("--from", arguments->from,
+                     "A shipped scene (default: quickstart); an unknown name lists them");
+  command.add_flag("--force", arguments->force, "Replace files that exist");
+  command.footer(
       "Examples:\n"
       "  jostle new my-bed                                     writes my-bed.json\n"
       "  jostle new bell --from philippe-bideau-2001/fig4-bell\n"
       "\n"
       "The scene names its results NAME.h5, and the schema that is written beside it, by which\n"
       "editors complete and check its keys.");
-  command->callback([arguments, &code] { code = write_new_scene(*arguments); });
+  command.run([arguments, &code] { code = write_new_scene(*arguments); });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

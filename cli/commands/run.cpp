@@ -10,25 +10,24 @@
 #include <optional>
 #include <string>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/durations.hpp"
+#include "cli/reports/durations.hpp"
+#include "cli/reports/report.hpp"
+#include "cli/reports/tables_display.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/report.hpp"
 #include "cli/terminal/run_display.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
-#include "cli/terminal/tables_display.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/printable.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
 #include "study/run.hpp"
-#include "study/scene_warnings.hpp"
+#include "study/scenes/scene_warnings.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 struct RunArguments {
@@ -49,17 +48,15 @@ Shard parse_shard(std::string_view text) {
   const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
   if (!slash || count.ptr != end || index.ec != std::errc{} || count.ec != std::errc{} ||
       shard.index < 1 || shard.index > shard.count) {
-    throw CLI::ValidationError(
-        "--shard", fmt::format("\"{}\" is not a share i/n with 1 <= i <= n, as 1/4", text));
+    throw BadValue(fmt::format("\"{}\" is not a share i/n with 1 <= i <= n, as 1/4", text));
   }
   return shard;
 }
 
-Seconds duration_argument(const std::string& option, const std::string& text) {
+Seconds duration_argument(const std::string& text) {
   const auto duration = parse_duration(text);
   if (!duration) {
-    throw CLI::ValidationError(
-        option, fmt::format("\"{}\" is not a duration, as 90s, 30m, 2h or 1h30m", text));
+    throw BadValue(fmt::format("\"{}\" is not a duration, as 90s, 30m, 2h or 1h30m", text));
   }
   return *duration;
 }
@@ -134,17 +131,17 @@ void say_which_tables_are_gone(const std::vector<std::string>& before,
 }
 
 /// From the first realization to the last table. Returns the exit code.
-int carry_out(const RunArguments& arguments, SceneRun& run, const RunSettings& settings,
-              const StopRequest& stop) {
+int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& settings,
+               const StopRequest& stop) {
   const auto began = std::chrono::steady_clock::now();
-  const bool stopped = !run.compute_until_enough();
+  const bool stopped = !run.compute_until_precise();
   if (!arguments.quiet) {
     print(report(run.results()) +
           process_line(run.progress(), std::chrono::steady_clock::now() - began, settings.threads));
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);
-    print_to_standard_error(fmt::format("jostle: stopped by {}; go on with\n  {}\n", stop.reason(),
+    print_to_standard_error(fmt::format("jostle: stopped by {}; resume with\n  {}\n", stop.reason(),
                                         resume_command(arguments)));
     return exit_stopped;
   }
@@ -164,7 +161,7 @@ int carry_out(const RunArguments& arguments, SceneRun& run, const RunSettings& s
 
 int run(const RunArguments& arguments) {
   StopRequest stop;  // from here on, signals stop and do not kill
-  outlive_readers();
+  ignore_sigpipe();
   if (arguments.quiet) spdlog::set_level(spdlog::level::warn);
   if (arguments.force && (arguments.resume || arguments.retry_failed)) {
     spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
@@ -179,29 +176,25 @@ int run(const RunArguments& arguments) {
     spdlog::info("warning: {}", printable(warning));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
-    return carry_out(arguments, run, settings, stop);
+    return run_to_end(arguments, run, settings, stop);
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
     print_to_standard_error(
-        fmt::format("jostle: {}\njostle: what was checkpointed is kept; once this is mended, go on "
+        fmt::format("jostle: {}\njostle: what was checkpointed is kept; after fixing this, resume "
                     "with\n  {}\n",
                     failure_text(error), resume_command(arguments)));
-    return exit_broken_surroundings;
+    return exit_io_error;
   }
 }
 
-void add_options(CLI::App& command, RunArguments& arguments) {
-  command.add_option("scene", arguments.scene, "The scene, a JSON file")->required();
+void add_options(Command& command, RunArguments& arguments) {
+  command.add_option("scene", arguments.scene, "The scene, a JSON file").required();
   command
       .add_option("-o,--output", arguments.output,
                   "The results (default: the scene's name + .h5, here)")
-      ->check(file_to_write());
-  command
-      .add_option("--threads", arguments.threads,
-                  "Threads (default: the CPUs this process may use)")
-      ->check(CLI::Range(1, 4096))
-      ->envname("JOSTLE_THREADS");
+      .file_to_write();
+  command.add_threads(arguments.threads);
   command.add_flag("--resume", arguments.resume,
                    "Go on with the output file, or begin it if there is none");
   command.add_flag("--force", arguments.force,
@@ -209,38 +202,36 @@ void add_options(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--retry-failed", arguments.retry_failed,
                    "Run failed realizations again (resumes)");
   command
-      .add_option_function<std::string>(
+      .add_reader(
           "--time-limit",
-          [&arguments](const std::string& text) {
-            arguments.time_limit = duration_argument("--time-limit", text);
-          },
+          [&arguments](const std::string& text) { arguments.time_limit = duration_argument(text); },
           "Stop after this long, as a signal would: 90s, 30m, 2h, 1h30m")
-      ->envname("JOSTLE_TIME_LIMIT");
+      .environment("JOSTLE_TIME_LIMIT");
   command
-      .add_option_function<std::string>(
+      .add_reader(
           "--checkpoint-every",
           [&arguments](const std::string& text) {
-            arguments.checkpoint_every = duration_argument("--checkpoint-every", text);
+            arguments.checkpoint_every = duration_argument(text);
           },
-          "What a kill may cost (default: 60s)")
-      ->envname("JOSTLE_CHECKPOINT_EVERY");
+          "Interval between checkpoints (default: 60s)")
+      .environment("JOSTLE_CHECKPOINT_EVERY");
   command
-      .add_option_function<std::string>(
+      .add_reader(
           "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
           "Run share i/n of the realizations; jostle merge joins the files")
-      ->envname("JOSTLE_SHARD");
-  command.add_flag("--quiet", arguments.quiet, "Print errors only")->envname("JOSTLE_QUIET");
+      .environment("JOSTLE_SHARD");
+  command.add_flag("--quiet", arguments.quiet, "Print errors only").environment("JOSTLE_QUIET");
   command.add_flag("--no-progress", arguments.no_progress, "Print no progress")
-      ->envname("JOSTLE_NO_PROGRESS");
+      .environment("JOSTLE_NO_PROGRESS");
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand("run", "Run a scene and write its results");
+void add_run(Command& app, int& code) {
+  Command command = app.add_command("run", "Run a scene and write its results");
   auto arguments = std::make_shared<RunArguments>();
-  add_options(*command, *arguments);
-  command->footer(
+  add_options(command, *arguments);
+  command.footer(
       "Examples:\n"
       "  jostle run scene.json                              writes NAME.h5, prints its curves\n"
       "  jostle run scene.json --resume --time-limit 23h    the same line for every job of a "
@@ -249,7 +240,7 @@ void add_run(CLI::App& app, int& code) {
       "\n"
       "SIGINT, SIGTERM, SIGUSR1 and the time limit stop at the end of a sweep: all is stored, the\n"
       "command that goes on is printed, and the exit code is 75.");
-  command->callback([arguments, &code] { code = run(*arguments); });
+  command.run([arguments, &code] { code = run(*arguments); });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -11,7 +11,7 @@
 #include "study/bad_input.hpp"
 #include "study/self_checks.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 /// A folder of its own within another, removed with all that is in it.
@@ -67,21 +67,21 @@ int selftest(const std::string& folder) {
                                              : std::filesystem::path(folder));
   int code = exit_ok;
   for (const SelfCheck& check : self_checks(scratch.path())) {
-    if (!print_check(check)) code = exit_broken_surroundings;
+    if (!print_check(check)) code = exit_io_error;
   }
   return code;
 }
 
 }  // namespace
 
-void add_selftest(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand(
-      "selftest", "Check in seconds that this machine computes and stores right");
+void add_selftest(Command& app, int& code) {
+  Command command =
+      app.add_command("selftest", "Check in seconds that this machine computes and stores right");
   auto folder = std::make_shared<std::string>();
-  command->add_option("--folder", *folder,
-                      "Write the trial files here, on the disk that results will go to (default: "
-                      "the folder for temporary files)");
-  command->footer(
+  command.add_option("--folder", *folder,
+                     "Write the trial files here, on the disk that results will go to (default: "
+                     "the folder for temporary files)");
+  command.footer(
       "Examples:\n"
       "  jostle selftest\n"
       "  jostle selftest --folder /scratch/me   also tries that disk\n"
@@ -89,7 +89,7 @@ void add_selftest(CLI::App& app, int& code) {
       "One line a check, \"ok\" or \"FAILED\" with what, why and what to do; exit code 4 if any\n"
       "failed. Trials of every instruction set that this machine has against a plain loop; no\n"
       "overlaps, by all pairs; a certified fit; one thread against two; a results file read back.");
-  command->callback([folder, &code] { code = selftest(*folder); });
+  command.run([folder, &code] { code = selftest(*folder); });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -3,33 +3,30 @@
 #include <algorithm>
 #include <memory>
 
-#include "cli/commands/arguments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
-#include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/table_output.hpp"
+#include "cli/terminal/shown_tables.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
-#include "study/scene_file.hpp"
+#include "study/scenes/scene_file.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/structure.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 namespace {
 
 struct StructureArguments {
   std::vector<std::string> inputs, parts;
   std::vector<std::uint64_t> taps;
-  std::string point, settings, csv;
-  bool json = false, not_stored = false, force = false;
-  Live live = Live::no;
+  std::string point, settings;
+  TableOutput output;
   int threads = 0;
 };
 
@@ -72,34 +69,11 @@ StructureSettings wanted(const StructureArguments& arguments, StructureSettings 
   return with_parts(std::move(settings), parts);
 }
 
-/// Prints, and writes what is asked for. Returns whether any part was measured.
-bool show(const StructureArguments& arguments, const std::vector<Table>& tables,
-          const Provenance& by) {
-  Json listed = Json::array();
-  std::string csv;
-  bool any = false;
-  for (const Table& table : tables) {
-    any = any || is_made(table);
-    if (arguments.json) {
-      listed.push_back(table_json(table));
-    } else {
-      print(fmt::format("{}\n", table_text(table, Detail::brief)));
-    }
-    csv += table_csv(table);
-  }
-  if (arguments.json) {
-    const Json object = {{"tables", listed}, {"provenance", provenance_json(by)}};
-    print_json(object);
-  }
-  if (!arguments.csv.empty()) write_text(arguments.csv, csv);
-  return any;
-}
-
 /// What is read stays.
 void require_output(const StructureArguments& arguments) {
   std::vector<std::string> read = arguments.inputs;
   if (!arguments.settings.empty()) read.push_back(arguments.settings);
-  require_text_output("--csv", arguments.csv, read, arguments.force);
+  require_text_output("--csv", arguments.output.csv, read, arguments.output.force);
 }
 
 int measure_structure(const StructureArguments& arguments) {
@@ -120,7 +94,7 @@ int measure_structure(const StructureArguments& arguments) {
   require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {
-    const ResultsFile file = open_to_read(arguments.inputs.front(), arguments.live);
+    const ResultsFile file = open_to_read(arguments.inputs.front(), arguments.output.live);
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
                           wanted(arguments, structure_asked_for(file)), arguments.taps, threads);
   } else {
@@ -129,48 +103,41 @@ int measure_structure(const StructureArguments& arguments) {
     }
     tables = structure_of(arguments.inputs, wanted(arguments, {}), arguments.taps, threads);
   }
-  const bool any = show(arguments, tables, by);
-  if (results && !arguments.not_stored && arguments.live == Live::no) {
+  ShownTables shown(arguments.output, Detail::brief);
+  shown.show(tables, "");
+  if (results && arguments.output.stored())
     keep_tables(arguments.inputs.front(), "structure", tables, by);
-  }
-  return any ? exit_ok : exit_bad_input;
+  return shown.end(by);
 }
 
 }  // namespace
 
-void add_structure(CLI::App& app, int& code) {
-  auto* command = app.add_subcommand(
+void add_structure(Command& app, int& code) {
+  Command command = app.add_command(
       "structure", "Profiles, order, Voronoi cells, pores and holes of kept packings");
   auto arguments = std::make_shared<StructureArguments>();
   StructureArguments& a = *arguments;
-  command->add_option("input", a.inputs, "Results, or packings in extended XYZ, one a realization")
-      ->required()
-      ->check(CLI::ExistingFile);
+  command.add_option("input", a.inputs, "Results, or packings in extended XYZ, one a realization")
+      .required()
+      .existing_file();
   command
-      ->add_option(
-          "--part", a.parts,
-          "What to measure, separated by commas (default: what the scene names, else all): "
-          "profile, sides, layers, coordination, pair_correlation, order, voronoi, pores, "
-          "void_probability, holes")
-      ->delimiter(',');
-  command->add_option("--settings", a.settings,
-                      "As the scene's \"structure\": a JSON file, or the object itself");
+      .add_option("--part", a.parts,
+                  "What to measure, separated by commas (default: what the scene names, else all): "
+                  "profile, sides, layers, coordination, pair_correlation, order, voronoi, pores, "
+                  "void_probability, holes")
+      .separated_by(',');
+  command.add_option("--settings", a.settings,
+                     "As the scene's \"structure\": a JSON file, or the object itself");
   command
-      ->add_option("--tap", a.taps,
-                   "Taps with a packing (frames of extended XYZ, from 0), separated by commas "
-                   "(default: all)")
-      ->delimiter(',');
-  command->add_option("--sweep-point", a.point,
-                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
-  command->add_flag("--json", a.json, "Print JSON, for programs");
-  command->add_option("--csv", a.csv, "Also write the tables to this file")->check(file_to_write());
-  command->add_flag("--force", a.force, "Replace the file of --csv if it exists");
-  command->add_flag("--no-store", a.not_stored, "Leave the results file as it is");
-  add_live(*command, a.live);
-  command->add_option("--threads", a.threads, "Threads (default: the CPUs this process may use)")
-      ->check(CLI::Range(1, 4096))
-      ->envname("JOSTLE_THREADS");
-  command->footer(
+      .add_option("--tap", a.taps,
+                  "Taps with a packing (frames of extended XYZ, from 0), separated by commas "
+                  "(default: all)")
+      .separated_by(',');
+  command.add_option("--sweep-point", a.point,
+                     "Its number, or POINTER=VALUE of the sweep (default: every point)");
+  add_table_output(command, a.output);
+  command.add_threads(a.threads);
+  command.footer(
       "Examples:\n"
       "  jostle structure quickstart.h5                             every part, every kept tap\n"
       "  jostle structure fig10.h5 --part pores --tap 0,99 --csv pores.csv\n"
@@ -179,7 +146,7 @@ void add_structure(CLI::App& app, int& code) {
       "\n"
       "Tables are kept in the results file, under /structure; what they mean:\n"
       "docs/structure.md. Exit code 2 where nothing could be measured.");
-  command->callback([arguments, &code] { code = measure_structure(*arguments); });
+  command.run([arguments, &code] { code = measure_structure(*arguments); });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -1,14 +1,14 @@
 #pragma once
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// What the program's exit code says; docs/cli.md documents them for scripts.
 enum ExitCode : int {
   exit_ok = 0,
   exit_bad_input = 2,            // the scene or the command line; nothing was run or written
   exit_failed_realizations = 3,  // the rest is stored
-  exit_broken_surroundings = 4,  // a file or the disk
+  exit_io_error = 4,             // a file or the disk
   exit_stopped = 75,             // by a signal or the time limit; resumable (EX_TEMPFAIL)
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

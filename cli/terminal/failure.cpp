@@ -9,7 +9,7 @@
 #include "study/results_input.hpp"
 #include "study/run.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 bool is_want_of_threads(const std::exception& error) {
@@ -90,4 +90,4 @@ std::string failure_text(const std::exception& error) {
   return error.what();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -12,7 +12,7 @@
 #include "results/hdf5/descriptor.hpp"
 #include "results/tables.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 void keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                  const Provenance& by) {
@@ -39,4 +39,4 @@ Json provenance_json(const Provenance& by) {
           {"started", by.started}};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

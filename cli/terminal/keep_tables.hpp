@@ -7,7 +7,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// Stores the tables in `group` of a results file. A file that cannot be changed, as in an archive,
 /// still gives its tables: a word on stderr says that they are not stored.
@@ -20,4 +20,4 @@ void write_text(const std::string& path, const std::string& text);
 /// Who made what is printed.
 Json provenance_json(const Provenance& by);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -1,14 +1,13 @@
 #include "cli/terminal/live_input.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "cli/terminal/standard_streams.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
-void add_live(CLI::App& command, Live& live) {
-  command.add_flag_callback(
+void add_live(Command& command, Live& live) {
+  command.add_flag(
       "--live", [&live] { live = Live::yes; },
       "Read the checkpoints of an unfinished run too; its results file stays as it is");
 }
@@ -24,4 +23,4 @@ ResultsFile open_to_read(const std::string& path, Live live) {
   return file;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -9,7 +9,7 @@
 #include "study/bad_input.hpp"
 #include "study/results_input.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ void require_text_output(const std::string& option, const std::string& output,
       option));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -5,7 +5,7 @@
 
 // What a command may write to. Each refuses with BadInput, or with ResultsError where there is no
 // such folder, and is called before any work is done.
-namespace jostle {
+namespace jostle::inline cli {
 
 /// Whether a path is a pipe, a device, or a descriptor such as /dev/stdout: text can go there as it
 /// comes, but no file in its place.
@@ -29,4 +29,4 @@ void require_results_or_empty(const std::string& output);
 void require_text_output(const std::string& option, const std::string& output,
                          std::span<const std::string> read, bool force);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -4,12 +4,12 @@
 
 #include <new>
 
-#include "cli/terminal/durations.hpp"
+#include "cli/reports/durations.hpp"
+#include "cli/reports/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "cli/terminal/text_table.hpp"
 #include "study/amounts.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -89,4 +89,4 @@ void StoringDisplay::show(std::uint64_t done, std::uint64_t of) {
   print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

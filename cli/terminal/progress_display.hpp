@@ -10,7 +10,7 @@
 
 #include "study/run.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// How progress is shown on stderr: a line rewritten in place, a plain line every half minute, or
 /// not at all.
@@ -60,4 +60,4 @@ class StoringDisplay {
 std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
                           std::chrono::duration<double> elapsed);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -7,7 +7,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/printable.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 void RunDisplay::computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
                            std::uint64_t all) {
@@ -27,11 +27,11 @@ void RunDisplay::storing(std::uint64_t done, std::uint64_t of) {
   if (storing_) storing_->show(done, of);
 }
 
-void RunDisplay::compared(const EnoughStatus& status) {
-  if (prints_targets_) print(enough_line(status));
+void RunDisplay::compared(const PrecisionStatus& status) {
+  if (prints_targets_) print(precision_line(status));
 }
 
-std::string enough_line(const EnoughStatus& status) {
+std::string precision_line(const PrecisionStatus& status) {
   const auto& values = std::get<std::vector<double>>(status.table.quantities[3].values);
   const auto& limits = std::get<std::vector<double>>(status.table.quantities[4].values);
   std::size_t farthest = 0;
@@ -51,4 +51,4 @@ std::string enough_line(const EnoughStatus& status) {
                      values[farthest], limits[farthest]);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -6,7 +6,7 @@
 #include "cli/terminal/progress_display.hpp"
 #include "study/run.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// What a run says while it goes on: how much is to do, progress, how far its targets are met.
 class RunDisplay : public RunObserver {
@@ -20,7 +20,7 @@ class RunDisplay : public RunObserver {
   void computed() override;
   void storing(std::uint64_t done, std::uint64_t of) override;
   void stored() override { storing_.reset(); }
-  void compared(const EnoughStatus& status) override;
+  void compared(const PrecisionStatus& status) override;
 
  private:
   ProgressStyle style_;
@@ -32,6 +32,6 @@ class RunDisplay : public RunObserver {
 };
 
 /// One line for people: whether it is enough, and the target that is farthest from being met.
-std::string enough_line(const EnoughStatus& status);
+std::string precision_line(const PrecisionStatus& status);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -12,7 +12,7 @@
 
 #include "results/export/printable.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 /// Whatever interrupts or shortens a write. Returns errno of what failed, 0 if nothing did.
@@ -28,7 +28,7 @@ int write_whole(int descriptor, std::string_view text) {
 
 }  // namespace
 
-void guard_files() {
+void reserve_standard_fds() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     // open() takes the lowest number that is free: this one.
     if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0) return;
@@ -36,7 +36,7 @@ void guard_files() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void outlive_readers() {
+void ignore_sigpipe() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -70,4 +70,4 @@ void print_to_standard_error_exactly(std::string_view text) {
   write_whole(STDERR_FILENO, text);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -6,15 +6,15 @@
 #include "config/json/json.hpp"
 
 // What leaves the program on its standard streams: all of it goes through here.
-namespace jostle {
+namespace jostle::inline cli {
 
 /// First thing in the program. A standard stream that the caller closed is opened, so that no
 /// results file takes its number and is written over by messages; writing to it still fails. Beyond
 /// a limit on file sizes (ulimit -f) a write fails and says so, where it would kill.
-void guard_files();
+void reserve_standard_fds();
 
 /// From now on a reader of standard output or error that went away costs the text, not the run.
-void outlive_readers();
+void ignore_sigpipe();
 
 /// Writes a text for people to standard output; what a terminal could take for a command is shown
 /// as \xNN. Throws nothing: results are stored though nobody reads about them. The first failure
@@ -38,4 +38,4 @@ void print_to_standard_error(std::string_view text);
 /// Commands to the terminal among it.
 void print_to_standard_error_exactly(std::string_view text);
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

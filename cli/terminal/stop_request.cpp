@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace jostle {
+namespace jostle::inline cli {
 namespace {
 
 // A signal handler reaches nothing but statics: the only mutable ones of the program.
@@ -63,4 +63,4 @@ std::string StopRequest::reason() const {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

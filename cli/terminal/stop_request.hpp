@@ -6,9 +6,9 @@
 #include <string>
 #include <thread>
 
-#include "cli/terminal/durations.hpp"
+#include "cli/reports/durations.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// While it lives, SIGINT, SIGTERM and SIGUSR1 ask for a stop instead of ending the process. A
 /// second SIGINT ends the process at once. One at a time.
@@ -32,4 +32,4 @@ class StopRequest {
   std::jthread clock_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

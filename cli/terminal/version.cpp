@@ -9,7 +9,7 @@
 #include "results/study.hpp"
 #include "study/version.hpp"
 
-namespace jostle {
+namespace jostle::inline cli {
 
 std::string version_text() {
 #ifdef __clang__
@@ -27,4 +27,4 @@ std::string version_text() {
       SPDLOG_VER_PATCH);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -2,9 +2,9 @@
 
 #include <string>
 
-namespace jostle {
+namespace jostle::inline cli {
 
 /// What `jostle --version` prints: version, revision, compiler and the libraries as linked.
 std::string version_text();
 
-}  // namespace jostle
+}  // namespace jostle::inline cli

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -231,4 +231,4 @@ bool Json::operator==(const Json& other) const {
   return value_ == other.value_;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

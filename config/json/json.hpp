@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// A JSON value that is not of the kind it was read as, or has not the member that was asked for.
 class JsonError : public std::runtime_error {
@@ -127,4 +127,4 @@ struct Json::Member {
 /// The version of the library that parses and prints: "3.11.2".
 std::string json_library_version();
 
-}  // namespace jostle
+}  // namespace jostle::inline config

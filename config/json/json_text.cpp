@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::string canonical_text(const Json& value) {
   return fmt::format("{{{}}}", joined(parts, ","));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -8,7 +8,7 @@
 #include "config/fault.hpp"
 #include "config/json/json.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// Lists and objects may be nested this deep.
 inline constexpr int deepest_nesting = 64;
@@ -31,4 +31,4 @@ bool is_within(std::string_view pointer, std::string_view ancestor);
 /// any other number by the shortest decimal that reads back as the same double.
 std::string canonical_text(const Json& value);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

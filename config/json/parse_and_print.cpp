@@ -7,7 +7,7 @@
 
 #include "config/json/json_text.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::string json_library_version() {
                      NLOHMANN_JSON_VERSION_PATCH);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -7,7 +7,7 @@
 
 #include "config/json/suggestion.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -180,4 +180,4 @@ void Reader::read_flag(const std::string& key, bool& into) const {
   if (const auto member = find(key)) into = member->boolean().value_or(into);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -10,7 +10,7 @@
 
 #include "config/json/json_text.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// The numbers a key may take.
 struct Range {
@@ -116,4 +116,4 @@ std::string listed(const std::vector<std::string>& names);
 /// Whether no fault lies at `pointer` or below.
 bool sound(const std::vector<Fault>& faults, std::string_view pointer);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace jostle {
+namespace jostle::inline config {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -44,4 +44,4 @@ std::string did_you_mean(std::string_view written, const std::vector<std::string
   return nearest ? fmt::format(" Did you mean \"{}\"?", *nearest) : "";
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline config {
 
 /// Insertions, deletions, replacements and exchanges of neighbours that turn `a` into `b`
 /// (optimal string alignment).
@@ -14,4 +14,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// empty where none is near: more than 1 + length / 4 edits away, and not a part of a candidate.
 std::string did_you_mean(std::string_view written, const std::vector<std::string>& candidates);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -4,7 +4,7 @@
 #include "config/names.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -173,4 +173,4 @@ Json written(const Analyses& analyses) {
           {"sweep", written(analyses.sweep)}};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -7,7 +7,7 @@
 #include "config/parts/parts.hpp"
 #include "ensemble/statistics/counted.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -185,4 +185,4 @@ void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -3,7 +3,7 @@
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -113,4 +113,4 @@ Json written(const Container& container) {
   return written_settings(kinds, container);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

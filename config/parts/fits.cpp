@@ -2,7 +2,7 @@
 
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -56,4 +56,4 @@ Json written(const std::vector<FitRequest>& fits) {
   return list;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -15,7 +15,7 @@
 // A variant of a scene - taps, starts, observables, stops, containers - as one table: an entry an
 // alternative, in their order. The table's type is made of the variant's, so that an alternative
 // without an entry does not compile.
-namespace jostle {
+namespace jostle::inline config {
 
 /// A tuple of Entry<Alternative>, one for every alternative of the variant.
 template <template <class> class Entry, class Variant>
@@ -100,4 +100,4 @@ Json written_kind(const Table& table, const Variant& value) {
   return {{name_of(table, value), written_settings(table, value)}};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

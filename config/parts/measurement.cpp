@@ -6,7 +6,7 @@
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -232,4 +232,4 @@ Json written(const SnapshotChoice& snapshots) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

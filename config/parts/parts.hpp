@@ -7,7 +7,7 @@
 
 // The parts of a scene, in from JSON and out to it. A read_* function always returns a part; where
 // it noted a fault, the part is a default that stands in for it.
-namespace jostle {
+namespace jostle::inline config {
 
 Container read_container(const Reader& in);
 StartChoice read_start(const Reader& in);
@@ -20,7 +20,7 @@ TapChoice read_taps(const Reader& in);
 SnapshotChoice read_snapshots(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
-Enough read_until(const Reader& in);
+TargetPrecision read_until(const Reader& in);
 Analyses read_analyses(const Reader& in);
 StructureSettings read_structure(const Reader& in);
 
@@ -35,7 +35,7 @@ Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
 Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
-Json written(const Enough& enough);
+Json written(const TargetPrecision& enough);
 Json written(const Analyses& analyses);
 Json written(const StructureSettings& settings);
 /// [low, high]
@@ -62,4 +62,4 @@ void check_until(const Scene& scene, std::vector<Fault>& faults);
 /// Notes analyses over the points of a sweep that does not have what they need.
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults);
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -6,7 +6,7 @@
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -182,4 +182,4 @@ Json written(const std::vector<ProtocolLine>& protocol) {
   return lines;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

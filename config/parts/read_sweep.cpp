@@ -4,7 +4,7 @@
 
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -103,4 +103,4 @@ Json written(const std::vector<SweepAxis>& sweep) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

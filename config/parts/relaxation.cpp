@@ -6,7 +6,7 @@
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -161,4 +161,4 @@ Json written(const Relaxation& relaxation) {
   return out;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

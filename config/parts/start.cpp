@@ -4,7 +4,7 @@
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -157,4 +157,4 @@ Json written(const StartChoice& start) {
   return written_kind(kinds, start);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

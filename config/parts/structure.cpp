@@ -6,7 +6,7 @@
 #include "config/parts/parts.hpp"
 #include "structure/voids/pores.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -296,4 +296,4 @@ void check_structure(const Scene& scene, std::vector<Fault>& faults) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

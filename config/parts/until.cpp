@@ -6,7 +6,7 @@
 #include "config/json/suggestion.hpp"
 #include "config/parts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline config {
 
 namespace {
 
@@ -32,8 +32,8 @@ SpreadTarget read_target(const Reader& in) {
 
 }  // namespace
 
-Enough read_until(const Reader& in) {
-  Enough enough;
+TargetPrecision read_until(const Reader& in) {
+  TargetPrecision enough;
   if (!in.is_object_of({"targets", "at_most"})) return enough;
   if (!in.find("at_most")) in.missing("at_most", "the largest number of realizations");
   in.read_whole("at_most", enough.at_most, 1, most_realizations);
@@ -46,7 +46,7 @@ Enough read_until(const Reader& in) {
   return enough;
 }
 
-Json written(const Enough& enough) {
+Json written(const TargetPrecision& enough) {
   Json targets = Json::array();
   for (const SpreadTarget& target : enough.targets) {
     targets.push_back({{"observable", target.observable},
@@ -84,4 +84,4 @@ void check_until(const Scene& scene, std::vector<Fault>& faults) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline config

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -70,4 +70,4 @@ double boundary_depth(const Boundary& boundary, Vec3 r) {
   return std::max(below, std::sqrt(dx * dx + dy * dy) - (boundary.axis() - sphere_radius));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

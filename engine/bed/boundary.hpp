@@ -6,7 +6,7 @@
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/vec3.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Sides that are obstacles.
 enum class Sides { none, walls, cylinder };
@@ -58,4 +58,4 @@ bool clear_of_boundaries(const Boundary& boundary, Vec3 r);
 /// of them.
 double boundary_depth(const Boundary& boundary, Vec3 r);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -5,7 +5,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Cells of equal width along one direction of a container, from which every search for neighbours
 /// is made: CellGrid (spheres that move), SphereCells (beds that grow), NeighbourFinder (packings
@@ -65,4 +65,4 @@ inline double most_cells(std::size_t n) {
   return 1000 + 8.0 * static_cast<double>(n);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -9,7 +9,7 @@
 #include "engine/bed/cell_axis.hpp"
 #include "engine/bed/vec3.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Spheres in cells at least `cutoff` wide, so that whatever lies within the cutoff of a point lies
 /// in its cell or a neighbouring one. Holds the positions it was told of: build it anew, or
@@ -145,4 +145,4 @@ class CellGrid {
   std::vector<std::uint32_t> cell_of_;  // [n]
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -68,4 +68,4 @@ bool has_gravity(const Container& container) {
   return Boundary(container).floor;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

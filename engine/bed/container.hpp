@@ -8,7 +8,7 @@
 
 // What holds the spheres. Lengths in diameters. Every container but the fully periodic one has a
 // floor at z = 0 and an open top; every container's footprint lies in [0, width_x] x [0, width_y].
-namespace jostle {
+namespace jostle::inline engine {
 
 inline constexpr double sphere_radius = 0.5;
 inline constexpr double sphere_volume = 0.52359877559829887307710723054658;  // pi / 6
@@ -57,4 +57,4 @@ double width_y(const Container& container);
 
 bool has_gravity(const Container& container);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

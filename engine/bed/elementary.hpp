@@ -4,7 +4,7 @@
 
 // Elementary functions as fixed sequences of IEEE operations, so that a trajectory is the same on
 // every machine; the C library's own differ between machines. Each is good to 2 ulp (tested).
-namespace jostle {
+namespace jostle::inline engine {
 
 struct SineCosine {
   double sine, cosine;
@@ -88,4 +88,4 @@ struct SineCosine {
          ((half_square - (s * (half_square + (even + odd)) + k * 1.90821492927058770002e-10)) - f);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 // The one arithmetic by which positions are wrapped and compared. Whatever decides or checks an
 // overlap uses these functions, so that a stored packing is judged by the very numbers that made
 // it.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// A coordinate within one period of [0, width) brought into it. -5e-17 becomes 0, not width.
 inline double wrap_coordinate(double x, double width) {
@@ -74,4 +74,4 @@ bool overlaps(const Box& box, Vec3 a, Vec3 b) {
   return norm_squared(separation(box, a, b)) < 1.0;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

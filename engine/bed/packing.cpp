@@ -8,7 +8,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -78,4 +78,4 @@ double overlap_bound(const Packing& packing) {
   return std::max(1e-12, 4 * ulp);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

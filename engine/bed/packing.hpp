@@ -5,7 +5,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Equal hard spheres of diameter 1 in a container.
 struct Packing {
@@ -36,4 +36,4 @@ Overlap deepest_overlap(const Packing& packing);
 /// How deep an overlap rounding alone may leave after a tap: max(1e-12, 4 ulp of the top height).
 double overlap_bound(const Packing& packing);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

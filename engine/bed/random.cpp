@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -51,4 +51,4 @@ std::uint64_t RandomStream::below(std::uint64_t n) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 // Counter-based random numbers: Philox4x32-10 (Salmon et al., SC11, doi:10.1145/2063384.2063405).
 // A stream is a 64-bit key; the n-th block of a stream is a function of (key, n) alone, so a
 // realization can be resumed anywhere and depends on no other.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What a stream of a realization is for. The numbers are part of the results' identity.
 enum class Purpose : std::uint32_t {
@@ -60,4 +60,4 @@ class RandomStream {
   std::uint64_t position_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -75,4 +75,4 @@ HeightWindow resolve(const Window& window, const Packing& packing) {
   return {low, high};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 #include "engine/bed/window.hpp"
 
 // Solids fractions in closed form: a plane cuts a sphere into segments of known volume.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Volume of the part of a unit-diameter sphere centred at height z that lies in
 /// [low, high], diameters cubed. Requires low <= high.
@@ -23,4 +23,4 @@ double solids_fraction(const Packing& packing, HeightWindow window);
 /// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
 HeightWindow resolve(const Window& window, const Packing& packing);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

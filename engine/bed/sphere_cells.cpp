@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, double height)
     : open_top_(Boundary(container).floor) {
@@ -61,4 +61,4 @@ void SphereCells::move(std::uint32_t sphere, Vec3 centre) {
   link(sphere);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -7,7 +7,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Spheres sorted into cells at least one diameter wide, for building a packing sphere by sphere in
 /// any legal container. Along a periodic direction every image is met, also where the box is so
@@ -70,4 +70,4 @@ class SphereCells {
   std::vector<Vec3> centres_;        // [spheres]
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

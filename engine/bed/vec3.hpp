@@ -1,6 +1,6 @@
 #pragma once
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// A position or displacement, in sphere diameters; z points up.
 struct Vec3 {
@@ -22,4 +22,4 @@ constexpr double norm_squared(Vec3 a) {
   return dot(a, a);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -3,7 +3,7 @@
 #include <variant>
 
 // Horizontal slices of a bed, in which solids fractions are taken.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Between two heights above the floor, diameters.
 struct HeightWindow {
@@ -19,4 +19,4 @@ struct QuantileWindow {
 
 using Window = std::variant<HeightWindow, QuantileWindow>;
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/monte_carlo/state.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -52,6 +52,7 @@ class MonteCarloDynamics final : public Dynamics {
   }
 
   void tap(const Tap& tap, RandomStream& random) override {
+    if (moving()) cut_short();
     state_.dropped_offsets = excite(packing_, tap, random).lateral_offsets_dropped;
     begin();
   }
@@ -130,6 +131,12 @@ class MonteCarloDynamics final : public Dynamics {
     state_.progress = {};
   }
 
+  void cut_short() {
+    loop().store(packing_);
+    state_.progress = {.status = DynamicsStatus::settled};
+    if (!state_.tapping) begin_taps();
+  }
+
   void relax_for(std::uint64_t trials) {
     const TrialTally before = loop().tally();
     relax(loop(), relaxation().stop, state_.stop_window, state_.progress, trials);
@@ -165,4 +172,4 @@ std::unique_ptr<Dynamics> make_dynamics(const MonteCarlo& settings,
   return std::make_unique<MonteCarloDynamics>(settings, streams);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

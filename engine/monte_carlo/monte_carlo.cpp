@@ -1,6 +1,6 @@
 #include "engine/monte_carlo/monte_carlo.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& start) {
   if (settings.relax_start) return &*settings.relax_start;
@@ -34,4 +34,4 @@ std::vector<Column> columns(const MonteCarlo&) {
            .if_any = "shakes dropped {} of their lateral offsets for want of room"}};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -12,7 +12,7 @@
 #include "engine/starts/starts.hpp"
 
 // The Monte Carlo engine: after a tap, trials of single spheres bring the bed to rest.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// How a bed comes to rest: the moves, how they are found and when they end.
 struct Relaxation {
@@ -43,4 +43,4 @@ std::vector<Column> columns(const MonteCarlo& settings);
 /// is in engine/monte_carlo/state.hpp.
 std::unique_ptr<Dynamics> make_dynamics(const MonteCarlo& settings, const DynamicsStreams& streams);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

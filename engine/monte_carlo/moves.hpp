@@ -7,7 +7,7 @@
 #include <variant>
 
 // How one sphere is displaced in a trial. Lengths in diameters, angles in radians.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Law of the angle theta from the downward vertical: a density in theta itself (no sin theta) on
 /// [0, pi/2]. Gaussian exp(-(theta/theta0)^2), exponential exp(-theta/theta0), linear
@@ -49,4 +49,4 @@ struct MetropolisMove {
 
 using Move = std::variant<PolarMove, MetropolisMove>;
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -7,7 +7,7 @@
 #include "engine/bed/elementary.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 PlainLoop::PlainLoop(Packing packing, const Move& move, StreamKey key)
     : packing_(std::move(packing)),
@@ -56,4 +56,4 @@ bool PlainLoop::rise_passes(const MetropolisMove& move, double dz) const {
   return u < exponential(-(move.beta * dz));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

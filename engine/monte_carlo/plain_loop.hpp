@@ -9,7 +9,7 @@
 #include "engine/monte_carlo/kernel/proposals.hpp"
 #include "engine/monte_carlo/moves.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What the trial loop must agree with bit for bit: one trial after another, each held against all
 /// spheres, without lists, cells or caches. It shares with the trial loop the proposals alone, and
@@ -37,4 +37,4 @@ class PlainLoop {
   std::unique_ptr<ProposalBatch> batch_ = std::make_unique<ProposalBatch>();
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

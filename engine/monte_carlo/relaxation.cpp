@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -81,4 +81,4 @@ void relax(TrialLoop& loop, const Stop& stop, HeightWindow window, RelaxationPro
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -7,7 +7,7 @@
 #include "engine/monte_carlo/stops.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Everything a relaxation must remember to go on bit for bit after a checkpoint.
 struct RelaxationProgress {
@@ -25,4 +25,4 @@ struct RelaxationProgress {
 void relax(TrialLoop& loop, const Stop& stop, HeightWindow window, RelaxationProgress& progress,
            std::uint64_t budget);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -3,7 +3,7 @@
 #include "engine/monte_carlo/trial_loop.hpp"
 
 // What goes with what among containers, moves and samplers.
-namespace jostle {
+namespace jostle::inline engine {
 
 std::optional<std::string> move_fault(const Move& move, const Container& container) {
   if (has_gravity(container) || !std::holds_alternative<PolarMove>(move)) return std::nullopt;
@@ -33,4 +33,4 @@ std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
   return why + ": use \"exhaustive\"";
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -2,7 +2,7 @@
 
 #include "engine/bytes.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -24,7 +24,7 @@ MonteCarloState read(ByteReader& reader) {
   state.move.window_trials = reader.get<std::uint64_t>();
   state.move.window_base = reader.get<std::uint64_t>();
   state.move.window_accepted = reader.get<std::uint64_t>();
-  state.sampler.skipping = reader.get_flag();
+  state.sampler.active = reader.get_flag();
   state.sampler.window_trials = reader.get<std::uint64_t>();
   state.sampler.window_accepted = reader.get<std::uint64_t>();
   state.sampler.candidate = reader.get<std::uint64_t>();
@@ -54,7 +54,7 @@ std::vector<std::byte> bytes_of(const MonteCarloState& state) {
   writer.put(state.move.window_trials);
   writer.put(state.move.window_base);
   writer.put(state.move.window_accepted);
-  writer.put(state.sampler.skipping);
+  writer.put(state.sampler.active);
   writer.put(state.sampler.window_trials);
   writer.put(state.sampler.window_accepted);
   writer.put(state.sampler.candidate);
@@ -77,4 +77,4 @@ MonteCarloState monte_carlo_state(std::span<const std::byte> bytes) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/monte_carlo/relaxation.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What a realization by Monte Carlo goes on from, besides the centres.
 struct MonteCarloState {
@@ -25,4 +25,4 @@ struct MonteCarloState {
 std::vector<std::byte> bytes_of(const MonteCarloState& state);
 MonteCarloState monte_carlo_state(std::span<const std::byte> bytes);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

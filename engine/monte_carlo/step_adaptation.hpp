@@ -5,7 +5,7 @@
 #include "engine/monte_carlo/moves.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Numbers of trials.
 struct TrialCounts {
@@ -27,4 +27,4 @@ inline bool adapt_step(const StepAdaptation& rule, MoveState& state, const Trial
   return few;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

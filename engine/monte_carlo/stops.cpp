@@ -1,6 +1,6 @@
 #include "engine/monte_carlo/stops.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 std::optional<std::string> stop_fault(const StopRule& rule, const Container& container) {
   if (has_gravity(container) || std::holds_alternative<SweepsStop>(rule)) return std::nullopt;
@@ -15,4 +15,4 @@ std::optional<std::string> cap_fault(const Stop& stop) {
          std::to_string(stop.max_sweeps) + ": every relaxation would end capped";
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

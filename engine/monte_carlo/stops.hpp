@@ -9,7 +9,7 @@
 #include "engine/bed/window.hpp"
 
 // When the relaxation after a tap ends. A sweep is n_spheres trials.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height.
 /// The first value is taken right after the tap. Philippe & Bideau 2001, sec. II, which publishes
@@ -66,4 +66,4 @@ std::optional<std::string> stop_fault(const StopRule& rule, const Container& con
 /// Why the cap ends every relaxation before the rule does; nothing if it need not.
 std::optional<std::string> cap_fault(const Stop& stop);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 
 #include "engine/bed/elementary.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<double> make_theta_table(const PolarMove& move) {
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -9,7 +9,7 @@
 // v, the probability of a larger angle. Nodes are spaced evenly inside every octave of v, from
 // 2^-33 to 1, so that the table follows long and vanishing tails; between nodes it is linear. The
 // law so drawn differs from the exact one by less than 1e-5 in cumulative probability (tested).
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace theta_table {
 inline constexpr int octaves = 33;
@@ -26,4 +26,4 @@ inline constexpr std::uint64_t first = static_cast<std::uint64_t>(1023 - octaves
 /// angle to 0. Requires theta0 > 0.
 std::vector<double> make_theta_table(const PolarMove& move);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
 #include "engine/monte_carlo/rejection_free/rejection_free_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -65,7 +65,7 @@ struct MakeRejectionFree {
   template <class Box, class Policy>
   std::unique_ptr<TrialLoop> operator()(const Box&, const Policy&) const {
     throw std::invalid_argument(
-        "the skipping sampler has no bounds for this move: use the exhaustive sampler");
+        "the rejection-free sampler has no bounds for this move: use the exhaustive sampler");
   }
 };
 
@@ -78,7 +78,7 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
     throw std::invalid_argument(*fault);
   }
   const Kernels kernels = kernels_for(set);
-  if (sampler == Sampler::skipping) {
+  if (sampler == Sampler::rejection_free) {
     const MakeRejectionFree make{key, kernels};
     return std::visit(WithTypes<MakeRejectionFree>{key, make}, container, move);
   }
@@ -86,4 +86,4 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
   return std::visit(WithTypes<MakeExhaustive>{key, make}, container, move);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

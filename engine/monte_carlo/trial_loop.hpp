@@ -11,7 +11,7 @@
 #include "engine/bed/window.hpp"
 #include "engine/monte_carlo/moves.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Where the trials of a realization stand; with the positions, all that the next trial depends on.
 struct MoveState {
@@ -25,14 +25,14 @@ struct MoveState {
 
 /// How a loop finds the trials that move a sphere. The law of the trajectory is the same.
 enum class Sampler {
-  exhaustive,  // looks at every trial
-  skipping,    // advances over trials that are certainly refused, once few are accepted
+  exhaustive,      // looks at every trial
+  rejection_free,  // advances over trials that are certain to be rejected, once few are accepted
 };
 
-/// What the skipping sampler must remember besides MoveState; unused by the exhaustive one.
+/// What the rejection-free sampler must remember besides MoveState; unused by the exhaustive one.
 struct SamplerState {
-  bool skipping = false;              // else every trial is looked at, as after each tap
-  std::uint64_t window_trials = 0;    // looked at since the last decision whether to skip
+  bool active = false;                // else every trial is looked at, as after each tap
+  std::uint64_t window_trials = 0;    // looked at since it was last decided whether to be active
   std::uint64_t window_accepted = 0;  // of them
   std::uint64_t candidate = 0;        // number of the next candidate of the realization
   std::uint64_t pending = 0;          // number of the trial that it is
@@ -47,8 +47,8 @@ struct TrialTally {
   std::uint64_t distance_tests = 0;
   std::uint64_t list_builds = 0;    // of all neighbour lists at once
   std::uint64_t list_renewals = 0;  // of one sphere's list
-  std::uint64_t candidates = 0;     // skipping: trials looked at while skipping
-  std::uint64_t bound_rows = 0;     // skipping: makings of a sphere's bounds
+  std::uint64_t candidates = 0;     // rejection-free: trials looked at while active
+  std::uint64_t bound_rows = 0;     // rejection-free: makings of a sphere's bounds
 };
 
 enum class InstructionSet { baseline, avx2, avx512 };
@@ -90,7 +90,7 @@ class TrialLoop {
 /// Why spheres in the container cannot move so; nothing if they can. A polar move needs gravity.
 std::optional<std::string> move_fault(const Move& move, const Container& container);
 
-/// Why the sampler does not suit the move in the container; nothing if it does. The skipping
+/// Why the sampler does not suit the move in the container; nothing if it does. The rejection-free
 /// sampler needs trials that never rise: gravity, and of the Metropolis move beta = infinity and an
 /// adaptation that counts all trials.
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
@@ -103,4 +103,4 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
                                            InstructionSet set = best_instruction_set(),
                                            Sampler sampler = Sampler::exhaustive);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -6,7 +6,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/starts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& contain
   return centres;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

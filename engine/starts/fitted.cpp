@@ -4,7 +4,7 @@
 #include "engine/starts/parts.hpp"
 #include "engine/starts/pour_bed.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 // Spheres of the bulk may lose a support that straddled a wall; they stay where they were poured.
 std::vector<Vec3> fit_pour(const WalledBox& box, std::vector<Vec3> poured, RandomStream& random,
@@ -27,4 +27,4 @@ std::vector<Vec3> fit_pour(const WalledBox& box, std::vector<Vec3> poured, Rando
   return poured;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

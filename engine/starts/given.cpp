@@ -5,7 +5,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/starts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
   return packing.centres;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

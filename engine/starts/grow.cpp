@@ -5,7 +5,7 @@
 #include "engine/starts/moving_spheres.hpp"
 #include "engine/starts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint
   return spheres.centres();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Centres on the move with Verlet lists, for starts that shuffle spheres until they fit: every
 /// sphere's list holds all others that can be within one diameter of it, nearest first. Between two
@@ -76,4 +76,4 @@ class MovingSpheres {
   std::vector<Near> found_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -10,7 +10,7 @@
 
 // One function for each start. All throw StartError as make_start does, which has asked before for
 // the faults of the start, the container and the number of spheres.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What a pour cost. A drop whose path is degenerate is drawn anew.
 struct PourTally {
@@ -40,4 +40,4 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint
 std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
                               std::uint32_t n_spheres);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -5,7 +5,7 @@
 #include "engine/starts/pour_bed.hpp"
 #include "engine/starts/pour_descent.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -41,4 +41,4 @@ std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, Rand
   return bed.centres();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -142,4 +142,4 @@ void PourBed::add(Vec3 centre) {
   top_ = std::max(top_, centre.z);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

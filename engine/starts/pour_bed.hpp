@@ -8,7 +8,7 @@
 
 // What a poured sphere can touch. Its centre is a point; it must stay outside the unit balls around
 // the other centres, inside the sides and above the floor. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// One thing a centre can touch: the gap to it and the direction away from it.
 struct Obstacle {
@@ -62,4 +62,4 @@ class PourBed {
   double top_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

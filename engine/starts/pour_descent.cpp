@@ -5,7 +5,7 @@
 
 #include "engine/starts/pour_path.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -198,4 +198,4 @@ std::optional<Vec3> descend(const PourBed& bed, Vec3 p) {
   return std::nullopt;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

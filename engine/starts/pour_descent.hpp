@@ -5,7 +5,7 @@
 
 #include "engine/starts/pour_bed.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Follows one sphere's centre down the steepest descent, from p to rest: it falls, rolls on one
 /// sphere, then on two, along walls where it meets them, and stops where what it touches holds it
@@ -20,4 +20,4 @@ std::optional<Vec3> descend(const PourBed& bed, Vec3 p);
 /// out of them; nothing if they hold it on every side.
 std::optional<Vec3> open_direction(const std::vector<Vec3>& outwards);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

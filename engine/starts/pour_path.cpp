@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -211,4 +211,4 @@ TubePathEnd follow_tube(Vec3 sphere, const Obstacle& tube, Vec3 p,
   return end;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

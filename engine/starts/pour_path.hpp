@@ -10,7 +10,7 @@
 // The curves along which a poured sphere rolls, always downwards. Points of a circle are kept as
 // (sine, cosine) pairs of algebraic numbers: no trigonometric function is ever evaluated, so that
 // every machine finds the same bits.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Rolling on one sphere, on two, or on a sphere and a flat wall: the quarter
 /// centre + radius (s sideways + h up), s = sqrt(1 - h^2), from h = start down to h = end >= 0,
@@ -67,4 +67,4 @@ std::optional<double> first_contact(double from, double to, Gap&& gap, Advance&&
   return std::nullopt;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

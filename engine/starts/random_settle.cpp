@@ -5,7 +5,7 @@
 #include "engine/bed/sphere_cells.hpp"
 #include "engine/starts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           std::uint32_t n_spheres, RandomStream& random) {
@@ -49,4 +49,4 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
   return cells.centres();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

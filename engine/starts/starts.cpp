@@ -6,7 +6,7 @@
 
 #include "engine/starts/parts.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -118,4 +118,4 @@ Packing make_start(const Start& start, const Container& container, std::uint32_t
   return {container, std::visit(build, start)};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

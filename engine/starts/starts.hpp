@@ -14,7 +14,7 @@
 #include "engine/bed/random.hpp"
 
 // How the packing begins, tap 0. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
 /// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the
@@ -113,4 +113,4 @@ Packing make_start(const Start& start, const Container& container, std::uint32_t
                    RandomStream& random, const StopAsked& stop = {},
                    Packing* before_fitting = nullptr);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -10,7 +10,7 @@
 #include "ensemble/statistics/jackknife.hpp"
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -27,7 +27,7 @@ double rest_of_steps(double step, double step_before) {
                                       : std::numeric_limits<double>::quiet_NaN();
 }
 
-double largest_bias(const Setting& setting) {
+double largest_bias(const SettingCost& setting) {
   return std::abs(setting.bias) + setting.bias_error;
 }
 
@@ -96,12 +96,12 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
   return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
 }
 
-double total_error(const Setting& setting, std::uint64_t realizations) {
+double total_error(const SettingCost& setting, std::uint64_t realizations) {
   const double statistical = setting.sigma / std::sqrt(static_cast<double>(realizations));
   return std::hypot(largest_bias(setting), statistical);
 }
 
-std::optional<Recommendation> cheapest(std::span<const Setting> settings, double target) {
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target) {
   std::optional<Recommendation> best;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const double bias = largest_bias(settings[i]);
@@ -116,10 +116,10 @@ std::optional<Recommendation> cheapest(std::span<const Setting> settings, double
   return best;
 }
 
-std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings) {
+std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings) {
   std::vector<std::uint64_t> front;
-  for (const Setting& one : settings) {
-    const bool beaten = std::ranges::any_of(settings, [&](const Setting& other) {
+  for (const SettingCost& one : settings) {
+    const bool beaten = std::ranges::any_of(settings, [&](const SettingCost& other) {
       return largest_bias(other) < largest_bias(one) &&
              other.realization_seconds < one.realization_seconds;
     });
@@ -128,4 +128,4 @@ std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings) {
   return front;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

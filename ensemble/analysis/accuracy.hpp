@@ -8,7 +8,7 @@
 
 // What accuracy costs: settings of a relaxation compared in pairs, realization by realization, each
 // pair from one starting packing.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// A setting against the reference: the mean of the pairs' differences.
 struct PairedBias {
@@ -39,27 +39,27 @@ Growth bias_growth(std::span<const double> values_before, std::span<const double
 /// Whether it is told from noise: more than two standard errors.
 bool is_seen(const PairedBias& bias);
 
-/// What a ladder's last rung still lacks.
+/// What a ladder's last setting still lacks.
 struct Remainder {
   double value = 0;  // NaN where steps do not shrink: r outside 0 .. 0.9
   double error = 0;  // jackknife over realizations; NaN where it is not defined without one of them
 };
 
-/// From three rungs, each more complete than the one before, one value a realization, NaN where it
-/// is missing: if steps between the means go on to shrink as the last two did,
-/// X_inf - X_last = d r / (1 - r) with d = X_last - X_before and r the ratio of the two steps.
+/// From three settings, each more complete than the one before, one value a realization, NaN where
+/// it is missing: if steps between the means go on to shrink as the last two did, X_inf - X_last =
+/// d r / (1 - r) with d = X_last - X_before and r the ratio of the two steps.
 Remainder remainder(std::span<const double> two_before, std::span<const double> before,
                     std::span<const double> last);
 
 /// A setting as a choice.
-struct Setting {
+struct SettingCost {
   double bias = 0, bias_error = 0;  // of the observable
   double sigma = 0;                 // deviation between realizations, 1/(M - 1)
   double realization_seconds = 0;   // of a whole one, on one core
 };
 
 /// |bias| + its error, and sigma / M^(1/2), in quadrature.
-double total_error(const Setting& setting, std::uint64_t realizations);
+double total_error(const SettingCost& setting, std::uint64_t realizations);
 
 struct Recommendation {
   std::size_t setting = 0;
@@ -70,9 +70,9 @@ struct Recommendation {
 /// The setting and number of realizations that reach a total error of at most `target` (above 0)
 /// for the least core time; nothing where every bias is too large. Settings without a known bias
 /// are passed over.
-std::optional<Recommendation> cheapest(std::span<const Setting> settings, double target);
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
-std::vector<std::uint64_t> pareto_front(std::span<const Setting> settings);
+std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

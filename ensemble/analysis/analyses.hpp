@@ -12,7 +12,7 @@
 
 // The analyses of one observable at one sweep point as tables. Each takes the last taps of one
 // realization after another, so that only one series is held at a time.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// The series under analysis.
 struct AnalysedSeries {
@@ -93,4 +93,4 @@ class SpectrumAnalysis {
 /// halves. Note "verdict" begins with "reached", "not reached" or "cannot decide", and says why.
 Table steady_table(const AnalysedSeries& series, const SteadyState& state);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -164,4 +164,4 @@ double SpectrumAverage::autoregressive_slope(double time, const Band& band) cons
   return log_log_slope(bins_.frequency, means, band).slope;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -6,7 +6,7 @@
 
 #include "ensemble/analysis/spectra.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Neighbouring lines put together, about equally wide in log frequency.
 struct FrequencyBins {
@@ -76,4 +76,4 @@ class SpectrumAverage {
   std::vector<std::vector<double>> densities_;  // [n_realizations][n_bins]
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

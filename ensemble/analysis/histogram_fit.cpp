@@ -9,7 +9,7 @@
 #include "ensemble/statistics/jackknife.hpp"
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -142,4 +142,4 @@ HistogramFit fit_histogram(const Model& law, const Histogram& histogram) {
   return found;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 #include "fitting/counts.hpp"
 
 // Laws of distributions, fitted to the histograms of realizations by maximum likelihood.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// What several realizations counted in the same bins, empty ones included.
 struct Histogram {
@@ -32,4 +32,4 @@ struct HistogramFit {
 /// The law of the mean over realizations (fitting/counts.hpp). Serial and deterministic.
 HistogramFit fit_histogram(const Model& law, const Histogram& histogram);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

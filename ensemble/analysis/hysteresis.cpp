@@ -9,7 +9,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -234,4 +234,4 @@ Table hysteresis_table(std::string name, const Column& observable, const Protoco
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

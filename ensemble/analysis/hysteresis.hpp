@@ -10,7 +10,7 @@
 #include "ensemble/statistics/student_tests.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Indices of the steps of each branch: a new one begins where the strength turns, with the step at
 /// the turn, which ends the branch before. Steps of equal strength stay together.
@@ -47,4 +47,4 @@ Table hysteresis_table(std::string name, const Column& observable, const Protoco
 std::vector<double> step_values(const ProtocolSteps& steps, std::span<const double> series,
                                 std::uint32_t realizations);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

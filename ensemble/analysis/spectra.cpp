@@ -8,7 +8,7 @@
 
 #include "ensemble/statistics/line.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -179,4 +179,4 @@ std::size_t fast_length(std::size_t n) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

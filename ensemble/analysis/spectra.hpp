@@ -7,7 +7,7 @@
 
 // Power spectra of one evenly spaced series, in the conventions of scipy.signal: densities,
 // one-sided, the window periodic. Frequencies are in 1/taps.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 enum class Taper { boxcar, hann };  // the window: engine/bed/window.hpp has another Window
 enum class Detrending { none, mean, linear };  // of every segment, before the window
@@ -60,4 +60,4 @@ std::vector<double> expected_welch(const SpectrumOptions& options,
 /// fast. n >= 1.
 std::size_t fast_length(std::size_t n);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

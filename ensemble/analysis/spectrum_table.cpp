@@ -7,7 +7,7 @@
 
 #include "ensemble/analysis/analyses.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -161,4 +161,4 @@ Table SpectrumAnalysis::table() const {
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

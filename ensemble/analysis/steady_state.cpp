@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -108,4 +108,4 @@ SteadyState SteadyStateTest::result() const {
   return state;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

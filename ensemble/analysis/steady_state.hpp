@@ -10,7 +10,7 @@
 #include "ensemble/statistics/blocking.hpp"
 #include "ensemble/statistics/trend.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Whether the state is steady. "Cannot decide" where no drift was found, but the taps and the
 /// realizations would not have shown one that matters.
@@ -58,4 +58,4 @@ class SteadyStateTest {
   TrendTest trend_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -5,7 +5,7 @@
 
 #include "ensemble/analysis/analyses.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -106,4 +106,4 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -13,7 +13,7 @@
 #include "fitting/models/models.hpp"
 #include "structure/density/gradient.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -281,4 +281,4 @@ void add_fits(std::string_view part_name, const PartPackings& part,
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -6,7 +6,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "structure/measure.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// One part of the structure of every packing, [n_taps][n_realizations]; null where there is none.
 using PartPackings = std::vector<std::vector<const Measurement*>>;
@@ -20,4 +20,4 @@ using PartPackings = std::vector<std::vector<const Measurement*>>;
 void add_fits(std::string_view part_name, const PartPackings& part,
               const StructureSettings& settings, Table& table);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -8,7 +8,7 @@
 #include "ensemble/analysis/structure_fits.hpp"
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -174,4 +174,4 @@ std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStr
   return tables;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

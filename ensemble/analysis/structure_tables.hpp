@@ -8,7 +8,7 @@
 #include "structure/measure.hpp"
 
 // The structure of packings averaged over realizations, tap by tap.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// What measure() gave of every packing, all by the same settings.
 struct EnsembleStructure {
@@ -25,4 +25,4 @@ struct EnsembleStructure {
 std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStructure& structure,
                                     const StructureSettings& settings);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -6,7 +6,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -186,4 +186,4 @@ ErrorOf SweepCurve::matched_error_of(std::span<const double> coefficients) const
   return std::abs(total) < 1e-10 * size ? within : combined(within, shared);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -13,7 +13,7 @@
 #include "structure/observables.hpp"
 
 // A steady-state quantity, or a parameter of a fit, against the swept value.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// y(x) with errors; where y is a mean over realizations, with their values, from which errors of
 /// all that is read off the curve then come. Points are in the order of x; those whose y is NaN are
@@ -134,4 +134,4 @@ struct SweptValue {
 Table sweep_table(std::string name, const SweptValue& swept, const Column& quantity,
                   const SweepCurve& curve, std::optional<std::size_t> reference = std::nullopt);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 #include "ensemble/analysis/sweep_curve.hpp"
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::vector<SweepDifference> differences(const SweepCurve& curve,
   return all;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -9,7 +9,7 @@
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/polynomial.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -230,4 +230,4 @@ StraightLine straight_line(const SweepCurve& curve) {
   return line;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

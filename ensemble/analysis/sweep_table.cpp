@@ -2,7 +2,7 @@
 
 #include "ensemble/analysis/sweep_curve.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -124,4 +124,4 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 #include <vector>
 
 // Results of an analysis in the form in which they are stored, printed and written as CSV.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Named values along the axes of their table.
 struct Quantity {
@@ -28,4 +28,4 @@ struct Table {
   std::vector<std::pair<std::string, std::string>> notes{};
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -8,7 +8,7 @@
 
 #include "ensemble/statistics/line.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -76,4 +76,4 @@ AutocorrelationTime Autocorrelation::result() const {
   return result;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

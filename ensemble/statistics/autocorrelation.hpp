@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// tau = 1/2 + sum of the correlation over lags 1, 2, ...: the mean of n taps has the variance
 /// 2 tau sigma^2 / n. 1/2 for independent taps, (1 + rho) / (1 - rho) / 2 for AR(1).
@@ -39,4 +39,4 @@ class Autocorrelation {
   std::vector<double> products_;  // [n / 2 + 1], by lag, summed over taps and realizations
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

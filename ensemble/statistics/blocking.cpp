@@ -7,7 +7,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -66,4 +66,4 @@ BlockingResult Blocking::result() const {
   return result;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

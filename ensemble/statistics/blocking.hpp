@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Series cut into blocks of one length, whose means are taken for independent.
 struct BlockingLevel {
@@ -46,4 +46,4 @@ class Blocking {
   std::vector<Pool> pools_;  // by level
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

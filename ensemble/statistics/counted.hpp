@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// A count with what it counts: "1 sphere", "2 spheres".
 inline std::string counted(std::uint64_t n, std::string_view one) {
@@ -14,4 +14,4 @@ inline std::string counted(std::uint64_t n, std::string_view one) {
   return text;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

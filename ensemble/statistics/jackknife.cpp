@@ -6,7 +6,7 @@
 #include "ensemble/moments.hpp"
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -27,4 +27,4 @@ double student_half_width(double error, std::size_t realizations, double level) 
   return error * student_two_sided(level, static_cast<double>(realizations - 1));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -5,7 +5,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Standard error of an estimate, from the estimates with each of n realizations left out in turn:
 /// sqrt((n - 1)/n sum (x_i - mean)^2). NaN below two, or where one of them is NaN. Tukey 1958,
@@ -17,4 +17,4 @@ double jackknife_error(std::span<const double> left_out);
 double student_half_width(double error, std::size_t realizations,
                           double level = interval_levels[0]);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -2,7 +2,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 Line fit_line(std::span<const double> series) {
   const auto n = static_cast<double>(series.size());
@@ -17,4 +17,4 @@ Line fit_line(std::span<const double> series) {
   return line;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

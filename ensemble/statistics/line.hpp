@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Least squares over the indices 0 .. n - 1, n >= 1: middle + slope (i - center).
 struct Line {
@@ -12,4 +12,4 @@ struct Line {
 };
 Line fit_line(std::span<const double> series);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

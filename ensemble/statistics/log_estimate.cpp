@@ -6,7 +6,7 @@
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -50,4 +50,4 @@ std::vector<double> ln_means_without_one(std::span<const double> values) {
   return logarithms;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

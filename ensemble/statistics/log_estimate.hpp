@@ -5,7 +5,7 @@
 
 #include "ensemble/statistics/student_tests.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// A positive estimate whose logarithm is about normal: means of few squares, and what is fitted to
 /// them, are too skewed for value +- error. NaN where there is none.
@@ -28,4 +28,4 @@ bool is_limited(const LogEstimate& estimate);
 /// below two values, minus infinity where only the one left out is above 0.
 std::vector<double> ln_means_without_one(std::span<const double> values);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

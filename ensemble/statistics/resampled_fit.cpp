@@ -9,7 +9,7 @@
 #include "engine/bed/random.hpp"
 #include "ensemble/parallel.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -131,4 +131,4 @@ ResampledErrors resample(const Model& model, const RealizationCurves& curves, co
   return result;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -8,7 +8,7 @@
 
 // Honest errors of a fit to an ensemble's mean. The taps of a realization are not independent, but
 // realizations are: what they scatter by, the fit scatters by.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 enum class Resampling {
   jackknife,  // each realization left out in turn
@@ -47,4 +47,4 @@ Curve mean_curve(const RealizationCurves& curves);
 ResampledErrors resample(const Model& model, const RealizationCurves& curves, const Fit& fit,
                          const ResamplingOptions& options);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

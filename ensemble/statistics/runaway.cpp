@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::string runaways(const Fit& fit) {
   return "the data do not limit " + names + ": the best fit lies at infinity";
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// Whether the least squares have carried a free parameter away from all that the data could say of
 /// it: overflown, or with a standard error over 100 times a positive parameter, or a level over 100
@@ -14,4 +14,4 @@ bool has_run_away(const Fit& fit, std::size_t parameter);
 /// "b and tau have run away: ...", or nothing.
 std::string runaways(const Fit& fit);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -6,7 +6,7 @@
 
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -108,4 +108,4 @@ double smallest_effect_found(double level, double dof, double power) {
   return 0.5 * (low + high);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 #include <vector>
 
 // Student's tests of an estimate against 0, and what they can see.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// The standard error of an estimate, with its degrees of freedom: infinite where the error is
 /// known, 0 where there is none.
@@ -38,4 +38,4 @@ double student_power(double effect, double level, double dof);
 /// `level`, below 1): 2.8 for level 0.05, power 0.8 and many degrees of freedom, 16 for one.
 double smallest_effect_found(double level, double dof, double power = 0.8);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::string Trend::statement() const {
                      line.value, halves.value, test);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

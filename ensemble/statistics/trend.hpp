@@ -12,7 +12,7 @@
 
 // Slow drift of series that should be steady. It fakes long correlations, and a spectrum's slope
 // of -2 at low frequencies.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// A mean over realizations that is 0 in a steady state, with two independent errors.
 struct Change {
@@ -70,4 +70,4 @@ class TrendTest {
   std::vector<Level> levels_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

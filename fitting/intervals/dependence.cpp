@@ -1,9 +1,11 @@
 #include "fitting/intervals/dependence.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
-namespace jostle {
+#include "fitting/solver/decompositions.hpp"
+
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -22,15 +24,14 @@ Influence influence(const Eigen::MatrixXd& jacobian) {
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
   for (double& norm : norms) norm = norm > 0 ? norm : 1;
   const Eigen::MatrixXd scaled = jacobian * norms.cwiseInverse().asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).template triangularView<Eigen::Upper>();
+  auto [basis, triangle] = orthonormal_basis(scaled);
   // A direction that the Jacobian does not see is as uncertain as rounding allows.
   const double least = 1e-17 * triangle.diagonal().cwiseAbs().maxCoeff();
   for (double& diagonal : triangle.diagonal()) {
     if (std::abs(diagonal) <= least) diagonal = std::max(least, 1e-300);
   }
   Influence found;
-  found.basis = qr.householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), n);
+  found.basis = std::move(basis);
   found.changes = triangle.transpose().template triangularView<Eigen::Lower>().solve(
       Eigen::MatrixXd::Identity(n, n) * norms.cwiseInverse().asDiagonal());
   return found;
@@ -79,4 +80,4 @@ MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& 
   return {errors_of(found, scatter, unit, dof), memory};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -8,7 +8,7 @@
 
 // Errors of a fit whose points are not independent: realizations have memories, and keep to values
 // of their own.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Errors of least squares that count the dependence of its points.
 struct DependentErrors {
@@ -40,4 +40,4 @@ struct MemoryErrors : DependentErrors {
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
                            const Eigen::VectorXd& residuals, bool sigma_given);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -5,7 +5,7 @@
 
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 RunsTest runs_test(const std::vector<double>& residuals) {
   double above = 0, below = 0;
@@ -57,4 +57,4 @@ double effective_sample_size(const std::vector<double>& residuals) {
   return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

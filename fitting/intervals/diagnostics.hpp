@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Wald-Wolfowitz test: whether the signs of residuals in order of t change as often as they would
 /// if they were independent.
@@ -20,4 +20,4 @@ RunsTest runs_test(const std::vector<double>& residuals);
 /// positive (Geyer 1992). In [1, n]; n where they are independent, or all zero.
 double effective_sample_size(const std::vector<double>& residuals);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

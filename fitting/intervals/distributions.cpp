@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -97,4 +97,4 @@ double two_sided(double level, double dof) {
   return std::isfinite(dof) ? student_two_sided(level, dof) : normal_two_sided(level);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

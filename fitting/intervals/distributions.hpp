@@ -1,6 +1,6 @@
 #pragma once
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// What |z| of a standard normal variable stays below with probability `level` in (0, 1).
 double normal_two_sided(double level);
@@ -18,4 +18,4 @@ double fisher_tail(double f, double dof_1, double dof_2);
 /// Probability that chi2 with dof > 0 degrees of freedom exceeds x >= 0.
 double chi_squared_tail(double x, double dof);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -7,7 +7,7 @@
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -123,4 +123,4 @@ bool too_short_for_errors(const Fit& fit) {
   return fit.memory.time > 0 && fit.error_dof < least_error_dof;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -8,7 +8,7 @@
 
 // Errors of a fit: what a linear problem with independent points gives, and what the dependence of
 // its points makes of that.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A fit at its minimum, over all points.
 struct LinearProblem {
@@ -30,4 +30,4 @@ DependentErrors dependent_errors(const Curve& curve, const LinearProblem& proble
 /// Whether a curve alone remembers for so long that its errors would be a guess.
 bool too_short_for_errors(const Fit& fit);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

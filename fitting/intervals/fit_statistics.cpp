@@ -1,11 +1,12 @@
 #include "fitting/intervals/fit_statistics.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace jostle {
+#include "fitting/solver/decompositions.hpp"
+
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -85,15 +86,13 @@ InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian) {
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
   for (double& norm : norms) norm = norm > 0 ? norm : 1;
   const Eigen::MatrixXd scaled = jacobian * norms.cwiseInverse().asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
   Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(n, n);
-  const Eigen::Index rows = std::min(n, scaled.rows());
-  triangle.topRows(rows) = qr.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  const double largest = svd.singularValues()[0] > 0 ? svd.singularValues()[0] : 1;
-  const Eigen::VectorXd singular = svd.singularValues().cwiseMax(1e-17 * largest);
+  triangle.topRows(std::min(n, scaled.rows())) = upper_triangle(scaled);
+  const auto [values, vectors] = singular_values(triangle);
+  const double largest = values[0] > 0 ? values[0] : 1;
+  const Eigen::VectorXd singular = values.cwiseMax(1e-17 * largest);
   const Eigen::MatrixXd root =
-      norms.cwiseInverse().asDiagonal() * svd.matrixV() * singular.cwiseInverse().asDiagonal();
+      norms.cwiseInverse().asDiagonal() * vectors * singular.cwiseInverse().asDiagonal();
   return {root * root.transpose(), std::pow(largest / singular[n - 1], 2)};
 }
 
@@ -123,4 +122,4 @@ void count_effective_points(Fit& fit) {
   fit.bic_effective = effective + k * std::log(fit.effective_size);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -4,7 +4,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Inverse of J^T J, and the condition number of J^T J for columns of unit length, from the
 /// singular values of J's triangle. Directions that J does not see get a variance as large as
@@ -30,4 +30,4 @@ void judge(const Curve& curve, Fit& fit);
 /// The same of the fit's combinations, which are closed.
 void judge_combinations(const Curve& curve, Fit& fit);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -5,7 +5,7 @@
 
 #include "fitting/solver/projection.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -218,4 +218,4 @@ HeldFit HeldFits::at(double distance, const HeldFit& from, const HeldFit* beyond
   return point;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

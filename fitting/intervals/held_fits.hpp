@@ -6,7 +6,7 @@
 #include "fitting/intervals/profile.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// The variable that a profile runs along: that of the fit; but for a value far from all that was
 /// measured its logarithm, or else nothing between there and the data would be resolved.
@@ -90,4 +90,4 @@ class HeldFits {
   std::optional<ParameterValues> better_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

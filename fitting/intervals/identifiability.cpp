@@ -6,7 +6,7 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -212,4 +212,4 @@ void judge(const Curve& curve, Fit& fit) {
   remark_on_residuals(fit);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

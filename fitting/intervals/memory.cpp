@@ -1,12 +1,12 @@
 #include "fitting/intervals/memory.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "fitting/models/model.hpp"
+#include "fitting/solver/decompositions.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -61,11 +61,11 @@ Likelihood restricted(const std::vector<double>& gaps, double time, double share
   const double determinant = share > 0 ? whiten(gaps, time, share, columns) : 0;
   const Eigen::MatrixXd normal = columns.leftCols(p).transpose() * columns.leftCols(p);
   const Eigen::VectorXd moment = columns.leftCols(p).transpose() * columns.col(p);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+  const SymmetricSolution solution = solve_symmetric(normal, moment);
   const auto dof = static_cast<double>(n - p);
-  const double squares = columns.col(p).squaredNorm() - moment.dot(solver.solve(moment));
+  const double squares = columns.col(p).squaredNorm() - moment.dot(solution.x);
   const double variance = std::max(squares / dof, 1e-300);
-  const double information = solver.vectorD().array().abs().max(1e-300).log().sum();
+  const double information = solution.diagonal.array().abs().max(1e-300).log().sum();
   return {-0.5 * (determinant + information + dof * std::log(variance)), variance};
 }
 
@@ -118,4 +118,4 @@ Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& resi
   return best;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

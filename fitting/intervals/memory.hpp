@@ -5,7 +5,7 @@
 
 // How long the residuals of a single curve remember: neighbouring points of one realization are not
 // independent, and a fit hides part of that in its parameters.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Noise with a memory: a share that forgets exponentially and white noise beside it, correlation
 /// share exp(-|t - t'| / time) between different points.
@@ -27,4 +27,4 @@ Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& resi
 Eigen::MatrixXd correlated(const std::vector<double>& t, const Memory& memory,
                            const Eigen::MatrixXd& vectors);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -5,7 +5,7 @@
 
 #include "fitting/intervals/held_fits.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -169,4 +169,4 @@ ParameterProfile profile(const ProfileProblem& problem, std::size_t index, doubl
   return result;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

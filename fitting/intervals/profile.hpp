@@ -4,7 +4,7 @@
 
 #include "fitting/fit.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A minimum whose neighbourhood is explored with one parameter held at a time.
 struct ProfileProblem {
@@ -28,4 +28,4 @@ struct ParameterProfile {
 /// number).
 ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

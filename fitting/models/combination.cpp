@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 CombinedModel::CombinedModel(const Model& model, const Combination& combination)
     : model_(model), combination_(combination), parameters_(model.parameters()) {
@@ -53,4 +53,4 @@ std::vector<ParameterValues> CombinedModel::starts(const Curve& curve,
   return starts;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -2,7 +2,7 @@
 
 #include "fitting/models/model.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A model with one of its parameters, `kept`, replaced by a combination of it with another,
 /// kept * other^power: what a curve may still determine where the two run away together.
@@ -29,4 +29,4 @@ class CombinedModel final : public Model {
   std::vector<Parameter> parameters_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

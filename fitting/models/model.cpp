@@ -5,7 +5,7 @@
 
 #include "fitting/solver/grid.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<double> geometric(double first, double last, std::size_t n) {
   return values;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

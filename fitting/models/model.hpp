@@ -7,7 +7,7 @@
 
 #include "fitting/curve.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// What a parameter is measured in.
 enum class ParameterUnit { none, value, time, value_per_time, value_time, per_time };
@@ -78,4 +78,4 @@ class Model {
 /// `n` values from first to last in geometric progression. Requires 0 < first, 0 < last, n >= 2.
 std::vector<double> geometric(double first, double last, std::size_t n);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -7,7 +7,7 @@
 
 // The laws of Philippe & Bideau 2001 (Phys. Rev. E 63, 051304, "PB") and Rosato et al. 2010 (Phys.
 // Rev. E 81, 061301, "DR"). t: number of taps unless said otherwise.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// X(t) = X_inf - dX / (1 + B ln(1 + t/tau)); parameters X_inf, dX = X_inf - X(0), B > 0, tau > 0.
 /// PB eq. 3, after Knight et al. 1995.
@@ -164,4 +164,4 @@ std::vector<std::unique_ptr<Model>> all_models();
 /// The model of that name, or null.
 std::unique_ptr<Model> make_model(std::string_view name);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

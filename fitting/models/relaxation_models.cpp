@@ -5,7 +5,7 @@
 #include "fitting/models/models.hpp"
 #include "fitting/solver/grid.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -359,4 +359,4 @@ std::vector<ParameterValues> Ageing::starts(const Curve& curve, std::span<const 
   return best_of_grid(*this, sample, fixed, log_grid(sample, fixed, 1, 2), n);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -1,10 +1,10 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "fitting/models/models.hpp"
+#include "fitting/solver/decompositions.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -163,7 +163,7 @@ std::vector<ParameterValues> PowerLaw::starts(const Curve& curve, std::span<cons
     basis(i, 1) = pinned[1] ? 0 : -weight * std::log(curve.t[k]);
     right[i] *= weight;
   }
-  const Eigen::VectorXd c = basis.colPivHouseholderQr().solve(right);
+  const Eigen::VectorXd c = least_squares(basis, right);
   return {
       {std::isnan(fixed[0]) ? std::exp(c[0]) : fixed[0], std::isnan(fixed[1]) ? c[1] : fixed[1]}};
 }
@@ -259,4 +259,4 @@ std::unique_ptr<Model> make_model(std::string_view name) {
   return nullptr;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

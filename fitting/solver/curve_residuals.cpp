@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 Transform::Transform(const Parameter& parameter)
     : lower_(parameter.lower),
@@ -118,4 +118,4 @@ double CurveResiduals::data_norm() const {
   return std::sqrt(sum);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -6,7 +6,7 @@
 #include "fitting/models/model.hpp"
 #include "fitting/solver/levenberg_marquardt.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// A bounded parameter as a free variable: p = lower + e^u above a bound, upper - e^u below one,
 /// and between two p = lower + (upper - lower) / (1 + e^-u). Without bounds p = u.
@@ -58,4 +58,4 @@ class CurveResiduals final : public Residuals {
   bool logarithmic_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

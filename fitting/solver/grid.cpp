@@ -7,7 +7,7 @@
 
 #include "fitting/solver/projection.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::vector<ParameterValues> best_of_grid(const Model& model, const Curve& curve
   return starts;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

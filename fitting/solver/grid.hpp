@@ -4,7 +4,7 @@
 
 #include "fitting/models/model.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Places to look for the nonlinear parameters of a law.
 struct Grid {
@@ -22,4 +22,4 @@ struct Grid {
 std::vector<ParameterValues> best_of_grid(const Model& model, const Curve& curve,
                                           std::span<const double> fixed, Grid grid, std::size_t n);
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

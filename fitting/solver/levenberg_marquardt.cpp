@@ -5,9 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "fitting/solver/decompositions.hpp"
 #include "fitting/solver/trust_step.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -205,9 +206,7 @@ bool settled(const Minimum& minimum) {
   if (!is_minimum(minimum.reason)) return false;
   const Eigen::VectorXd norms = minimum.jacobian.colwise().norm().transpose();
   if (!(norms.minCoeff() > 0)) return false;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(minimum.jacobian *
-                                                       norms.cwiseInverse().asDiagonal());
-  return qr.rank() == minimum.x.size();
+  return column_rank(minimum.jacobian * norms.cwiseInverse().asDiagonal()) == minimum.x.size();
 }
 
 }  // namespace
@@ -264,4 +263,4 @@ Minimum minimise(const Residuals& residuals, const Eigen::VectorXd& start,
   return best;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

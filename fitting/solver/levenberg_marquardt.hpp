@@ -5,7 +5,7 @@
 // Nonlinear least squares by Levenberg-Marquardt, after More 1978 (Lecture Notes in Mathematics
 // 630, 105): a trust region scaled by the columns of the Jacobian, its size ruled by the ratio of
 // actual to predicted gain, every step from a QR decomposition of the augmented Jacobian.
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// The vector r(x) whose squared length is minimised.
 class Residuals {
@@ -80,4 +80,4 @@ struct Minimum {
 Minimum minimise(const Residuals& residuals, const Eigen::VectorXd& start,
                  const SolverOptions& options = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

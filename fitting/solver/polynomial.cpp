@@ -1,9 +1,8 @@
 #include "fitting/solver/polynomial.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/QR>
+#include "fitting/solver/decompositions.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 std::vector<double> polynomial_fit(std::span<const double> x, std::span<const double> y,
                                    std::span<const double> weights, std::size_t coefficients,
@@ -21,8 +20,8 @@ std::vector<double> polynomial_fit(std::span<const double> x, std::span<const do
     }
     target[i] = weights[k] * y[k];
   }
-  const Eigen::VectorXd c = matrix.colPivHouseholderQr().solve(target);
+  const Eigen::VectorXd c = least_squares(matrix, target);
   return {c.begin(), c.end()};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -1,10 +1,11 @@
 #include "fitting/solver/projection.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+#include "fitting/solver/decompositions.hpp"
+
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -45,7 +46,7 @@ void Projection::solve(ParameterValues& p) {
   Eigen::VectorXd norms = basis_.colwise().norm().transpose();
   for (double& norm : norms) norm = norm > 0 ? norm : 1;
   basis_ = basis_ * norms.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd c = basis_.colPivHouseholderQr().solve(rest_);
+  const Eigen::VectorXd c = least_squares(basis_, rest_);
   rest_ -= basis_ * c;
   for (std::size_t j = 0; j < linear_.size(); ++j) {
     const auto k = static_cast<Eigen::Index>(j);
@@ -57,4 +58,4 @@ void Projection::solve(ParameterValues& p) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -6,7 +6,7 @@
 
 #include "fitting/models/model.hpp"
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Solves for the parameters in which a law is linear, at given values of the others, which costs
 /// one decomposition and no descent (variable projection, Golub & Pereyra 1973). Keeps references
@@ -31,4 +31,4 @@ class Projection {
   Eigen::VectorXd rest_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 namespace {
 
@@ -109,4 +109,4 @@ double TrustStep::linear_change(const Eigen::VectorXd& step) const {
   return (triangle_ * step.cwiseProduct(scale_)).squaredNorm();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

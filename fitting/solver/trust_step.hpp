@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-namespace jostle {
+namespace jostle::inline fitting {
 
 /// Steps of one Jacobian: the QR decomposition of J, made once, and of the small augmented matrix
 /// [R P^T; sqrt(lambda) D] for every damping lambda.
@@ -42,4 +42,4 @@ class TrustStep {
   bool full_rank_ = false;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline fitting

@@ -6,7 +6,7 @@
 #include <new>
 #include <stdexcept>
 
-namespace jostle {
+namespace jostle::inline results {
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
   if (!context_) throw std::bad_alloc();
@@ -45,4 +45,4 @@ std::string random_identity() {
   return text;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// SHA-256 of bytes that come piece by piece.
 class Sha256 {
@@ -32,4 +32,4 @@ std::string hex(const Sha256::Sum& sum);
 /// 128 random bits in hex, from the operating system: an identity, never a simulation's number.
 std::string random_identity();
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -14,7 +14,7 @@
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t most_bytes = 512;  // that a lock holds
@@ -150,4 +150,4 @@ std::optional<LockOwner> lock_owner(const std::string& results_path) {
   return parse_owner(read_all(path, file.get()));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

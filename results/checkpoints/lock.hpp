@@ -5,7 +5,7 @@
 #include "results/hdf5/descriptor.hpp"
 #include "results/live_run.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// NAME.lock: one process at a time works on NAME. Held by flock, so that two processes never both
 /// take over from a dead one, and by what is written in it (host, pid, start time of the process),
@@ -25,4 +25,4 @@ class RunLock {
   Descriptor file_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -11,7 +11,7 @@
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::string_view magic = "jostle part\n";
@@ -126,4 +126,4 @@ PiecePlaces read_segment_places(const std::string& path, const PartIdentity& ide
   return read_part(file, path, identity, number, get_piece_places);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -11,7 +11,7 @@
 
 // The files under NAME.parts/: for every realization at work one state, replaced at each
 // checkpoint, and numbered segments of its series, each written once.
-namespace jostle {
+namespace jostle::inline results {
 
 /// What every part carries, so that a foreign one is told from ours.
 struct PartIdentity {
@@ -79,4 +79,4 @@ PiecePlaces read_segment_places(const std::string& path, const PartIdentity& ide
 void put(ByteWriter& writer, const RealizationState& state);
 RealizationState get_realization_state(ByteReader& reader);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

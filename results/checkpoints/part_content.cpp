@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace jostle {
+namespace jostle::inline results {
 
 namespace {
 
@@ -152,4 +152,4 @@ PartOutline get_part_outline(ByteReader& reader) {
   return outline;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

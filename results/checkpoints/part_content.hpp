@@ -4,7 +4,7 @@
 #include "results/checkpoints/part.hpp"
 
 // The bytes inside parts.
-namespace jostle {
+namespace jostle::inline results {
 
 void put(ByteWriter& writer, const SeriesPiece& piece);
 void put(ByteWriter& writer, const PartState& part);
@@ -15,4 +15,4 @@ PartState get_part_state(ByteReader& reader);
 PiecePlaces get_piece_places(ByteReader& reader);
 PartOutline get_part_outline(ByteReader& reader);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -17,7 +17,7 @@
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 const char* way_out(std::string_view what, int error) {
@@ -134,4 +134,4 @@ void require_free_space(const std::string& path, std::uint64_t bytes, const char
                   static_cast<double>(bytes) / 1e6, static_cast<double>(free_bytes) / 1e6, advice));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

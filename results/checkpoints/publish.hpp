@@ -7,7 +7,7 @@
 
 // How a file comes to be, whole or not at all: written under a temporary name, fsynced, renamed,
 // and the folder fsynced. All throw ResultsError.
-namespace jostle {
+namespace jostle::inline results {
 
 /// Publishes the bytes under `path`, replacing what was there, but for a link, which is refused
 /// (end_of_links). On failure what was there stays.
@@ -42,4 +42,4 @@ void require_free_space(const std::string& path, std::uint64_t bytes,
 /// the way out where there is one.
 [[noreturn]] void fail_on_disk(const std::string& path, const char* what, int error);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

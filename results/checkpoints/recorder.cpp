@@ -4,7 +4,7 @@
 
 #include "results/checkpoints/run_parts.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// A tail larger than this becomes a segment, which is written once, not at every checkpoint.
@@ -76,4 +76,4 @@ RealizationSummary Recorder::end(const RealizationState& state, const Outcome& o
   return publish_state();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -5,7 +5,7 @@
 #include "results/checkpoints/part.hpp"
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// Writes the parts of one realization while it runs. One thread at a time.
 class Recorder {
@@ -30,4 +30,4 @@ class Recorder {
   PartState part_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -14,7 +14,7 @@
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 enum class Kind { state, segment, temporary };
@@ -324,4 +324,4 @@ std::unique_ptr<StoredRealization> continued(std::unique_ptr<StoredRealization> 
   return std::make_unique<Continued>(std::move(base), results_path, identity, n_columns, content);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -10,7 +10,7 @@
 #include "results/results_file.hpp"
 
 // The folder NAME.parts/ as a whole. All throw ResultsError.
-namespace jostle {
+namespace jostle::inline results {
 
 bool parts_exist(const std::string& results_path);
 /// Makes the folder if it is not there.
@@ -38,4 +38,4 @@ std::unique_ptr<StoredRealization> continued(std::unique_ptr<StoredRealization> 
                                              const PartIdentity& identity, std::size_t n_columns,
                                              Content content = Content::everything);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -12,7 +12,7 @@
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::string_view line_start = "\njostle-sha256 ";
@@ -92,4 +92,4 @@ void verify_seal(const std::string& path, const Take& take) {
   if (take) take(std::as_bytes(std::span(line)));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 // A results file ends with a line that holds the SHA-256 of everything before it. HDF5 does not
 // look beyond its own end, and a damaged file is refused before HDF5 sees it.
-namespace jostle {
+namespace jostle::inline results {
 
 /// Appends the line to a file. Throws ResultsError.
 void seal(const std::string& path);
@@ -18,4 +18,4 @@ void seal(const std::string& path);
 void verify_seal(const std::string& path,
                  const std::function<void(std::span<const std::byte>)>& take = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline results

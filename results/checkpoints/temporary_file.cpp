@@ -14,7 +14,7 @@
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t random_digits = 8;
@@ -101,4 +101,4 @@ void remove_stale_temporaries(const std::string& path) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

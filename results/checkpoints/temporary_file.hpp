@@ -6,7 +6,7 @@
 
 #include "results/hdf5/descriptor.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// A file on its way to its name: written as NAME.xxxxxxxx.tmp, of random digits, that nobody else
 /// has, and then given its name at one stroke. It is removed with this object unless it was
@@ -36,4 +36,4 @@ class TemporaryFile {
 /// Removes what killed processes left on the way to `path`. For the owner of its lock.
 void remove_stale_temporaries(const std::string& path);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

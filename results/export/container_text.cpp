@@ -1,6 +1,6 @@
 #include "results/export/container_text.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 ContainerText text_of(const PeriodicBox& box) {
@@ -31,4 +31,4 @@ std::optional<Container> container_from(std::string_view kind,
   return std::nullopt;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

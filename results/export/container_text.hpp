@@ -8,7 +8,7 @@
 #include "engine/bed/container.hpp"
 
 // A container as a word and three widths, as results files and extended XYZ name it.
-namespace jostle {
+namespace jostle::inline results {
 
 struct ContainerText {
   std::string kind;                // "periodic", "walls", "cylinder" or "fully_periodic"
@@ -19,4 +19,4 @@ ContainerText container_text(const Container& container);
 /// Nothing if there is no such kind.
 std::optional<Container> container_from(std::string_view kind, const std::array<double, 3>& widths);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -11,7 +11,7 @@
 #include "results/export/lammps_dump.hpp"
 #include "results/export/vtk_points.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 using Taps = std::vector<std::uint64_t>;
@@ -144,4 +144,4 @@ std::vector<ExportedFrame> kept_frames(const std::string& extended_xyz, const Ke
   return with_columns(extended_xyz, chosen(extended_xyz, xyz_frames(extended_xyz), choice));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

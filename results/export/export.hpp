@@ -10,7 +10,7 @@
 #include "results/results_file.hpp"
 
 // Packings for OVITO, ParaView and other programs.
-namespace jostle {
+namespace jostle::inline results {
 
 enum class ExportFormat { extended_xyz, lammps, vtk };
 
@@ -44,4 +44,4 @@ std::vector<ExportedFrame> kept_frames(const ResultsFile& file, RealizationId id
                                        const KeptTaps& choice);
 std::vector<ExportedFrame> kept_frames(const std::string& extended_xyz, const KeptTaps& choice);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

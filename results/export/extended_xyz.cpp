@@ -14,7 +14,7 @@
 #include "results/export/input_file.hpp"
 #include "results/export/printable.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 // As in scenes; a column of all spheres is as high as they are many.
@@ -202,4 +202,4 @@ std::vector<Packing> read_extended_xyz_frames(const std::string& path) {
   return frames;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

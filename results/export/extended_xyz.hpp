@@ -9,7 +9,7 @@
 #include "engine/bed/packing.hpp"
 #include "results/export/particle_columns.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// One frame of an extended XYZ file, counted from 0; the last if none is named. Throws
 /// ResultsError.
@@ -21,4 +21,4 @@ std::vector<Packing> read_extended_xyz_frames(const std::string& path);
 /// Frames with their columns and taps, that read back to the same bits.
 std::string extended_xyz_text(std::span<const ExportedFrame> frames);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

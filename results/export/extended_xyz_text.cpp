@@ -8,7 +8,7 @@
 #include "results/export/extended_xyz.hpp"
 #include "results/export/packing_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 std::string comment(const Packing& packing, std::span<const ParticleColumn> columns) {
@@ -51,4 +51,4 @@ void write_extended_xyz(const std::string& path, const Packing& packing) {
   publish(path, std::as_bytes(std::span(text)));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -12,7 +12,7 @@
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t piece = 1u << 16;
@@ -131,4 +131,4 @@ std::string read_text_file(const std::string& path, Pipes pipes) {
   return InputFile(path, pipes).rest();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

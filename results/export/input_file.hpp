@@ -8,7 +8,7 @@
 
 #include "results/hdf5/descriptor.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// Whether a file that is read may be a pipe or a device, as of `fit <(command)`.
 enum class Pipes { refused, allowed };
@@ -46,4 +46,4 @@ std::vector<std::byte> read_bytes(InputFile& file);
 std::vector<std::byte> read_bytes(const std::string& path);
 std::string read_text_file(const std::string& path, Pipes pipes = Pipes::refused);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -6,7 +6,7 @@
 
 #include "results/export/container_text.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 std::string header(const ExportedFrame& frame) {
@@ -40,4 +40,4 @@ std::string lammps_dump_text(std::span<const ExportedFrame> frames) {
   return text;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

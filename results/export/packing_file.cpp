@@ -6,7 +6,7 @@
 #include "results/export/extended_xyz.hpp"
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 Packing read_snapshot(const std::string& path, const PackingSelector& selector) {
@@ -41,4 +41,4 @@ Packing read_packing(const std::string& path, const PackingSelector& selector) {
   return read_snapshot(path, selector);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

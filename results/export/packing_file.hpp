@@ -8,7 +8,7 @@
 #include "engine/bed/packing.hpp"
 
 // Packings kept by an earlier run or made elsewhere.
-namespace jostle {
+namespace jostle::inline results {
 
 /// Which snapshot of a results file; an extended XYZ file has frames (`tap` then is the frame's
 /// number from 0) and no points or realizations.
@@ -28,4 +28,4 @@ Packing read_packing(const std::string& path, const PackingSelector& selector = 
 /// Writes one frame of extended XYZ that reads back to the same bits.
 void write_extended_xyz(const std::string& path, const Packing& packing);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

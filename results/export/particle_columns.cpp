@@ -10,7 +10,7 @@
 #include "structure/snapshot_statistics.hpp"
 #include "structure/voids/voronoi.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 std::uint32_t type_number(CrystalOrder order) {
@@ -62,4 +62,4 @@ std::string cell_text(const ParticleColumn& column, std::size_t i) {
                     column.values);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 #include "engine/bed/packing.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// One number a sphere, under the name that viewers show.
 struct ParticleColumn {
@@ -36,4 +36,4 @@ std::vector<ParticleColumn> particle_columns(const Packing& packing);
 /// The value of sphere i: numbers in the fewest digits that read back to the same bits.
 std::string cell_text(const ParticleColumn& column, std::size_t i);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

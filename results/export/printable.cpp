@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// Bytes of the character of UTF-8 that `text` begins with; 0 where it is none, or a control.
@@ -56,4 +56,4 @@ std::string printable(std::string_view text, std::size_t longest_line) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <numeric>
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they are");
@@ -105,4 +105,4 @@ std::string vtk_collection_text(std::span<const std::pair<std::uint64_t, std::st
   return text + "</Collection>\n</VTKFile>\n";
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

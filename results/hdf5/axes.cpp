@@ -2,7 +2,7 @@
 
 #include "results/hdf5/read.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 bool is_axis(hid_t dataset) {
   return checked(H5Aexists(dataset, "CLASS")) > 0 &&
@@ -32,4 +32,4 @@ std::vector<std::vector<haddr_t>> axes_of(hid_t dataset) {
   return axes;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 // Dimension scales as HDF5's high-level library keeps them, read without it: it trusts what it
 // reads. https://support.hdfgroup.org/documentation/hdf5/latest/group___h5_d_s.html
-namespace jostle {
+namespace jostle::inline results {
 
 /// Whether a dataset is an axis.
 bool is_axis(hid_t dataset);
@@ -16,4 +16,4 @@ bool is_axis(hid_t dataset);
 /// empty for an axis itself and for what has none. Throws Hdf5Error.
 std::vector<std::vector<haddr_t>> axes_of(hid_t dataset);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// An open file descriptor, closed when it goes; -1 is none.
 class Descriptor {
@@ -27,4 +27,4 @@ class Descriptor {
   int descriptor_ = -1;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

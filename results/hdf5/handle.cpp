@@ -1,6 +1,6 @@
 #include "results/hdf5/handle.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 void silence_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -18,4 +18,4 @@ std::string hdf5_reason() {
   return "HDF5: " + (reason.empty() ? "unknown failure" : reason);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

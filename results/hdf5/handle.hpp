@@ -8,7 +8,7 @@
 
 #include "results/error.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// What HDF5 says is wrong; which file is added by naming_file().
 class Hdf5Error : public std::runtime_error {
@@ -71,4 +71,4 @@ auto naming_file(const std::string& path, Work&& work) {
   }
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t most_dimensions = 8;
@@ -112,4 +112,4 @@ void Walk::enter(const Member& member, const std::string& path) {
     throw Hdf5Error(fmt::format("groups lie deeper than {}: not written by jostle", deepest_group));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

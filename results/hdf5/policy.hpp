@@ -10,7 +10,7 @@
 // What HDF5 can do and results files never use. The seal is a checksum and no signature: anybody
 // can seal a file that leads elsewhere, in circles, or that claims to hold more than it does. All
 // throw Hdf5Error.
-namespace jostle {
+namespace jostle::inline results {
 
 /// Refuses soft, external and user-defined links: data behind them are not under the seal.
 void require_hard_link(hid_t parent, const std::string& name);
@@ -44,4 +44,4 @@ class Walk {
   std::set<haddr_t> entered_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -4,7 +4,7 @@
 
 #include "results/hdf5/policy.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// Texts of any length come as pointers that HDF5 owns until they are reclaimed.
@@ -153,4 +153,4 @@ std::string read_text_attribute(hid_t object, const std::string& name) {
   return only(name, read_texts_attribute(object, name));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

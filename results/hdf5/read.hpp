@@ -8,7 +8,7 @@
 
 // Reading back what hdf5_write.hpp writes. All throw Hdf5Error, also where a thing is not there,
 // and for what hdf5_write.hpp never writes (hdf5_policy.hpp).
-namespace jostle {
+namespace jostle::inline results {
 
 /// Opens a file that is not written to, and keeps little of it in memory.
 Hdf5Handle open_to_read(const std::string& path);
@@ -65,4 +65,4 @@ Number read_number_attribute(hid_t object, const std::string& name) {
   return numbers.front();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -13,7 +13,7 @@
 
 #include "results/checkpoints/publish.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 /// What the driver is told through the access properties.
@@ -219,4 +219,4 @@ void WritableHdf5File::close() {
   check();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

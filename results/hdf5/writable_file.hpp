@@ -5,7 +5,7 @@
 
 #include "results/hdf5/handle.hpp"
 
-namespace jostle {
+namespace jostle::inline results {
 
 /// An HDF5 file, new or to be changed, written through a file driver of our own. HDF5's default
 /// driver cannot be brought to an orderly end once a write fails: closing tries again, and the
@@ -31,4 +31,4 @@ class WritableHdf5File {
   Hdf5Handle driver_, file_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5_hl.h>
 
-namespace jostle {
+namespace jostle::inline results {
 namespace {
 
 Hdf5Handle space_of(const Shape& shape) {
@@ -125,4 +125,4 @@ void attach_axes(hid_t dataset, std::span<const Hdf5Handle* const> axes) {
     checked(H5DSattach_scale(dataset, *axes[dimension], dimension));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -10,7 +10,7 @@
 
 // Groups, datasets and attributes as this project writes them: no object times, text as UTF-8 of
 // any length, numbers little-endian, shuffle + deflate where a dataset is chunked.
-namespace jostle {
+namespace jostle::inline results {
 
 using Shape = std::vector<hsize_t>;
 std::size_t n_elements(const Shape& shape);
@@ -120,4 +120,4 @@ Hdf5Handle write_bare_axis(hid_t parent, const std::string& name, hsize_t size);
 /// Names the dimensions of a dataset, in order.
 void attach_axes(hid_t dataset, std::span<const Hdf5Handle* const> axes);
 
-}  // namespace jostle
+}  // namespace jostle::inline results

@@ -7,7 +7,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -102,4 +102,4 @@ Gradient gradient(const Profile& vertical, const GradientRange& range) {
   return none;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

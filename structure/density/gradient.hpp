@@ -8,7 +8,7 @@
 
 // How a packing thins out upwards: the slope of its smoothed vertical profile. Works on the profile
 // of one packing and on the mean over realizations alike.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// The boxcar mean of a profile: in every bin the fraction of what lies within half of `width` of
 /// its middle, bins being filled evenly. Cut short at the ends of the profile. Requires width > 0.
@@ -45,4 +45,4 @@ struct Gradient {
 /// where fewer than three of them lie in the range.
 Gradient gradient(const Profile& vertical, const GradientRange& range);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

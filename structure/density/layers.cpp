@@ -8,7 +8,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::size_t grown_layers(const Packing& packing, const LayerRule& rule) {
   return grown;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -7,7 +7,7 @@
 
 // Close-packed layers growing upwards from the floor. Rosato et al. 2010, figs. 6 and 13: n(z)
 // (height_histogram) beside the heights of hcp layers. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Height of the centres of layer k = 0, 1, .. of an hcp crystal on the floor, 1/2 + k sqrt(2/3);
 /// of layers of an fcc crystal along (111) as well.
@@ -42,4 +42,4 @@ std::vector<Layer> layers(const Packing& packing, double tolerance = LayerRule{}
 /// The number of layers grown from the floor: those below the first that the rule refuses.
 std::size_t grown_layers(const Packing& packing, const LayerRule& rule = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

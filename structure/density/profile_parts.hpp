@@ -6,7 +6,7 @@
 #include "structure/density/profiles.hpp"
 
 // What the profiles share: bins that are checked, and spheres shared out among them.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Throws std::invalid_argument for a fully periodic box.
 void require_floor(const Packing& packing);
@@ -39,4 +39,4 @@ void share_out(Profile& profile, double from, double to, VolumeBelow&& volume_be
 /// Turns solid volumes into packing fractions.
 void divide_by_volumes(Profile& profile);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

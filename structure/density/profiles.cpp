@@ -11,7 +11,7 @@
 #include "structure/density/profile_parts.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 double solid_volume(const Profile& profile) {
   double volume = 0;
@@ -107,4 +107,4 @@ std::vector<double> vertical_cuts(const Packing& packing, std::span<const double
   return fractions;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -12,7 +12,7 @@
 //
 // Every container but the fully periodic one has these profiles: what has no floor or no walls is
 // refused with std::invalid_argument, as are edges that do not ascend and empty height windows.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Packing fraction in bins: the volume of spheres in a bin over the volume of the bin.
 struct Profile {
@@ -76,4 +76,4 @@ struct LateralCentral {
 LateralCentral lateral_and_central(const Packing& packing, HeightWindow window,
                                    double reach = 7 * sphere_radius);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

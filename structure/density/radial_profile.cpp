@@ -9,7 +9,7 @@
 #include "structure/density/profiles.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -68,4 +68,4 @@ LateralCentral lateral_and_central(const Packing& packing, HeightWindow window, 
   return mean;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -89,4 +89,4 @@ double disc_area_in_strip(double disc_radius, double low, double high) {
   return below(high) - below(low);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

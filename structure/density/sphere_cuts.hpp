@@ -4,7 +4,7 @@
 #include "engine/bed/vec3.hpp"
 
 // What planes and tubes cut from a sphere of diameter 1. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Volume of a sphere centred at the origin beyond two perpendicular planes: x > a, y > b.
 /// Closed form, to rounding (about 1e-16).
@@ -26,4 +26,4 @@ double disc_area_in_strip(double radius, double low, double high);
 /// 0, low <= high.
 double sphere_volume_in_tube(double offset, double tube, double low, double high);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -8,7 +8,7 @@
 #include "structure/density/profiles.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -136,4 +136,4 @@ Profile wall_profile(const Packing& packing, std::span<const double> edges, Heig
   return profile;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -7,7 +7,7 @@
 #include "engine/bed/slab.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 namespace {
 
@@ -90,4 +90,4 @@ double sphere_volume_in_tube(double offset, double tube, double low, double high
          integral(std::max(-edge, bottom), std::min(-core, top), area);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

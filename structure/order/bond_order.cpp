@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 using Complex = std::complex<double>;
@@ -186,4 +186,4 @@ std::vector<BondOrder> averaged_bond_order(const NeighbourTable& neighbours) {
   return invariants(means);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -14,7 +14,7 @@
 // comparable, exact in fcc and hcp, and equal to any cut between the first two shells there. It
 // means little for spheres at the floor, at walls and at the surface, which have fewer than 12
 // around them.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Rotational invariants of the bonds of a sphere. NaN without neighbours.
 /// q_l = sqrt(4 pi / (2l + 1) sum_m |q_lm|^2), in [0, 1]; q_lm is the mean of Y_lm over the bonds.
@@ -36,4 +36,4 @@ std::vector<BondOrder> bond_order(const NeighbourTable& neighbours);
 /// crystals from fluids more sharply. Lechner & Dellago 2008, doi:10.1063/1.2977970.
 std::vector<BondOrder> averaged_bond_order(const NeighbourTable& neighbours);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 constexpr unsigned shell = 12;
@@ -98,4 +98,4 @@ OrderProfile order_profile(const Packing& packing, std::span<const CrystalOrder>
   return profile;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -7,7 +7,7 @@
 #include "structure/order/neighbours.hpp"
 
 // Which spheres are part of a close-packed crystal, and at what height.
-namespace jostle {
+namespace jostle::inline structure {
 
 enum class CrystalOrder : std::uint8_t { disordered, fcc, hcp };
 
@@ -39,4 +39,4 @@ struct OrderProfile {
 OrderProfile order_profile(const Packing& packing, std::span<const CrystalOrder> orders,
                            double bin_width = 1);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -6,7 +6,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 constexpr double first_nearest_cut = 1.5;
@@ -121,4 +121,4 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -10,7 +10,7 @@
 #include "engine/bed/packing.hpp"
 
 // Which centres are near which, in any container. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Finds the centres within a cut of a centre. Along periodic directions every image is a centre of
 /// its own, also where the box is narrower than the cut.
@@ -103,4 +103,4 @@ NeighbourTable neighbours_within(const Packing& packing, double cut);
 /// their index.
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

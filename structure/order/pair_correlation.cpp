@@ -12,7 +12,7 @@
 #include "engine/bed/slab.hpp"
 #include "structure/order/neighbours.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -201,4 +201,4 @@ double contact_value(const PairCorrelation& pairs, double reach) {
   return n_bins < 4 ? std::numeric_limits<double>::quiet_NaN() : fit.constant();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -8,7 +8,7 @@
 #include "structure/region.hpp"
 
 // g(r) of the bulk of a packing, corrected for floor and surface. Lengths in diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 struct PairCorrelationSettings {
   double r_max = 4;
@@ -62,4 +62,4 @@ PairCorrelation pair_correlation(const Packing& packing,
 /// beds have contacts, whose g is a peak without width. NaN with fewer than 4 bins.
 double contact_value(const PairCorrelation& pairs, double reach = 0.1);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -11,7 +11,7 @@
 #include "structure/voids/delaunay.hpp"
 #include "structure/voids/hole_candidates.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 // Gives tetrahedra to holes, one candidate after another.
@@ -184,4 +184,4 @@ double HoleTable::volume() const {
   return std::accumulate(volumes.begin(), volumes.end(), unclassified_volume);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -10,7 +10,7 @@
 
 // The five canonical holes of J. D. Bernal (Proc. R. Soc. A 280, 299, 1964): polyhedra with edges
 // of about one diameter and centres of spheres for corners, that fill the space between them.
-namespace jostle {
+namespace jostle::inline structure {
 
 enum class HoleKind : std::uint8_t {
   tetrahedron,
@@ -88,4 +88,4 @@ struct HoleTable {
 HoleTable hole_table(std::span<const BernalHole> holes, const Container& container,
                      const Region& region);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

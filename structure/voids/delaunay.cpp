@@ -10,7 +10,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/random.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 void require_wide(const Container& container) {
@@ -118,4 +118,4 @@ std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing) {
   return delaunay_tetrahedra(packing, voronoi_cells(packing));
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

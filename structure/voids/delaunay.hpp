@@ -7,7 +7,7 @@
 #include "engine/bed/packing.hpp"
 #include "structure/voids/voronoi.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 
 /// Four centres on a sphere that holds no other centre: what meets at a Voronoi vertex.
 struct DelaunayTetrahedron {
@@ -27,4 +27,4 @@ std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing);
 std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing,
                                                      const VoronoiCells& cells);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -10,7 +10,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 using Square = std::array<std::uint32_t, 4>;  // around it
@@ -266,4 +266,4 @@ std::vector<HoleCandidate> hole_candidates(const Packing& packing,
   return std::move(candidates).sorted();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -10,7 +10,7 @@
 #include "structure/voids/delaunay.hpp"
 
 // Sets of spheres that are bonded as the corners of Bernal's holes are.
-namespace jostle {
+namespace jostle::inline structure {
 
 struct Edge {
   std::uint32_t i, j;  // i < j
@@ -58,4 +58,4 @@ std::vector<HoleCandidate> hole_candidates(const Packing& packing,
                                            const std::vector<DelaunayTetrahedron>& tetrahedra,
                                            const BondGraph& bonds);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

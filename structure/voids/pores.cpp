@@ -11,7 +11,7 @@
 #include "engine/bed/slab.hpp"
 #include "structure/density/sphere_cuts.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 double xi_of(const Pore& pore) {
@@ -235,4 +235,4 @@ double gotoh_void_probability(double phi, double sigma) {
   return (1 - phi) * std::exp(exponent);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

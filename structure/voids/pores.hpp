@@ -10,7 +10,7 @@
 
 // The void of a packing: the largest spheres that fit between its spheres, and the chance that a
 // random sphere finds room. Lengths in diameters; xi = r / R as Philippe & Bideau 2001.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// A void sphere: centred on a Voronoi vertex, it touches the spheres around it.
 struct Pore {
@@ -63,4 +63,4 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
 /// 2001, eqs. 8 and 9 with the sign of eq. 9's 2 phi corrected (as printed it jumps at sigma = 1).
 double gotoh_void_probability(double phi, double sigma);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

@@ -8,7 +8,7 @@
 
 #include "engine/bed/boundary.hpp"
 
-namespace jostle {
+namespace jostle::inline structure {
 namespace {
 
 // The container, with a lid where its top is open.
@@ -225,4 +225,4 @@ std::vector<double> free_volumes(const VoronoiCells& cells) {
   return volumes;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

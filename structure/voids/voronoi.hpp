@@ -9,7 +9,7 @@
 
 // Voronoi cells of the centres, by voro++ (Rycroft 2009, doi:10.1063/1.3215722). Lengths in
 // diameters.
-namespace jostle {
+namespace jostle::inline structure {
 
 /// What a face of a cell is shared with: a sphere, or one of these.
 inline constexpr std::uint32_t container_side = 0xffffffff;
@@ -69,4 +69,4 @@ std::vector<double> local_fractions(const VoronoiCells& cells);
 /// Volume of a cell without its sphere, in units of a sphere's, [n]. Rosato et al. 2010, fig. 9.
 std::vector<double> free_volumes(const VoronoiCells& cells);
 
-}  // namespace jostle
+}  // namespace jostle::inline structure

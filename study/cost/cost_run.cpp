@@ -8,13 +8,13 @@
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "config/sweep.hpp"
-#include "study/cost/rounds.hpp"
+#include "study/cost/replicates.hpp"
 #include "study/results_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
-constexpr std::uint32_t fewest_rounds = 2;  // an error needs two
+constexpr std::uint32_t fewest_replicates = 2;  // an error needs two
 
 Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
   const std::uint32_t point = wanted.empty() ? 0 : chosen_points(study_of(loaded), wanted).front();
@@ -31,9 +31,10 @@ Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
   return scene;
 }
 
-/// The pilot with the rounds to begin with.
-const LoadedScene& begun_with(LoadedScene& pilot, std::uint32_t rounds) {
-  pilot.scene.realizations = rounds > 0 ? std::min(fewest_rounds, rounds) : fewest_rounds;
+/// The pilot with the replicates to begin with.
+const LoadedScene& begun_with(LoadedScene& pilot, std::uint32_t replicates) {
+  pilot.scene.realizations =
+      replicates > 0 ? std::min(fewest_replicates, replicates) : fewest_replicates;
   return pilot;
 }
 
@@ -41,11 +42,11 @@ const LoadedScene& begun_with(LoadedScene& pilot, std::uint32_t rounds) {
 
 CostPilot make_cost_pilot(const LoadedScene& loaded, const std::string& path,
                           const std::string& point, std::uint64_t pilot_taps) {
-  CostPilot made{.scene = scene_at_point(loaded, point), .rungs = {}, .pilot = {}};
+  CostPilot made{.scene = scene_at_point(loaded, point), .settings = {}, .pilot = {}};
   made.taps = total_taps(made.scene.protocol);
-  made.rungs = ladder(made.scene);
+  made.settings = ladder(made.scene);
   made.pilot =
-      load_derived(ladder_scene(made.scene, made.rungs, std::min(made.taps, pilot_taps)), path);
+      load_derived(ladder_scene(made.scene, made.settings, std::min(made.taps, pilot_taps)), path);
   return made;
 }
 
@@ -68,16 +69,17 @@ CostRun::CostRun(CostPilot& pilot, const CostBudget& budget, const RunSettings& 
                  RunObserver& observer)
     : pilot_(pilot),
       budget_(budget),
-      run_(begun_with(pilot.pilot, budget.rounds), settings, observer),
+      run_(begun_with(pilot.pilot, budget.replicates), settings, observer),
       worked_before_(run_.realizations()) {}
 
 bool CostRun::run() {
-  const auto longest = static_cast<std::uint32_t>(most_complete(pilot_.rungs).last);
+  const auto longest = static_cast<std::uint32_t>(most_complete(pilot_.settings).last);
   while (run_.compute(longest)) {
-    const std::uint32_t rounds = run_.study().realizations;
-    const std::uint32_t wanted = budget_.rounds > 0 ? budget_.rounds : affordable(rounds);
+    const std::uint32_t replicates = run_.study().realizations;
+    const std::uint32_t wanted =
+        budget_.replicates > 0 ? budget_.replicates : affordable(replicates);
     const bool all_failed = run_.summary().failed > 0 && run_.summary().done == 0;
-    if (wanted <= rounds || all_failed) return true;
+    if (wanted <= replicates || all_failed) return true;
     run_.extend(wanted);
   }
   return false;
@@ -85,12 +87,12 @@ bool CostRun::run() {
 
 std::uint32_t CostRun::affordable(std::uint32_t done) const {
   const Seconds spent = std::chrono::steady_clock::now() - began_;
-  return affordable_rounds(done, budget_.time, spent,
-                           rounds_done(worked_before_, run_.results().realizations()));
+  return affordable_replicates(done, budget_.time, spent,
+                               replicates_done(worked_before_, run_.results().realizations()));
 }
 
 CostStudy CostRun::study() {
-  return CostStudy(run_.close(), pilot_.rungs, other_windows(pilot_.scene), pilot_.taps);
+  return CostStudy(run_.close(), pilot_.settings, other_windows(pilot_.scene), pilot_.taps);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

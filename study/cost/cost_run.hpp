@@ -8,14 +8,14 @@
 #include "study/cost/cost_study.hpp"
 #include "study/run.hpp"
 
-// What a scene's accuracy costs: a pilot over a ladder of settings, in paired rounds.
-namespace jostle {
+// What a scene's accuracy costs: a pilot over a ladder of settings, in paired replicates.
+namespace jostle::inline study {
 
 /// The pilot of a scene at one point of its sweep.
 struct CostPilot {
   Scene scene;  // at that point
-  std::vector<Rung> rungs;
-  LoadedScene pilot;       // a sweep over the rungs, cut to a few taps
+  std::vector<PilotSetting> settings;
+  LoadedScene pilot;       // a sweep over the settings, cut to a few taps
   std::uint64_t taps = 0;  // of the whole scene
 };
 
@@ -29,21 +29,22 @@ CostPilot make_cost_pilot(const LoadedScene& loaded, const std::string& path,
 /// or the first. Throws BadArgument naming those there are.
 std::string cost_observable(const Scene& scene, const std::string& wanted);
 
-/// How long the pilot is run: so many rounds, or if 0 as many as fit into the time, at least two.
+/// How long the pilot is run: so many replicates, or if 0 as many as fit into the time, at least
+/// two.
 struct CostBudget {
   Seconds time{600};
-  std::uint32_t rounds = 0;
+  std::uint32_t replicates = 0;
 };
 
-/// Runs whole rounds: one realization of every rung. The longest rung first, so that threads end
-/// together. None is added where all so far failed.
+/// Runs whole replicates: one realization of every setting. The longest setting first, so that
+/// threads end together. None is added where all so far failed.
 class CostRun {
  public:
   /// `pilot` and `observer` must outlive this. Throws as SceneRun.
   CostRun(CostPilot& pilot, const CostBudget& budget, const RunSettings& settings,
           RunObserver& observer);
 
-  /// Whether the rounds were completed, not stopped. Throws ResultsError.
+  /// Whether the replicates were completed, not stopped. Throws ResultsError.
   bool run();
   /// Ends the run and reads what it found. Nothing but the destructor may be called after.
   CostStudy study();
@@ -58,4 +59,4 @@ class CostRun {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline study

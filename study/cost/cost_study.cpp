@@ -8,7 +8,7 @@
 
 #include "ensemble/moments.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -20,21 +20,21 @@ double deviation(std::span<const double> values) {
   return moments.standard_error() * std::sqrt(static_cast<double>(moments.count()));
 }
 
-std::string part_name(Rung::Part part) {
+std::string part_name(PilotSetting::Part part) {
   switch (part) {
-    case Rung::Part::scene:
+    case PilotSetting::Part::scene:
       return "scene";
-    case Rung::Part::stop:
+    case PilotSetting::Part::stop:
       return "stop";
-    case Rung::Part::interval:
+    case PilotSetting::Part::interval:
       return "interval";
-    case Rung::Part::step:
+    case PilotSetting::Part::step:
       return "step";
-    case Rung::Part::adaptation:
+    case PilotSetting::Part::adaptation:
       return "adaptation";
-    case Rung::Part::spheres:
+    case PilotSetting::Part::spheres:
       return "spheres";
-    case Rung::Part::start:
+    case PilotSetting::Part::start:
       return "start";
   }
   return "";
@@ -55,7 +55,7 @@ void add_windows(const CostOfObservable& cost, Table& table) {
   table.quantities.insert(
       table.quantities.end(),
       {{"window_difference", window, differences, units, "less the scene's window", ""},
-       {"window_difference_error", window, errors, units, "standard error over rounds", ""}});
+       {"window_difference_error", window, errors, units, "standard error over replicates", ""}});
 }
 
 std::string window_name(const Window& window) {
@@ -68,13 +68,13 @@ std::string window_name(const Window& window) {
 
 }  // namespace
 
-CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs,
+CostStudy::CostStudy(const ResultsFile& file, std::vector<PilotSetting> settings,
                      std::vector<OtherWindow> windows, std::uint64_t taps)
-    : rungs_(std::move(rungs)),
+    : settings_(std::move(settings)),
       windows_(std::move(windows)),
       taps_(taps),
       pilot_taps_(file.study().points.front().taps),
-      rounds_(file.study().realizations) {
+      replicates_(file.study().realizations) {
   read_times(file);
   for (const Column& label : file.study().points.front().observables) {
     observables_.push_back(read_observable(file, label));
@@ -82,8 +82,8 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<Rung> rungs,
 }
 
 void CostStudy::read_times(const ResultsFile& file) {
-  std::vector<Work> work(rungs_.size());  // of all realizations that did not fail
-  std::vector<double> done(rungs_.size());
+  std::vector<Work> work(settings_.size());  // of all realizations that did not fail
+  std::vector<double> done(settings_.size());
   for (const RealizationSummary& one : file.realizations()) {
     if (one.status == RealizationStatus::failed) {
       failed_.push_back(one);
@@ -93,13 +93,13 @@ void CostStudy::read_times(const ResultsFile& file) {
     ++done[one.id.point];
   }
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
-  for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
+  for (std::uint32_t p = 0; p < settings_.size(); ++p) {
     const std::vector<double> sweeps =
         file.block(p, sweeps_column, {1, pilot_taps_ + 1}, {0, file.study().realizations});
     Moments all, late;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
       all.add(sweeps[i]);
-      if (1 + i / rounds_ >= first) late.add(sweeps[i]);
+      if (1 + i / replicates_ >= first) late.add(sweeps[i]);
     }
     const double of_a_tap =
         (work[p].seconds - work[p].start_seconds) / (static_cast<double>(pilot_taps_) * done[p]);
@@ -109,22 +109,22 @@ void CostStudy::read_times(const ResultsFile& file) {
   }
 }
 
-double CostStudy::realization_seconds(std::size_t rung) const {
-  return times_[rung].start_seconds + times_[rung].tap_seconds * static_cast<double>(taps_);
+double CostStudy::realization_seconds(std::size_t setting) const {
+  return times_[setting].start_seconds + times_[setting].tap_seconds * static_cast<double>(taps_);
 }
 
 CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Column& label) const {
   CostOfObservable cost;
   cost.label = label;
-  std::vector<std::vector<double>> values;  // [n_rungs][n_taps, n_rounds]
-  for (std::uint32_t p = 0; p < rungs_.size(); ++p) {
-    values.push_back(file.block(p, label.name, {1, pilot_taps_ + 1}, {0, rounds_}));
+  std::vector<std::vector<double>> values;  // [n_settings][n_taps, n_replicates]
+  for (std::uint32_t p = 0; p < settings_.size(); ++p) {
+    values.push_back(file.block(p, label.name, {1, pilot_taps_ + 1}, {0, replicates_}));
   }
-  const auto at = [&](std::size_t rung, std::uint64_t tap) {
-    return std::span(values[rung]).subspan((tap - 1) * rounds_, rounds_);
+  const auto at = [&](std::size_t setting, std::uint64_t tap) {
+    return std::span(values[setting]).subspan((tap - 1) * replicates_, replicates_);
   };
-  const MostComplete best = most_complete(rungs_);
-  for (std::size_t p = 0; p < rungs_.size(); ++p) {
+  const MostComplete best = most_complete(settings_);
+  for (std::size_t p = 0; p < settings_.size(); ++p) {
     for (std::uint64_t tap = 1; tap <= pilot_taps_; ++tap) {
       const PairedBias bias = paired_bias(at(p, tap), at(best.last, tap));
       cost.bias_by_tap.push_back(bias.bias);
@@ -132,13 +132,13 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
       if (tap == pilot_taps_) cost.biases.push_back(bias);
     }
     // Another start is another bed, not another accuracy: never recommended.
-    const bool is_choice = rungs_[p].part != Rung::Part::start;
-    cost.settings.push_back({.bias = is_choice ? cost.biases.back().bias : not_a_number,
-                             .bias_error = cost.biases.back().error,
-                             .sigma = deviation(at(p, pilot_taps_)),
-                             .realization_seconds = realization_seconds(p)});
+    const bool is_choice = settings_[p].part != PilotSetting::Part::start;
+    cost.setting_costs.push_back({.bias = is_choice ? cost.biases.back().bias : not_a_number,
+                                  .bias_error = cost.biases.back().error,
+                                  .sigma = deviation(at(p, pilot_taps_)),
+                                  .realization_seconds = realization_seconds(p)});
   }
-  for (std::size_t p = 0; p < rungs_.size() && middle_tap() > 0; ++p) {
+  for (std::size_t p = 0; p < settings_.size() && middle_tap() > 0; ++p) {
     cost.growths.push_back(bias_growth(at(p, middle_tap()), at(best.last, middle_tap()),
                                        at(p, pilot_taps_), at(best.last, pilot_taps_)));
   }
@@ -157,9 +157,10 @@ std::vector<WindowEffect> CostStudy::read_windows(const ResultsFile& file,
   const TapRange last{pilot_taps_, pilot_taps_ + 1};
   for (const OtherWindow& other : windows_) {
     if (other.of != of) continue;
-    const std::vector<double> own = file.block(0, of, last, {0, rounds_});
-    effects.push_back({window_name(other.observable.window),
-                       paired_bias(file.block(0, other.observable.name, last, {0, rounds_}), own)});
+    const std::vector<double> own = file.block(0, of, last, {0, replicates_});
+    effects.push_back(
+        {window_name(other.observable.window),
+         paired_bias(file.block(0, other.observable.name, last, {0, replicates_}), own)});
   }
   return effects;
 }
@@ -169,23 +170,23 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
   std::vector<std::uint64_t> taps(pilot_taps_);
   for (std::uint64_t t = 0; t < pilot_taps_; ++t) taps[t] = t + 1;
   std::vector<double> tap_seconds, start_seconds, sweeps, core_hours;
-  for (std::size_t p = 0; p < rungs_.size(); ++p) {
-    names.push_back(rungs_[p].name);
-    parts.push_back(part_name(rungs_[p].part));
+  for (std::size_t p = 0; p < settings_.size(); ++p) {
+    names.push_back(settings_[p].name);
+    parts.push_back(part_name(settings_[p].part));
     tap_seconds.push_back(times_[p].tap_seconds);
     start_seconds.push_back(times_[p].start_seconds);
     sweeps.push_back(times_[p].sweeps);
     core_hours.push_back(realization_seconds(p) * scene_realizations / 3600);
   }
   std::vector<Table> tables;
-  const std::vector<std::string> rung = {"rung"}, by_tap = {"rung", "tap"};
+  const std::vector<std::string> setting = {"setting"}, by_tap = {"setting", "tap"};
   for (const CostOfObservable& cost : observables_) {
     std::vector<double> bias, error, reduction, sigma, statistical;
-    for (std::size_t p = 0; p < rungs_.size(); ++p) {
+    for (std::size_t p = 0; p < settings_.size(); ++p) {
       bias.push_back(cost.biases[p].bias);
       error.push_back(cost.biases[p].error);
       reduction.push_back(cost.biases[p].variance_reduction);
-      sigma.push_back(cost.settings[p].sigma);
+      sigma.push_back(cost.setting_costs[p].sigma);
       statistical.push_back(sigma.back() / std::sqrt(static_cast<double>(scene_realizations)));
     }
     std::vector<double> growth, growth_error, growth_tails;
@@ -196,52 +197,53 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
     }
     const std::string& units = cost.label.units;
     Table table{.name = "cost/" + cost.label.name};
-    table.axes = {{"rung", rung, names, "1", "setting", ""},
+    table.axes = {{"setting", setting, names, "1", "setting", ""},
                   {"tap", {"tap"}, taps, "taps", "tap of the pilot", ""}};
     table.quantities = {
-        {"part", rung, parts, "1", "what differs from the scene", ""},
-        {"bias", rung, bias, units, "less the most complete rung, paired", ""},
-        {"bias_error", rung, error, units, "standard error over rounds", ""},
-        {"variance_reduction", rung, reduction, "1", "by pairing, of the difference", ""},
-        {"sigma", rung, sigma, units, "deviation between realizations", ""},
-        {"statistical_error", rung, statistical, units, "with the scene's realizations", ""},
-        {"sweeps_per_tap", rung, sweeps, "1", "sweeps of a late tap of the pilot", ""},
-        {"tap_seconds", rung, tap_seconds, "s", "core time of such a tap", ""},
-        {"start_seconds", rung, start_seconds, "s", "core time of a start", ""},
-        {"core_hours", rung, core_hours, "h", "of the scene's realizations, all taps", ""},
-        {"pareto", rung, pareto_front(cost.settings), "1", "1: no rung is better and faster", ""},
+        {"part", setting, parts, "1", "what differs from the scene", ""},
+        {"bias", setting, bias, units, "less the most complete setting, paired", ""},
+        {"bias_error", setting, error, units, "standard error over replicates", ""},
+        {"variance_reduction", setting, reduction, "1", "by pairing, of the difference", ""},
+        {"sigma", setting, sigma, units, "deviation between realizations", ""},
+        {"statistical_error", setting, statistical, units, "with the scene's realizations", ""},
+        {"sweeps_per_tap", setting, sweeps, "1", "sweeps of a late tap of the pilot", ""},
+        {"tap_seconds", setting, tap_seconds, "s", "core time of such a tap", ""},
+        {"start_seconds", setting, start_seconds, "s", "core time of a start", ""},
+        {"core_hours", setting, core_hours, "h", "of the scene's realizations, all taps", ""},
+        {"pareto", setting, pareto_front(cost.setting_costs), "1",
+         "1: no setting is better and faster", ""},
         {"bias_by_tap", by_tap, cost.bias_by_tap, units, "likewise, after each tap", ""},
         {"bias_by_tap_error", by_tap, cost.bias_error_by_tap, units, "standard error", ""},
         {"last_step",
          {},
          std::vector{cost.last_step.bias},
          units,
-         "the most complete rung less the one before",
+         "the most complete setting less the one before",
          ""},
         {"last_step_error", {}, std::vector{cost.last_step.error}, units, "standard error", ""},
         {"remainder",
          {},
          std::vector{cost.remainder.value},
          units,
-         "that the most complete rung still lacks, extrapolated where the last step is seen",
+         "that the most complete setting still lacks, extrapolated where the last step is seen",
          ""},
         {"remainder_error",
          {},
          std::vector{cost.remainder.error},
          units,
-         "jackknife over rounds",
+         "jackknife over replicates",
          ""}};
     if (!cost.growths.empty()) {
       table.quantities.insert(
           table.quantities.end(),
-          {{"growth", rung, growth, units, "of the bias, from the middle tap to the last", ""},
-           {"growth_error", rung, growth_error, units, "standard error over rounds", ""},
-           {"growth_tails", rung, growth_tails, "1", "probability by chance, Student's t", ""}});
+          {{"growth", setting, growth, units, "of the bias, from the middle tap to the last", ""},
+           {"growth_error", setting, growth_error, units, "standard error over replicates", ""},
+           {"growth_tails", setting, growth_tails, "1", "probability by chance, Student's t", ""}});
     }
     add_windows(cost, table);
     table.notes = {{"observable", cost.label.name},
-                   {"reference", rungs_[most_complete(rungs_).last].name},
-                   {"rounds", fmt::to_string(rounds_)},
+                   {"reference", settings_[most_complete(settings_).last].name},
+                   {"replicates", fmt::to_string(replicates_)},
                    {"middle_tap", fmt::to_string(middle_tap())},
                    {"scene_realizations", fmt::to_string(scene_realizations)},
                    {"scene_taps", fmt::to_string(taps_)}};
@@ -250,4 +252,4 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
   return tables;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -9,10 +9,10 @@
 #include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
-/// What a rung takes, on one core.
-struct RungTime {
+/// What a setting takes, on one core.
+struct SettingTime {
   double start_seconds = 0,
          tap_seconds = 0;  // of one realization; a tap of the pilot's second half
   double sweeps = 0;       // of such a tap
@@ -28,39 +28,39 @@ struct WindowEffect {
 /// What the pilot found of one observable, after its last tap.
 struct CostOfObservable {
   Column label;
-  std::vector<PairedBias> biases;  // [n_rungs]
-  std::vector<Setting> settings;   // [n_rungs], for the whole run of the scene
-  PairedBias last_step{};          // the most complete rung less the one before
-  Remainder remainder;             // what it still lacks; only where that step is seen
-  std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_rungs, n_taps], taps 1 .. n_taps
-  /// [n_rungs]: since tap n_taps / 2; empty of a pilot of one tap.
+  std::vector<PairedBias> biases;          // [n_settings]
+  std::vector<SettingCost> setting_costs;  // [n_settings], for the whole run of the scene
+  PairedBias last_step{};                  // the most complete setting less the one before
+  Remainder remainder;                     // what it still lacks; only where that step is seen
+  std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_settings, n_taps], taps 1 .. n_taps
+  /// [n_settings]: since tap n_taps / 2; empty of a pilot of one tap.
   std::vector<Growth> growths;
   std::vector<WindowEffect> windows;  // of a bulk fraction
 };
 
-/// A pilot over the rungs of a ladder, as far as its rounds (realizations) are complete.
+/// A pilot over the settings of a ladder, as far as its replicates (realizations) are complete.
 class CostStudy {
  public:
   /// `taps` is the number of taps of the whole scene, for which times are estimated; `windows` are
   /// those that the pilot observes beside the scene's.
-  CostStudy(const ResultsFile& file, std::vector<Rung> rungs, std::vector<OtherWindow> windows,
-            std::uint64_t taps);
+  CostStudy(const ResultsFile& file, std::vector<PilotSetting> settings,
+            std::vector<OtherWindow> windows, std::uint64_t taps);
 
-  const std::vector<Rung>& rungs() const { return rungs_; }
-  std::uint32_t rounds() const { return rounds_; }
+  const std::vector<PilotSetting>& settings() const { return settings_; }
+  std::uint32_t replicates() const { return replicates_; }
   std::uint64_t pilot_taps() const { return pilot_taps_; }
   /// From which to its last biases are seen to grow or not.
   std::uint64_t middle_tap() const { return pilot_taps_ / 2; }
   std::uint64_t taps() const { return taps_; }
-  const std::vector<RungTime>& times() const { return times_; }
+  const std::vector<SettingTime>& times() const { return times_; }
   /// Realizations that failed, which are in no number of the study.
   const std::vector<RealizationSummary>& failed() const { return failed_; }
   const std::vector<CostOfObservable>& observables() const { return observables_; }
-  MostComplete reference() const { return most_complete(rungs_); }
+  MostComplete reference() const { return most_complete(settings_); }
   /// Core seconds of a whole realization.
-  double realization_seconds(std::size_t rung) const;
+  double realization_seconds(std::size_t setting) const;
 
-  /// cost/<observable>: one row a rung, and the bias by tap.
+  /// cost/<observable>: one row a setting, and the bias by tap.
   std::vector<Table> tables(std::uint32_t scene_realizations) const;
 
  private:
@@ -68,13 +68,13 @@ class CostStudy {
   CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
   std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
 
-  std::vector<Rung> rungs_;
+  std::vector<PilotSetting> settings_;
   std::vector<OtherWindow> windows_;
   std::uint64_t taps_ = 0, pilot_taps_ = 0;
-  std::uint32_t rounds_ = 0;
-  std::vector<RungTime> times_;
+  std::uint32_t replicates_ = 0;
+  std::vector<SettingTime> times_;
   std::vector<RealizationSummary> failed_;
   std::vector<CostOfObservable> observables_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -3,29 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 
 #include "engine/bed/slab.hpp"
-#include "engine/monte_carlo/relaxation.hpp"
-#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/engines.hpp"
 #include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
 #include "ensemble/processor_clock.hpp"
 #include "ensemble/protocol_steps.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 namespace {
 
 using Clock = ProcessorClock;
 
 constexpr double narrowest = 8;             // diameters, of a footprint that is cut
 constexpr std::uint32_t most_oversize = 5;  // times max_spheres, before depth is cut as well
-
-HeightWindow pilot_window(const Stop& stop, const Packing& packing) {
-  const auto* rule = std::get_if<BulkFractionStop>(&stop.rule);
-  return rule == nullptr ? HeightWindow{} : resolve(rule->window, packing);
-}
 
 /// A width times about `factor`, never below the narrowest; a whole number of `unit`s of it where
 /// a lattice wants that.
@@ -84,51 +79,65 @@ TapCost between(const CostsByStrength& costs, double strength) {
           below->second.sweeps + share * (above->second.sweeps - below->second.sweeps)};
 }
 
-/// A realization that is tried, a cut one where the plan's is large.
+/// A realization that is tried, a cut one where the plan's is large: each piece of it is ended
+/// where its share of the budget ends, at rest or not.
 class Pilot {
  public:
   Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
-      : plan_(plan), engine_(std::get<MonteCarlo>(plan.engine)), bed_(bed), budget_(budget) {
+      : plan_(plan),
+        bed_(bed),
+        budget_(budget),
+        dynamics_(make_dynamics(
+            plan.engine, {.start = key(Purpose::start_trials), .taps = key(Purpose::trials)})),
+        tap_random_(key(Purpose::tap)) {
     const auto began = Clock::now();
     RandomStream random(key(Purpose::start));
-    packing_ = make_start(plan.start, bed.container, bed.n_spheres, random);
-    if (const Relaxation* rule = relaxation_of_start(engine_, plan.start)) {
-      const auto relaxing = Clock::now();
-      const auto loop = make_loop(*rule);
-      loop->load(packing_);
-      run(*loop, rule->stop, pilot_window(rule->stop, packing_), budget / 2);
-      relax_time_ += Clock::now() - relaxing;
-    }
+    const Packing start = make_start(plan.start, bed.container, bed.n_spheres, random);
+    dynamics_->load(start);
+    dynamics_->settle(plan.start);
+    advance(budget / 2);
     start_time_ = Clock::now() - began;
   }
 
   PilotEstimate estimate() {
+    constexpr Seconds short_tap{0.2};
     const std::vector<std::size_t> stages = piloted_stages(plan_.protocol);
-    const auto loop = make_loop(engine_.relax);
-    const HeightWindow window = pilot_window(engine_.relax.stop, packing_);
-    std::uint64_t left = budget_ - std::min(budget_ / 2, trials_);
+    std::uint64_t left = budget_ - std::min(budget_ / 2, dynamics_->effort().units);
     std::size_t untried = stages.size();
-    RandomStream tap_random(key(Purpose::tap));
     std::map<std::string, CostsByStrength> costs;
-    loop->load(packing_);
     for (const std::size_t stage : stages) {
       const Tap& tap = plan_.protocol[stage].tap;
-      const auto began = Clock::now();
-      excite(packing_, tap, tap_random);
-      loop->load(packing_);
-      const std::uint64_t trials = run(*loop, engine_.relax.stop, window, left / untried--);
-      left -= std::min(left, trials);
-      const Seconds time = Clock::now() - began;
-      relax_time_ += time;
+      const std::uint64_t before = dynamics_->effort().units;
+      TapCost cost = timed(tap, left / untried);
+      // The first also makes what all others use.
+      if (stage == stages.front() && cost.time < short_tap) cost = timed(tap, left / untried);
+      --untried;
+      left -= std::min(left, dynamics_->effort().units - before);
       const Control strength = control(tap);
-      costs[strength.name][strength.value] = {time, static_cast<double>(trials) / bed_.n_spheres};
+      costs[strength.name][strength.value] = cost;
     }
-    return summed(costs, stages.size(), loop->bytes());
+    return summed(costs, stages.size());
   }
 
  private:
-  PilotEstimate summed(const std::map<std::string, CostsByStrength>& costs, std::size_t n_strengths,
-                       std::size_t loop_bytes) const {
+  TapCost timed(const Tap& tap, std::uint64_t budget) {
+    const std::uint64_t before = dynamics_->effort().units;
+    const auto began = Clock::now();
+    dynamics_->tap(tap, tap_random_);
+    advance(budget);
+    const auto units = static_cast<double>(dynamics_->effort().units - before);
+    return {Clock::now() - began, units / bed_.n_spheres};
+  }
+
+  void advance(std::uint64_t budget) {
+    const auto began = Clock::now();
+    const DynamicsStatus status = dynamics_->advance(budget);
+    moving_time_ += Clock::now() - began;
+    settled_ = settled_ && status != DynamicsStatus::running;
+  }
+
+  PilotEstimate summed(const std::map<std::string, CostsByStrength>& costs,
+                       std::size_t n_strengths) const {
     Seconds taps_time{0};
     double sweeps = 0;
     for (const Stage& stage : plan_.protocol) {
@@ -141,44 +150,30 @@ class Pilot {
     }
     const double scale = static_cast<double>(plan_.n_spheres) / bed_.n_spheres;
     const auto n_taps = static_cast<double>(total_taps(plan_));
-    const double bytes = static_cast<double>(loop_bytes + packing_.centres.size() * sizeof(Vec3));
+    const std::uint64_t trials = dynamics_->effort().units;
+    const double observed = static_cast<double>(bed_.n_spheres) * sizeof(Vec3);
     return {
         .n_spheres = bed_.n_spheres,
         .n_strengths = n_strengths,
-        .trials = trials_,
-        .trials_per_second = trials_ > 0 ? static_cast<double>(trials_) / relax_time_.count() : 0,
+        .trials = trials,
+        .trials_per_second = trials > 0 ? static_cast<double>(trials) / moving_time_.count() : 0,
         .sweeps_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
         .settled = settled_ && bed_.as_deep,
         .realization = scale * (start_time_ + taps_time),
-        .bytes = static_cast<std::size_t>(scale * bytes)};
-  }
-
-  /// Relaxes what is loaded, into the packing; returns the trials that took.
-  std::uint64_t run(TrialLoop& loop, const Stop& stop, HeightWindow window, std::uint64_t budget) {
-    RelaxationProgress progress;
-    loop.begin_tap();
-    relax(loop, stop, window, progress, budget);
-    loop.store(packing_);
-    settled_ = settled_ && progress.status != DynamicsStatus::running;
-    trials_ += progress.trials;
-    return progress.trials;
+        .bytes =
+            static_cast<std::size_t>(scale * (static_cast<double>(dynamics_->bytes()) + observed))};
   }
 
   StreamKey key(Purpose purpose) const {
     return stream_key(plan_.seed, plan_.point_id, 0, purpose);
   }
-  std::unique_ptr<TrialLoop> make_loop(const Relaxation& rule) const {
-    return make_trial_loop(bed_.container, rule.move, key(Purpose::trials), best_instruction_set(),
-                           rule.sampler);
-  }
 
   const Plan& plan_;
-  const MonteCarlo& engine_;
   const CutBed& bed_;
   std::uint64_t budget_;
-  Packing packing_;
-  Seconds start_time_{0}, relax_time_{0};
-  std::uint64_t trials_ = 0;
+  std::unique_ptr<Dynamics> dynamics_;
+  RandomStream tap_random_;
+  Seconds start_time_{0}, moving_time_{0};
   bool settled_ = true;
 };
 
@@ -241,4 +236,4 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
   return Pilot(plan, bed, budget).estimate();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -7,7 +7,7 @@
 #include "ensemble/plan.hpp"
 #include "study/seconds.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// What a short trial of a sweep point measured, and what it makes of a realization.
 struct PilotEstimate {
@@ -44,4 +44,4 @@ CutBed cut_down(const Plan& plan, std::uint32_t max_spheres);
 /// in the middle, the strongest and the last, equal ones once.
 std::vector<std::size_t> piloted_stages(const std::vector<Stage>& protocol);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

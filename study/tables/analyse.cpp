@@ -10,11 +10,11 @@
 #include "config/grids.hpp"
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 #include "ensemble/analysis/hysteresis.hpp"
-#include "results/layout.hpp"
+#include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
-#include "study/point_scenes.hpp"
+#include "study/scenes/point_scenes.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -26,7 +26,8 @@ struct Surroundings {
   const std::function<const PointScenes&()>& scenes;  // read when first asked for
 };
 
-Table made(const ObservableSeries& series, const SteadySettings& settings, const Surroundings&) {
+Table make_table(const ObservableSeries& series, const SteadySettings& settings,
+                 const Surroundings&) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
   SteadyStateTest test;
   series.for_each({analysed.first_tap, analysed.last_tap + 1},
@@ -34,7 +35,8 @@ Table made(const ObservableSeries& series, const SteadySettings& settings, const
   return steady_table(analysed, test.result());
 }
 
-Table made(const ObservableSeries& series, const SpectrumSettings& settings, const Surroundings&) {
+Table make_table(const ObservableSeries& series, const SpectrumSettings& settings,
+                 const Surroundings&) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 2, fewest_spectrum_taps);
   if (settings.segment && *settings.segment > analysed.n_taps()) {
     throw BadInput(fmt::format("a segment of {} taps is longer than the {} analysed",
@@ -53,8 +55,8 @@ void require_reached(const char* what, std::span<const std::uint64_t> taps, std:
   throw BadInput(fmt::format("{} {} is too late: the last possible is {}", what, *beyond, last));
 }
 
-Table made(const ObservableSeries& series, const AgeingSettings& settings,
-           const Surroundings& around) {
+Table make_table(const ObservableSeries& series, const AgeingSettings& settings,
+                 const Surroundings& around) {
   if (series.n_rows() < 3) throw BadInput("needs two taps");
   require_reached("waiting time", settings.waiting_times, series.n_rows() - 2);
   require_reached("lag", settings.lags, series.n_rows() - 1);
@@ -67,8 +69,8 @@ Table made(const ObservableSeries& series, const AgeingSettings& settings,
   return ageing_table("", series.label(), rows, grid, around.threads);
 }
 
-Table made(const ObservableSeries& series, const HysteresisSettings& settings,
-           const Surroundings& around) {
+Table make_table(const ObservableSeries& series, const HysteresisSettings& settings,
+                 const Surroundings& around) {
   const std::vector<Stage> protocol = stages(around.scenes().at(around.point).protocol);
   std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
   for (const Stage& stage : protocol) shortest = std::min(shortest, stage.count);
@@ -96,7 +98,7 @@ void add_tables(const Surroundings& around, const char* kind,
     Table table;
     try {
       if (series.n_realizations() == 0) throw BadInput("there is no realization with taps");
-      table = made(series, request.settings, around);
+      table = make_table(series, request.settings, around);
     } catch (const BadInput& refusal) {
       table.notes = {{"refused", refusal.what()}};
     }
@@ -150,4 +152,4 @@ bool is_made(const Table& table) {
                               [](const auto& note) { return note.first == "refused"; });
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

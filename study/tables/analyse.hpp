@@ -11,7 +11,7 @@
 #include "results/results_file.hpp"
 #include "study/observable_series.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// The tables of all analyses at the given sweep points, point_PPPP/<analysis>/<observable>, as
 /// results files keep them; those over the points of a sweep are not made here. An analysis that is
@@ -28,4 +28,4 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
 /// Whether the table holds an analysis, and no refusal.
 bool is_made(const Table& table);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -12,7 +12,7 @@
 #include "results/export/printable.hpp"
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -116,4 +116,4 @@ Curve read_curve(const std::string& path, CurveColumns kind) {
   return mean_curve(std::move(curve.t), std::move(curve.values), columns - 1);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

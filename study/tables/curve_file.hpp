@@ -4,7 +4,7 @@
 
 #include "fitting/curve.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// What stands beside t and X.
 enum class CurveColumns {
@@ -19,4 +19,4 @@ enum class CurveColumns {
 /// ResultsError where the file cannot be read to its end.
 Curve read_curve(const std::string& path, CurveColumns columns = CurveColumns::errors);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

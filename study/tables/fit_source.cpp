@@ -7,7 +7,7 @@
 
 #include "study/observable_series.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<FitSource> results_curves(const ResultsFile& file,
   return sources;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -9,7 +9,7 @@
 #include "fitting/curve.hpp"
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// A curve to fit, and where it comes from.
 struct FitSource {
@@ -31,4 +31,4 @@ std::vector<FitSource> results_curves(const ResultsFile& file,
                                       std::span<const std::uint32_t> points,
                                       const std::string& observable, const FitRange& range);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

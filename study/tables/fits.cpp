@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "results/layout.hpp"
+#include "results/file/layout.hpp"
 #include "study/results_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -213,4 +213,4 @@ std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const Fit
   return all;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

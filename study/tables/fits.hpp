@@ -16,7 +16,7 @@
 #include "fitting/models/models.hpp"
 #include "study/tables/fit_source.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// How curves are fitted and how the errors of resampled realizations are made.
 struct FitManner {
@@ -58,4 +58,4 @@ using FitObserver = std::function<void(const FittedCurve&)>;
 std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const FitRequest> requests,
                                     const FitManner& manner, const FitObserver& observer = {});
 
-}  // namespace jostle
+}  // namespace jostle::inline study

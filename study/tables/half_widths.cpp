@@ -8,7 +8,7 @@
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -61,4 +61,4 @@ Table with_half_widths(Table table) {
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

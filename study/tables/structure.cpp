@@ -16,10 +16,10 @@
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/particle_columns.hpp"
-#include "results/layout.hpp"
+#include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -264,4 +264,4 @@ StructureSettings structure_asked_for(const ResultsFile& file) {
   return parsed.scene ? parsed.scene->structure : StructureSettings{};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -9,7 +9,7 @@
 #include "results/results_file.hpp"
 #include "structure/measure.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// Structure of the kept packings at the given sweep points, averaged over realizations: tables
 /// point_PPPP/<part>, as results files keep them. `taps`: of those with packings; all if none is
@@ -29,4 +29,4 @@ std::vector<Table> structure_of(std::span<const std::string> files,
 /// What the scene of a results file asks for; no part where it asks for nothing.
 StructureSettings structure_asked_for(const ResultsFile& file);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -12,13 +12,13 @@
 #include "config/json/json_text.hpp"
 #include "ensemble/analysis/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
-#include "results/layout.hpp"
+#include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/observable_series.hpp"
-#include "study/point_scenes.hpp"
+#include "study/scenes/point_scenes.hpp"
 #include "study/tables/analyse.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 namespace {
 
@@ -294,4 +294,4 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
   return tables;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -7,7 +7,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 
-namespace jostle {
+namespace jostle::inline study {
 
 /// Tables just made of a file, not yet stored in it.
 struct MadeTables {
@@ -23,4 +23,4 @@ struct MadeTables {
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests);
 
-}  // namespace jostle
+}  // namespace jostle::inline study

@@ -27,9 +27,12 @@ RESERVED = {
     r"hdf5|H5\w*\.h": {"results"},
     r"openssl/": {"results"},
     r"tbb/|oneapi/tbb": {"ensemble/parallel.cpp", "cli/terminal/version.cpp"},
-    r"nlohmann/": {"config/json/parse_and_print.cpp", "results/validate.cpp"},
-    r"CLI/": {"cli"},
-    r"Eigen/": {"fitting", "ensemble"},
+    r"nlohmann/": {"config/json/parse_and_print.cpp", "results/file/validate.cpp"},
+    r"CLI/": {"cli/options/command.cpp", "cli/options/command_line.cpp", "cli/terminal/version.cpp"},
+    r"Eigen/Core": {"fitting", "ensemble"},
+    r"unsupported/Eigen/FFT": {"ensemble/statistics/autocorrelation.cpp",
+                               "ensemble/analysis/spectra.cpp"},
+    r"Eigen/(?!Core)": {"fitting/solver/decompositions.cpp", "fitting/solver/trust_step.hpp"},
     r"spdlog/": {"cli"},
     r"Random123/": {"engine"},
     r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "study", "cli"},
@@ -78,6 +81,15 @@ class Architecture(unittest.TestCase):
         types = types_by_name()
         self.assertGreater(len(types), 200)
         self.assertEqual({name: files for name, files in types.items() if len(files) > 1}, {})
+
+    def test_every_library_has_a_namespace_of_its_own(self):
+        wrong = []
+        for folder in set(MAY_INCLUDE) - {"bench"}:
+            for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):
+                for name in re.findall(r"^namespace jostle\b(.*) \{$", path.read_text(), re.MULTILINE):
+                    if not re.fullmatch(rf"::inline {folder}(::JOSTLE_KERNELS)?", name):
+                        wrong.append(f"{path.relative_to(SOURCE)}: namespace jostle{name}")
+        self.assertEqual(wrong, [])
 
     def test_libraries_are_seen_only_where_they_belong(self):
         wrong = []

@@ -39,7 +39,7 @@ class Numbers(Refused):
                 ("--realization", ["export", "tiny.h5", "--format", "vtp"]),
                 ("--seed", ["fit", "tiny.h5", "--observable", "mean_height"]),
                 ("--resamples", ["fit", "tiny.h5", "--observable", "mean_height"]),
-                ("--rounds", ["cost", "scene.json"]),
+                ("--replicates", ["cost", "scene.json"]),
                 ("--taps", ["cost", "scene.json"]),
                 ("--threads", ["run", "scene.json"])):
             self.refused(*arguments, f"{option}=-1", answer=option)

@@ -21,23 +21,23 @@ class Cost(Case):
         return self.jostle("cost", "scene.json", "--no-progress", *arguments, expect=expect)
 
     def rows(self, name):
-        """The rungs of bottom_fraction from a CSV, without times."""
+        """The settings of bottom_fraction from a CSV, without times."""
         lines = (self.folder / name).read_text().splitlines()
         start = lines.index("# cost/bottom_fraction")
-        header = next(i for i in range(start, len(lines)) if lines[i].startswith("rung,part"))
+        header = next(i for i in range(start, len(lines)) if lines[i].startswith("setting,part"))
         end = next((i for i in range(header, len(lines)) if not lines[i]), len(lines))
         rows = list(csv.DictReader(lines[header:end]))
         timed = ("tap_seconds", "start_seconds", "core_hours", "pareto")
         return [{key: row[key] for key in row if key not in timed} for row in rows]
 
     def test_biases_are_means_of_paired_differences(self):
-        done = self.cost("--rounds", "3", "--taps", "5", "--target", "0.5", "--figure", "c.gp",
+        done = self.cost("--replicates", "3", "--taps", "5", "--target", "0.5", "--figure", "c.gp",
                          "--csv", "c.csv")
         self.assertIn("against eta = 1e-06", done.stdout)
         self.assertRegex(done.stdout, "For an error of 0.5 in bottom_fraction at tap 40: .+, 2 real")
         with h5py.File(self.folder / "tiny-cost.h5") as stored:
             table = stored["analysis/cost/bottom_fraction"]
-            names = [name.decode() for name in table["rung"][:]]
+            names = [name.decode() for name in table["setting"][:]]
             last = [stored[f"observables/point_{p:04}/bottom_fraction"][5]
                     for p in range(len(names))]
             reference = last[names.index("eta = 1e-06")]
@@ -57,12 +57,12 @@ class Cost(Case):
             sweeps = table["sweeps_per_tap"][:]
             self.assertGreater(sweeps[names.index("eta = 1e-06")], sweeps[0])
         self.assertIn("set output 'c.svg'", (self.folder / "c.gp").read_text())
-        self.assertEqual([row["rung"] for row in self.rows("c.csv")], names)
+        self.assertEqual([row["setting"] for row in self.rows("c.csv")], names)
 
     def test_starts_windows_and_growth_with_taps(self):
         self.write(changed(SCENE, container={"sides": "walls", "width": 4},
                            start={"pour": "fitted"}, observe=["mean_height", "bulk_fraction"]))
-        done = self.cost("--rounds", "4", "--taps", "6", "--observable", "bulk_fraction")
+        done = self.cost("--replicates", "4", "--taps", "6", "--observable", "bulk_fraction")
         self.assertRegex(done.stdout, r"\n *poured between the walls  ")
         self.assertRegex(done.stdout, r"\n *theta_0 = 0.393  ")
         self.assertRegex(done.stdout, r"Since tap 3 the scene's changed by \S+ \+- \S+: ")
@@ -70,7 +70,7 @@ class Cost(Case):
                                       r"\S+ \+- \S+ \(quantiles 0.1 to 0.9\)\.")
         with h5py.File(self.folder / "tiny-cost.h5") as stored:
             table = stored["analysis/cost/bulk_fraction"]
-            names = [name.decode() for name in table["rung"][:]]
+            names = [name.decode() for name in table["setting"][:]]
             reference = names.index("eta = 1e-06")
             values = {(p, tap): stored[f"observables/point_{p:04}/bulk_fraction"][tap]
                       for p in range(len(names)) for tap in (3, 6)}
@@ -90,40 +90,40 @@ class Cost(Case):
             self.assertIn(f"fitting/point_{reference:04}", stored)
             self.assertNotIn(f"fitting/point_{poured:04}", stored)
 
-    def test_the_same_rounds_give_the_same_numbers(self):
-        self.cost("--rounds", "4", "--taps", "3", "--csv", "a.csv", "--threads", "1")
-        self.cost("--rounds", "2", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5")
-        kept = self.cost("--rounds", "4", "--taps", "3", "-o", "b.h5", expect=BAD_INPUT)
+    def test_the_same_replicates_give_the_same_numbers(self):
+        self.cost("--replicates", "4", "--taps", "3", "--csv", "a.csv", "--threads", "1")
+        self.cost("--replicates", "2", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5")
+        kept = self.cost("--replicates", "4", "--taps", "3", "-o", "b.h5", expect=BAD_INPUT)
         self.assertIn("b.h5 exists and is kept", kept.stderr)
-        again = ("--rounds", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
+        again = ("--replicates", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
                  "--resume")
         self.assertIn("b.csv exists and is kept", self.cost(*again, expect=BAD_INPUT).stderr)
         self.cost(*again, "--force")
         self.assertEqual(self.rows("a.csv"), self.rows("b.csv"))
         self.assertEqual(self.digest("tiny-cost.h5"), self.digest("b.h5"))
-        other = self.cost("--rounds", "4", "--taps", "4", "-o", "b.h5", "--resume", "--observable",
+        other = self.cost("--replicates", "4", "--taps", "4", "-o", "b.h5", "--resume", "--observable",
                           "mean_height")
-        self.assertIn("mean_height: after 4 taps, 4 rounds", other.stdout)
+        self.assertIn("mean_height: after 4 taps, 4 replicates", other.stdout)
 
-    def test_a_budget_decides_whole_rounds(self):
+    def test_a_budget_decides_whole_replicates(self):
         done = self.cost("--budget", "0s", "--taps", "2")
-        self.assertIn("after 2 taps, 2 rounds", done.stdout)
+        self.assertIn("after 2 taps, 2 replicates", done.stdout)
         done = self.cost("--budget", "1s", "--taps", "2", "--resume")
-        self.assertNotIn(" 2 rounds", done.stdout)
+        self.assertNotIn(" 2 replicates", done.stdout)
 
-    def test_failures_are_told_and_no_round_follows_where_all_fail(self):
+    def test_failures_are_told_and_no_replicate_follows_where_all_fail(self):
         self.write(changed(SCENE, container={"sides": "periodic", "width": 4},
                            start={"crystal": "hcp"}))
         done = self.cost("--budget", "60s", "--taps", "2", expect=FAILED)
         self.assertNotIn("nan", done.stdout)
-        self.assertRegex(done.stdout, r"2 of 2 rounds failed, and are not in the numbers: .+\n  \(as the scene, ")
+        self.assertRegex(done.stdout, r"2 of 2 replicates failed, and are not in the numbers: .+\n  \(as the scene, ")
 
     def test_a_reference_that_relaxes_less_is_called_doubtful(self):
         relax = {"metropolis": {"max_step": 0.1, "adapt": {"reset_each_tap": False}},
                  "stop": {"mean_height": {"eta": 1e-5, "every_sweeps": 100}}}
         self.write(changed(SCENE, start={"random_settle": {}}, relax=relax, snapshots={},
                            protocol=[{"tap": {"lift": 0.25}, "count": 3}]))
-        self.assertIn("DOUBTFUL: the reference takes", self.cost("--rounds", "3").stdout)
+        self.assertIn("DOUBTFUL: the reference takes", self.cost("--replicates", "3").stdout)
         # The pilot's scene is the scene: its step is what the start's relaxation left.
         self.run_scene("-o", "whole.h5")
         with h5py.File(self.folder / "whole.h5") as whole, \

@@ -34,7 +34,7 @@ UP_AND_DOWN = [{"ramp": {"dilate": {"sqrt_from": 0.1, "sqrt_to": 0.5, "sqrt_step
 
 # What a test has no time or no place for, and what stands for it.
 INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed --json":
-           "jostle bench fluid_0.45 --json", "--budget 30m": "--rounds 2",
+           "jostle bench fluid_0.45 --json", "--budget 30m": "--replicates 2",
            "--folder /scratch/me": "--folder .",
            "jostle run quickstart.json": "jostle run small.json --force",
            "jostle merge low.h5 high.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force"}

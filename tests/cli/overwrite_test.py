@@ -42,7 +42,7 @@ class Text(Kept):
         (self.folder / "link.csv").symlink_to("tiny.h5")
         (self.folder / "folder").mkdir()
         steady = ("analyse", "tiny.h5", "steady", "--observable", "mean_height")
-        cost = ("cost", "scene.json", "--rounds", 2, "--taps", 1)
+        cost = ("cost", "scene.json", "--replicates", 2, "--taps", 1)
         for arguments in ([*steady, "--csv", "tiny.h5"],
                           [*steady, "--csv", "folder/../tiny.h5"],
                           [*steady, "--csv", "link.csv"],
@@ -61,7 +61,7 @@ class Text(Kept):
         for arguments in (["analyse", "tiny.h5", "steady", "--observable", "mean_height"],
                           ["fit", "curve.csv", "--model", "inverse_log"],
                           ["structure", "tiny.h5", "--part", "profile"],
-                          ["cost", "scene.json", "--rounds", 2, "--taps", 1]):
+                          ["cost", "scene.json", "--replicates", 2, "--taps", 1]):
             with self.subTest(arguments=arguments):
                 self.write("mine", "kept.csv")
                 asked = (*arguments, "--csv", "kept.csv")
@@ -81,7 +81,7 @@ class Results(Kept):
         (self.folder / "later").mkdir()
         later = changed(TAPPED, start={"file": {"path": "../first.h5", "tap": 40}})
         self.write(later, "later/scene.json")
-        for command in (("run",), ("cost", "--rounds", "2", "--taps", "1")):
+        for command in (("run",), ("cost", "--replicates", "2", "--taps", "1")):
             for output in ("later/scene.json", "first.h5", "later/../first.h5"):
                 self.never_replaced(*command, "later/scene.json", "--no-progress", "-o", output,
                                     answer="works with that file")
@@ -91,7 +91,7 @@ class Results(Kept):
         self.write("mine", "copy.json")
         self.run_scene("-o", "part.h5")
         for command in (["run", "scene.json", "--no-progress"],
-                        ["cost", "scene.json", "--rounds", 2, "--taps", 1, "--no-progress"],
+                        ["cost", "scene.json", "--replicates", 2, "--taps", 1, "--no-progress"],
                         ["merge", "part.h5"]):
             with self.subTest(command=command):
                 self.refused(*command, "-o", "copy.json", answer="exists and is kept")

@@ -54,7 +54,7 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(scene.relax.stop.rule ==
         StopRule{BulkFractionStop{0.002, 500'000, 3, false, HeightWindow{4, 8.5}}});
   CHECK(scene.relax.stop.max_sweeps == 20'000);
-  CHECK(scene.relax.sampler == Sampler::skipping);
+  CHECK(scene.relax.sampler == Sampler::rejection_free);
   const StructureSettings& structure = scene.structure;
   CHECK(structure.region == Region{1.5, 8, 2});
   CHECK(structure.profile == ProfileSettings{0.2, 0, HeightWindow{3, 9}});

@@ -15,9 +15,9 @@ Scene shipped(const std::string& name) {
   return scene_of(text_of(std::filesystem::path(SOURCE_ROOT) / "config" / "scenes" / name));
 }
 
-std::set<std::string> names(const std::vector<Rung>& rungs) {
+std::set<std::string> names(const std::vector<PilotSetting>& settings) {
   std::set<std::string> all;
-  for (const Rung& rung : rungs) all.insert(rung.name);
+  for (const PilotSetting& setting : settings) all.insert(setting.name);
   return all;
 }
 
@@ -25,51 +25,52 @@ std::set<std::string> names(const std::vector<Rung>& rungs) {
 
 TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta") {
   const Scene scene = shipped("quickstart.json");
-  const std::vector<Rung> rungs = ladder(scene);
-  CHECK(rungs.front().part == Rung::Part::scene);
-  CHECK(rungs.front().relax == scene.relax);
-  CHECK(names(rungs) == std::set<std::string>{"as the scene", "eta = 0.001", "eta = 0.0001",
-                                              "eta = 1e-06", "eta = 1e-07", "test every 10 sweeps",
-                                              "test every 1000 sweeps", "d_max = 0.05",
-                                              "d_max = 0.2", "theta_0 = 0.393", "theta_0 = 1.57",
-                                              "half the footprint"});
-  const MostComplete best = most_complete(rungs);
-  CHECK(rungs[best.last].name == "eta = 1e-07");
-  CHECK(rungs[best.before].name == "eta = 1e-06");
-  const Stop& complete = rungs[best.last].relax.stop;
+  const std::vector<PilotSetting> settings = ladder(scene);
+  CHECK(settings.front().part == PilotSetting::Part::scene);
+  CHECK(settings.front().relax == scene.relax);
+  CHECK(names(settings) == std::set<std::string>{"as the scene", "eta = 0.001", "eta = 0.0001",
+                                                 "eta = 1e-06", "eta = 1e-07",
+                                                 "test every 10 sweeps", "test every 1000 sweeps",
+                                                 "d_max = 0.05", "d_max = 0.2", "theta_0 = 0.393",
+                                                 "theta_0 = 1.57", "half the footprint"});
+  const MostComplete best = most_complete(settings);
+  CHECK(settings[best.last].name == "eta = 1e-07");
+  CHECK(settings[best.before].name == "eta = 1e-06");
+  const Stop& complete = settings[best.last].relax.stop;
   CHECK(std::get<MeanHeightStop>(complete.rule).eta == 1e-7);
   CHECK(complete.max_sweeps == 100 * scene.relax.stop.max_sweeps);
 }
 
 TEST_CASE("A published bulk-fraction stop is compared with a complete one by mean height") {
-  const std::vector<Rung> rungs = ladder(shipped("rosato-dybenko-2010/fig4-published-stop.json"));
-  const auto all = names(rungs);
+  const std::vector<PilotSetting> settings =
+      ladder(shipped("rosato-dybenko-2010/fig4-published-stop.json"));
+  const auto all = names(settings);
   CHECK(all.contains("change = 0.0001"));
-  CHECK(rungs[most_complete(rungs).last].name == "mean height, eta = 1e-06");
+  CHECK(settings[most_complete(settings).last].name == "mean height, eta = 1e-06");
   CHECK(all.contains("fixed delta"));
   CHECK(all.contains("delta of falling trials, 2 %"));
 }
 
-TEST_CASE("Between walls the other of the two pours is a rung") {
-  const auto start_rungs = [](const Scene& scene) {
+TEST_CASE("Between walls the other of the two pours is a setting") {
+  const auto start_settings = [](const Scene& scene) {
     std::vector<StartChoice> found;
-    for (const Rung& rung : ladder(scene)) {
-      if (rung.part == Rung::Part::start) found.push_back(rung.start);
+    for (const PilotSetting& setting : ladder(scene)) {
+      if (setting.part == PilotSetting::Part::start) found.push_back(setting.start);
     }
     return found;
   };
   Scene scene = shipped("philippe-bideau-2001/fig10.json");
-  CHECK(start_rungs(scene) == std::vector<StartChoice>{SteepestDescentPour{}});
+  CHECK(start_settings(scene) == std::vector<StartChoice>{SteepestDescentPour{}});
   scene.start = SteepestDescentPour{};
-  CHECK(start_rungs(scene) == std::vector<StartChoice>{FittedPour{}});
+  CHECK(start_settings(scene) == std::vector<StartChoice>{FittedPour{}});
   // Too narrow for the periodic pour that is to be fitted.
   scene.container = WalledBox{2, 16};
-  CHECK(start_rungs(scene).empty());
-  CHECK(start_rungs(shipped("quickstart.json")).empty());
+  CHECK(start_settings(scene).empty());
+  CHECK(start_settings(shipped("quickstart.json")).empty());
   // A direct pour takes no relaxation before tap 0, so a scene that has one has no such pair.
   Scene relaxed = shipped("philippe-bideau-2001/fig10.json");
   relaxed.relax_start = relaxed.relax;
-  CHECK(start_rungs(relaxed).empty());
+  CHECK(start_settings(relaxed).empty());
 }
 
 TEST_CASE("A bulk fraction is read through a narrower and a wider window, too") {
@@ -92,14 +93,14 @@ TEST_CASE("A bulk fraction is read through a narrower and a wider window, too") 
 TEST_CASE("A ladder of an absolute stop goes up and down from the scene's change") {
   Scene scene = shipped("quickstart.json");
   scene.relax.stop.rule = HeightChangeStop{.change = 1e-3, .every_sweeps = 50};
-  const std::vector<Rung> rungs = ladder(scene);
-  const auto all = names(rungs);
+  const std::vector<PilotSetting> settings = ladder(scene);
+  const auto all = names(settings);
   for (const char* name : {"change = 0.1 d", "change = 0.01 d", "change = 0.0001 d",
                            "change = 1e-05 d", "test every 5 sweeps", "test every 500 sweeps"}) {
     CAPTURE(name);
     CHECK(all.contains(name));
   }
-  CHECK(rungs[most_complete(rungs).last].name == "change = 1e-05 d");
+  CHECK(settings[most_complete(settings).last].name == "change = 1e-05 d");
 }
 
 TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from the same beds") {
@@ -108,18 +109,18 @@ TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from th
     if (entry.path().extension() != ".json") continue;
     INFO(entry.path());
     const Scene scene = scene_of(text_of(entry.path()));
-    const std::vector<Rung> rungs = ladder(scene);
-    const Scene pilot = scene_of(resolved(ladder_scene(scene, rungs, 7)).dump());
+    const std::vector<PilotSetting> settings = ladder(scene);
+    const Scene pilot = scene_of(resolved(ladder_scene(scene, settings, 7)).dump());
     const std::vector<Plan> plans = make_plans(pilot, {});
-    REQUIRE(plans.size() == rungs.size());
+    REQUIRE(plans.size() == settings.size());
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      CHECK(monte_carlo(plans[i]).relax == rungs[i].relax);
+      CHECK(monte_carlo(plans[i]).relax == settings[i].relax);
       CHECK(plans[i].streams == Streams::matched);
       CHECK(total_taps(plans[i]) == 7);
       CHECK(plans[i].snapshots.taps.empty());
       CHECK(monte_carlo(plans[i]).relax_start.value_or(scene.relax) ==
             scene.relax_start.value_or(scene.relax));
-      const bool another = rungs[i].part == Rung::Part::start;
+      const bool another = settings[i].part == PilotSetting::Part::start;
       CHECK((plans[i].start == plans[0].start) != another);
       CHECK(plans[i].observables.size() == scene.observables.size() + other_windows(scene).size());
     }

@@ -54,7 +54,7 @@ TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
     const RecordedRealization undisturbed = straight(plan);
     REQUIRE(undisturbed.rows.size() == total_taps(plan) + 1);
     const bool skipped = engine_of(*undisturbed.state).sampler.candidate > 0;
-    CHECK(skipped == (monte_carlo(plan).relax.sampler == Sampler::skipping));
+    CHECK(skipped == (monte_carlo(plan).relax.sampler == Sampler::rejection_free));
     for (int repeat = 0; repeat < 3; ++repeat) {
       CHECK(bits(interrupted(plan, random)) == bits(undisturbed));
     }
@@ -65,14 +65,14 @@ TEST_CASE("The sampler of the plan is the one that relaxes, and its state is kep
   Plan plan = small_plan();
   monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 2000}};
   CHECK(engine_of(*straight(plan).state).sampler == SamplerState{});
-  monte_carlo(plan).relax.sampler = Sampler::skipping;
+  monte_carlo(plan).relax.sampler = Sampler::rejection_free;
   Realization realization(plan, 0);
   while (realization.state().rows == 0) realization.advance(1'000);
   realization.advance(1500 * plan.n_spheres);
   const RealizationState state = realization.state();
   CHECK(state.relaxing);
   const MonteCarloState engine = engine_of(state);
-  CHECK(engine.sampler.skipping);
+  CHECK(engine.sampler.active);
   CHECK(engine.sampler.candidate > 0);
   CHECK(engine.sampler.pending >= engine.move.next_trial);
 }

@@ -82,7 +82,7 @@ inline std::vector<NamedPlan> various_plans() {
   skipped.start = RandomSettle{};
   monte_carlo(skipped).relax.stop = {.rule = MeanHeightStop{.eta = 1e-5, .every_sweeps = 30},
                                      .max_sweeps = 2000};
-  monte_carlo(skipped).relax.sampler = Sampler::skipping;
+  monte_carlo(skipped).relax.sampler = Sampler::rejection_free;
 
   Plan& skipped_walls = add("walls, Metropolis that keeps its step, sweeps, skipping");
   skipped_walls.container = WalledBox{4.5, 4.2};
@@ -91,14 +91,14 @@ inline std::vector<NamedPlan> various_plans() {
   std::get<MetropolisMove>(monte_carlo(skipped_walls).relax.move).adaptation->reset_each_tap =
       false;
   monte_carlo(skipped_walls).relax.stop = {.rule = SweepsStop{.sweeps = 400}};
-  monte_carlo(skipped_walls).relax.sampler = Sampler::skipping;
+  monte_carlo(skipped_walls).relax.sampler = Sampler::rejection_free;
 
   Plan& settled = add("periodic, random settle by Metropolis that skips, then polar");
   settled.start = RandomSettle{};
   monte_carlo(settled).relax_start =
       Relaxation{.move = MetropolisMove{.max_step = 0.2, .adaptation = adaptation},
                  .stop = {.rule = SweepsStop{.sweeps = 300}},
-                 .sampler = Sampler::skipping};
+                 .sampler = Sampler::rejection_free};
   return plans;
 }
 

@@ -1,4 +1,4 @@
-#include "study/scene_file.hpp"
+#include "study/scenes/scene_file.hpp"
 #include "study/tables/curve_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

@@ -53,7 +53,7 @@ TEST_CASE("perfect crystals and ones with a gap of a few ulp hold every kind of 
         const Packing end = run_trials(crystal, move, 50'000);
         if (!is_cold(move)) continue;
         CHECK(top_height(end) <= top_height(crystal));
-        run_trials(crystal, move, 50'000, Sampler::skipping);
+        run_trials(crystal, move, 50'000, Sampler::rejection_free);
       }
     }
   }
@@ -95,7 +95,7 @@ TEST_CASE("a disordered packing pressed from 0.60 to 0.64 keeps every sphere apa
 }
 
 TEST_CASE("a crystal tapped 10 000 times never overlaps", "[statistics]") {
-  for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
+  for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
     for (const Tap& tap : {Tap{Dilate{0.02}}, Tap{Lift{0.25}}}) {
       Plan plan;
       plan.seed = 20260102;

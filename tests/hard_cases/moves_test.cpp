@@ -37,7 +37,7 @@ TEST_CASE("steps of 1e-9 and 2 diameters at every law of the angle") {
       for (const ThetaLaw law : {ThetaLaw::gaussian, ThetaLaw::exponential, ThetaLaw::linear}) {
         CAPTURE(step, theta0, int(law));
         const Packing start = bed();
-        for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
+        for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
           const Packing end = run_trials(start, PolarMove{step, theta0, law}, 50'000, sampler);
           CHECK(mean_height(end) < mean_height(start));
           CHECK(mean_height(end) > mean_height(start) - 50'000 * step);
@@ -74,7 +74,7 @@ TEST_CASE("a step that adapts until nothing is left of it moves nothing and ends
   MetropolisMove move{0.1};
   for (const double factor : {0.5, 0.995}) {
     move.adaptation = StepAdaptation{factor, 1, 1, AcceptanceBase::all_trials, true};
-    for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
+    for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
       CAPTURE(factor, int(sampler));
       const Packing start = bed();
       const auto loop =

@@ -41,7 +41,7 @@ TEST_CASE("one and two spheres in boxes of the least legal width") {
         RandomStream random(stream_key(n, 0, 0, Purpose::start));
         const Packing start = make_start(SteepestDescentPour{}, container, n, random);
         run_trials(start, move, 10'000);
-        if (move.index() == 0) run_trials(start, move, 10'000, Sampler::skipping);
+        if (move.index() == 0) run_trials(start, move, 10'000, Sampler::rejection_free);
       }
     }
   }
@@ -82,7 +82,7 @@ TEST_CASE("coordinates on a seam, at -5e-17 and at the width are one place") {
     }
     run_trials(start, PolarMove{}, 20'000);
     run_trials(start, MetropolisMove{0.5, 1.0}, 20'000);
-    run_trials(start, PolarMove{}, 20'000, Sampler::skipping);
+    run_trials(start, PolarMove{}, 20'000, Sampler::rejection_free);
   }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("a column 100 000 diameters high is tapped without overlap", "[statist
 TEST_CASE("a few spheres 100 000 diameters up fall like others", "[statistics]") {
   const PeriodicBox box{3, 3};
   Packing high{box, {{1, 1, 1e5}, {1, 1, 1e5 + 1}, {2.5, 1, 1e5}}};
-  for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
+  for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
     const Packing end = run_trials(high, PolarMove{2.0}, 2'000'000, sampler);
     CHECK(top_height(end) < 2.6);  // three on a floor of 3 x 3, at most one on another
   }

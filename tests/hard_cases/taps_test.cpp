@@ -24,7 +24,7 @@ TEST_CASE("taps from nothing to ten times the height") {
                          Tap{DilateFloorHeld{1e-16}}, Tap{DilateFloorHeld{10}}, Tap{Lift{1e-12}},
                          Tap{Lift{100}}, Tap{Shake{0, 1e-9, 0}}, Tap{Shake{10, 1.9, 3}}}) {
     for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.2}}}) {
-      for (const Sampler sampler : {Sampler::exhaustive, Sampler::skipping}) {
+      for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
         CAPTURE(tap.index(), move.index(), int(sampler));
         Plan plan = plan_of(tap, 4);
         monte_carlo(plan).relax.move = move;

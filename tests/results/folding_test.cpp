@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "forked.hpp"
-#include "results/axes.hpp"
 #include "results/checkpoints/part.hpp"
 #include "results/checkpoints/run_parts.hpp"
+#include "results/file/axes.hpp"
 #include "results/merge.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
@@ -170,16 +170,15 @@ TEST_CASE("a fold takes little memory, however large the run") {
   CHECK(ending.code == 0);
 }
 
-TEST_CASE("a merge takes 32 MB for every input, however large they are", "[slow]") {
-  if (memory_is_watched) return;
+/// Megabytes that a merge of so many shards takes, each with so much of every series that all of a
+/// reader's 32 MB are used.
+double megabytes_of_merge(std::uint32_t n_inputs) {
   const synthetic::Sizes sizes{
-      .points = 1, .realizations = 8, .spheres = 2, .taps = 200'000, .snapshot_taps = {}};
-  constexpr double an_input = 34, besides = 80;  // megabytes
-  const std::uint32_t n_inputs = GENERATE(2u, 4u, 8u);
+      .points = 1, .realizations = 8, .spheres = 2, .taps = 100'000, .snapshot_taps = {}};
   const TemporaryFolder folder;
   std::vector<std::string> inputs;
   for (std::uint32_t i = 1; i <= n_inputs; ++i) inputs.push_back(folder / std::to_string(i));
-  // In a process of its own: what it gives back would be taken again unseen.
+  // Each in a process of its own: what it gives back would be taken again unseen.
   const Ending made = run_forked({}, folder / "messages", [&] {
     const Study study = synthetic::study(sizes);
     for (std::uint32_t i = 1; i <= n_inputs; ++i) {
@@ -192,13 +191,17 @@ TEST_CASE("a merge takes 32 MB for every input, however large they are", "[slow]
   const Ending ending = run_forked({}, folder / "messages", [&] {
     const double before = peak_megabytes();
     merge_files(inputs, folder / "merged.h5", provenance());
-    const double grown = peak_megabytes() - before;
-    fmt::print("a merge of {} inputs takes {:.0f} MB\n", n_inputs, grown);
-    std::fflush(stdout);
-    if (grown > besides + n_inputs * an_input)
-      throw std::runtime_error("took " + std::to_string(grown) + " MB");
+    std::ofstream(folder / "megabytes") << peak_megabytes() - before;
   });
-  std::ifstream messages(folder / "messages");
-  CAPTURE(n_inputs, std::string(std::istreambuf_iterator<char>(messages), {}));
-  CHECK(ending.code == 0);
+  REQUIRE(ending.code == 0);
+  double megabytes = 0;
+  std::ifstream(folder / "megabytes") >> megabytes;
+  REQUIRE(megabytes > 0);
+  return megabytes;
+}
+
+TEST_CASE("a merge takes 32 MB for every input, however large they are") {
+  if (memory_is_watched) return;
+  // Measured: 31; what does not grow with the inputs drops out of the difference.
+  CHECK((megabytes_of_merge(4) - megabytes_of_merge(2)) / 2 < 34);
 }

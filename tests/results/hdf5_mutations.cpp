@@ -62,7 +62,7 @@ Number extreme(Choices& choices) {
 
 constexpr std::size_t most_values = 4096;
 
-/// Enough values of a type for a dataset or an attribute of at most most_values elements.
+/// TargetPrecision values of a type for a dataset or an attribute of at most most_values elements.
 struct Values {
   hid_t memory_type;
   std::vector<std::uint64_t> bits = std::vector<std::uint64_t>(most_values);

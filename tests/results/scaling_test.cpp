@@ -11,7 +11,7 @@
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
 #include "results/export/packing_file.hpp"
-#include "results/results_writer.hpp"
+#include "results/file/results_writer.hpp"
 #include "runs.hpp"
 #include "structure/measure.hpp"
 #include "temporary_folder.hpp"

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <set>
 
-#include "study/point_scenes.hpp"
-#include "study/scene_tables.hpp"
+#include "study/scenes/point_scenes.hpp"
+#include "study/scenes/scene_tables.hpp"
 #include "tests/results/temporary_folder.hpp"
 
 using namespace jostle;
@@ -47,7 +47,7 @@ class Heard : public RunObserver, public TablesObserver {
   }
   void computed() override { said.emplace_back("computed"); }
   void stored() override { said.emplace_back("stored"); }
-  void compared(const EnoughStatus&) override { said.emplace_back("compared"); }
+  void compared(const PrecisionStatus&) override { said.emplace_back("compared"); }
   void fitted(const FittedCurve&) override { ++fits; }
   void analysed(const Table&) override { ++tables; }
   void without_structure(const std::string& reason) override { said.push_back(reason); }
@@ -66,7 +66,7 @@ TEST_CASE("A run of a scene fills its file, and tells its observer how it goes")
   Heard heard;
   SceneRun run(loaded, {.output = folder / "out.h5"}, heard);
   CHECK(run.results().state() == RunState::running);
-  CHECK(run.compute_until_enough());
+  CHECK(run.compute_until_precise());
   CHECK(heard.said == std::vector<std::string>{"computing", "computed", "stored"});
   CHECK(heard.last.realizations == 4);
   CHECK(heard.last.taps == 48);
@@ -136,7 +136,7 @@ TEST_CASE("Realizations are added until their spread is small, and a share canno
       "targets": [{"observable": "mean_height", "standard_error": 1e-9}]})"));
   Heard heard;
   SceneRun run(loaded, {.output = folder / "out.h5"}, heard);
-  CHECK(run.compute_until_enough());
+  CHECK(run.compute_until_precise());
   CHECK(run.study().realizations == 5);
   CHECK(run.summary().done == 10);
   CHECK(heard.said.back() == "compared");

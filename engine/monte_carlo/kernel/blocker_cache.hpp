@@ -10,7 +10,7 @@
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What rejects most trials of a sphere, in one cache line: where its likeliest blockers stand,
 /// seen from it, and its room to floor and sides. In single precision, with margins: a trial that
@@ -100,4 +100,4 @@ class BlockerCaches {
   std::vector<BlockerCache, LargePageAllocator<BlockerCache>> caches_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -5,7 +5,7 @@
 
 #include "engine/monte_carlo/kernel/proposals.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Decides whether blocker caches pay, by thresholds on the acceptance ratio, with hysteresis:
 /// caching begins below 1/6 and ends above 1/4 (docs/performance.md). It looks once a sweep or more
@@ -34,4 +34,4 @@ class CachingRule {
   std::uint64_t trials_ = 0, accepted_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

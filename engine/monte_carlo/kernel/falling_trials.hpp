@@ -7,7 +7,7 @@
 
 #include "engine/monte_carlo/kernel/proposals.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// The trials of a batch that do not rise, in order: at zero temperature the others are rejected.
 class FallingTrials {
@@ -37,4 +37,4 @@ class FallingTrials {
   std::uint32_t count_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -59,4 +59,4 @@ Kernels kernels_for(InstructionSet set) {
   return entry(set).kernels();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -4,7 +4,7 @@
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What is compiled once for every instruction set.
 struct Kernels {
@@ -14,4 +14,4 @@ struct Kernels {
 
 Kernels kernels_for(InstructionSet set);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

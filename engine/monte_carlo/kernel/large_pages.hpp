@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <new>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Memory in whole cache lines and, where it is much, on large pages if the system has them:
 /// random accesses to a million spheres then need no walk through the page tables.
@@ -34,4 +34,4 @@ struct LargePageAllocator {
   static constexpr std::size_t line = 64, page = std::size_t{2} << 20;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

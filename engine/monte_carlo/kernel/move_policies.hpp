@@ -15,7 +15,7 @@
 
 // The moves as the trial loop is compiled for them, one type each: what a trial proposes, which
 // trials are looked at, and what decides beside geometry. A new move is one more type.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Trials of a batch by the order in which they are looked at: first .. last - 1.
 struct TrialRange {
@@ -166,4 +166,4 @@ class Metropolis : public CubicStep {
 static_assert(MovePolicy<Polar> && MovePolicy<WithoutGravity> && MovePolicy<ZeroTemperature> &&
               MovePolicy<Metropolis>);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -9,7 +9,7 @@
 #include "engine/monte_carlo/kernel/large_pages.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Verlet lists: for every sphere the others whose origins lie within 1 + skin of its own, the
 /// likeliest blockers first. An origin is where a sphere stood when its list was last made; a list
@@ -124,4 +124,4 @@ class NeighbourLists {
   std::vector<Candidate> candidates_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -10,7 +10,7 @@
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// What the lists are made for. Diameters.
 struct Reach {
@@ -227,4 +227,4 @@ class NeighbourhoodView {
   std::uint64_t distance_tests_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -14,7 +14,7 @@
 // The arithmetic of engine/bed/geometry.hpp for the trial loop: x and y side by side in one
 // register and no branches. It gives the same numbers, bit for bit (a zero may differ in its sign);
 // the trial loop is tested against the plain functions.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Two lateral coordinates, in one SSE2 register.
 using Pair = double __attribute__((vector_size(16), may_alias));
@@ -186,4 +186,4 @@ inline double distance_squared(const PackedBox<Box>& box, const PackedCentre& a,
   return squares[0] + squares[1] + dz * dz;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

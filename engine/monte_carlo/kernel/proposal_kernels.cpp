@@ -7,7 +7,7 @@
 #include "engine/monte_carlo/kernel/proposals.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
-namespace jostle::JOSTLE_KERNELS {
+namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
@@ -141,4 +141,4 @@ ProposalKernels proposal_kernels() {
   return {polar, metropolis};
 }
 
-}  // namespace jostle::JOSTLE_KERNELS
+}  // namespace jostle::inline engine::JOSTLE_KERNELS

@@ -4,7 +4,7 @@
 
 // Trial displacements, made in batches so that they vectorise. What a trial proposes is a function
 // of its stream and its number alone; every instruction set makes the same bits.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Proposals of consecutive trials. Displacements: in diameters for the polar move, in units of the
 /// step for the Metropolis move.
@@ -44,4 +44,4 @@ namespace avx512 {
 ProposalKernels proposal_kernels();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -12,7 +12,7 @@
 #include "engine/monte_carlo/kernel/proposals.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// The trial loop of one container and one move. One trial is: propose, wrap, test floor and sides,
 /// test the neighbours, accept or reject. Everything else happens once a batch or more rarely.
@@ -208,4 +208,4 @@ class TypedTrialLoop final : public TrialLoop {
   bool batch_valid_ = false;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -13,7 +13,7 @@
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 #include "engine/monte_carlo/rejection_free/weight_tree.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// For every sphere and direction bin a length beyond which a step is certainly rejected. A
 /// function of the centres alone: neither lists nor the order and history of moves change anything.
@@ -199,4 +199,4 @@ class BoundTables {
   std::uint64_t rows_made_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -12,7 +12,7 @@
 #include "engine/monte_carlo/rejection_free/bound_tables.hpp"
 #include "engine/monte_carlo/rejection_free/directions.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Draws candidates, the trials that the bounds do not certainly reject, and tries them. Candidates
 /// have numbers of their own: what one draws is a function of the stream, its number, the centres
@@ -175,4 +175,4 @@ class CandidateSampler {
   std::uint64_t distance_tests_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

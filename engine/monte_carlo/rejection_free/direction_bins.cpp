@@ -9,7 +9,7 @@
 #include "engine/bed/vec3.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 namespace {
 
@@ -157,4 +157,4 @@ SineCosine sector_begin(int sector, int n_sectors) {
   return azimuth_angle(static_cast<double>(sector) / n_sectors);
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

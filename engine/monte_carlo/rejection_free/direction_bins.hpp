@@ -6,7 +6,7 @@
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
 // The directions of trial steps, cut into bins of equal probability.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Bins of the polar move. Rings are stretches of the probability of a larger angle; `theta_table`
 /// is that of the move (engine/monte_carlo/theta_table.hpp).
@@ -25,4 +25,4 @@ SineCosine cubic_angle(int ring, double u);
 /// Sine and cosine of the azimuth where a sector of n_sectors begins.
 SineCosine sector_begin(int sector, int n_sectors);
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

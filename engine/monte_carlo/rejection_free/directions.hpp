@@ -12,7 +12,7 @@
 
 // The moves as rejection-free sampling is compiled for them, one type each: the bins of directions,
 // how probability grows with length, and when candidates alone are worth drawing.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Of the polar move: along a direction the length is uniform.
 class PolarDirections {
@@ -85,4 +85,4 @@ class CubicDirections {
   }
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

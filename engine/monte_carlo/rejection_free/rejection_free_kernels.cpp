@@ -5,7 +5,7 @@
 
 #include "engine/bed/elementary.hpp"
 
-namespace jostle::JOSTLE_KERNELS {
+namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
@@ -229,4 +229,4 @@ RejectionFreeKernels rejection_free_kernels() {
   return {linear_bounds, cubic_bounds, candidates};
 }
 
-}  // namespace jostle::JOSTLE_KERNELS
+}  // namespace jostle::inline engine::JOSTLE_KERNELS

@@ -4,7 +4,7 @@
 
 // The vectorised parts of rejection-free sampling: how far a sphere may go in every direction, and
 // the random numbers of candidates. Every instruction set makes the same bits.
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Directions are sorted into rings of the angle from the downward vertical, each cut into sectors
 /// of the azimuth. z counts downward throughout. Metropolis steps want finer bins: there it is the
@@ -85,4 +85,4 @@ namespace avx512 {
 RejectionFreeKernels rejection_free_kernels();
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
 #include "engine/monte_carlo/rejection_free/candidate_sampler.hpp"
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Rejection-free sampling: the loop that looks only at candidates, the trials that the bounds do
 /// not certainly reject. The number of trials up to the next candidate is geometric, so the law of
@@ -33,7 +33,7 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   void store(Packing& packing) const override {
-    if (!sampler_.skipping) return exhaustive_.store(packing);
+    if (!sampler_.active) return exhaustive_.store(packing);
     packing.centres.resize(candidates_.centres().size());
     std::ranges::transform(candidates_.centres(), packing.centres.begin(), unpacked);
   }
@@ -48,11 +48,11 @@ class RejectionFreeLoop final : public TrialLoop {
     while (n_trials > 0) {
       const std::uint64_t piece = std::min(n_trials, until_decision());
       const std::uint64_t accepted_before = tally_.accepted;
-      sampler_.skipping ? try_candidates(piece) : look_at_all(piece);
+      sampler_.active ? try_candidates(piece) : look_at_all(piece);
       tally_.trials += piece;
       n_trials -= piece;
       const std::uint64_t accepted = tally_.accepted - accepted_before;
-      if (sampler_.skipping &&
+      if (sampler_.active &&
           exhaustive_.move().adapt(move_, {.trials = piece, .accepted = accepted})) {
         adapt_to_new_step();
       }
@@ -65,7 +65,7 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   double mean_height() const override {
-    if (!sampler_.skipping) return exhaustive_.mean_height();
+    if (!sampler_.active) return exhaustive_.mean_height();
     double sum = 0;
     for (const PackedCentre& centre : candidates_.centres()) sum += centre.z;
     return sum / static_cast<double>(candidates_.centres().size());
@@ -78,15 +78,13 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   std::uint32_t n_spheres() const override { return exhaustive_.n_spheres(); }
-  const MoveState& state() const override {
-    return sampler_.skipping ? move_ : exhaustive_.state();
-  }
+  const MoveState& state() const override { return sampler_.active ? move_ : exhaustive_.state(); }
   SamplerState sampler_state() const override { return sampler_; }
   void restore(const MoveState& move, const SamplerState& sampler) override {
     exhaustive_.restore(move, {});
     sampler_ = sampler;
     candidates_.forget_batch();
-    if (!sampler_.skipping) return;
+    if (!sampler_.active) return;
     move_ = move;
     candidates_.build(exhaustive_centres(), sampler_.reference_step, move_.step);
   }
@@ -106,8 +104,7 @@ class RejectionFreeLoop final : public TrialLoop {
 
   std::uint64_t until_decision() const {
     const std::uint64_t window = window_sweeps * n_spheres() - sampler_.window_trials;
-    return sampler_.skipping ? std::min(window, exhaustive_.move().until_adaptation(move_))
-                             : window;
+    return sampler_.active ? std::min(window, exhaustive_.move().until_adaptation(move_)) : window;
   }
 
   void look_at_all(std::uint64_t n_trials) {
@@ -123,21 +120,21 @@ class RejectionFreeLoop final : public TrialLoop {
     const double share =
         static_cast<double>(sampler_.window_accepted) / static_cast<double>(sampler_.window_trials);
     sampler_.window_trials = sampler_.window_accepted = 0;
-    if (!sampler_.skipping && share < Directions::least_acceptance) begin_rejection_free();
-    if (sampler_.skipping && share > several * Directions::least_acceptance) look_at_all_again();
+    if (!sampler_.active && share < Directions::least_acceptance) begin_rejection_free();
+    if (sampler_.active && share > several * Directions::least_acceptance) look_at_all_again();
   }
 
   // Hands the centres back to the exhaustive loop, if they are not there.
   void look_at_all_again() {
-    if (!sampler_.skipping) return;
+    if (!sampler_.active) return;
     Packing packing{box_, {}};
     store(packing);
     load(packing);
   }
 
   void be_exhaustive() {
-    if (sampler_.skipping) exhaustive_.restore(move_, {});
-    sampler_.skipping = false;
+    if (sampler_.active) exhaustive_.restore(move_, {});
+    sampler_.active = false;
     sampler_.window_trials = sampler_.window_accepted = 0;
   }
 
@@ -154,7 +151,7 @@ class RejectionFreeLoop final : public TrialLoop {
     sampler_.reference_step = move_.step;
     candidates_.build(exhaustive_centres(), sampler_.reference_step, move_.step);
     if (candidates_.share_of_trials() > most_candidates) return;
-    sampler_.skipping = true;
+    sampler_.active = true;
     draw_candidate(move_.next_trial);
   }
 
@@ -192,4 +189,4 @@ class RejectionFreeLoop final : public TrialLoop {
   TrialTally tally_;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline engine {
 
 /// Draws an index with a probability proportional to its integer weight, in a time that grows with
 /// the logarithm of their number. A function of the weights alone, whatever order they were set in.
@@ -86,4 +86,4 @@ class WeightTree {
   std::uint64_t total_ = 0;
 };
 
-}  // namespace jostle
+}  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -116,4 +116,4 @@ AgeingCurves ageing_curves(const TapRows& rows, const AgeingGrid& grid) {
   return curves;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

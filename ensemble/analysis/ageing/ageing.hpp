@@ -8,7 +8,7 @@
 
 // How an observable forgets: two-time functions of the lag t and the waiting time (age) t_W, both
 // in taps. Where they depend on t_W, the packing ages; in a steady state they depend on t alone.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 struct AgeingGrid {
   std::vector<std::uint64_t> waiting_times;  // t_W, ascending; tap 0 is the start
@@ -48,4 +48,4 @@ struct AgeingCurves {
 /// `rows` holds taps_of(grid), as far as the series goes.
 AgeingCurves ageing_curves(const TapRows& rows, const AgeingGrid& grid);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -5,7 +5,7 @@
 #include "ensemble/analysis/ageing/collapse.hpp"
 #include "ensemble/analysis/ageing/fits.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -187,4 +187,4 @@ Table ageing_table(std::string name, const Column& observable, const TapRows& ro
   return table;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

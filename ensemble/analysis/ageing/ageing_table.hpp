@@ -6,7 +6,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "structure/observables.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// The whole ageing analysis of one observable: A(t, t_W) and C(t, t_W) with errors, fits of eq. 6
 /// with and without a common B, the collapse of A / A_inf against t / tau, tau and A_inf against
@@ -15,4 +15,4 @@ namespace jostle {
 Table ageing_table(std::string name, const Column& observable, const TapRows& rows,
                    const AgeingGrid& grid, int threads = 1);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

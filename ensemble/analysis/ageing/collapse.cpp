@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -42,4 +42,4 @@ Collapse collapse(std::span<const ScaledCurve> curves) {
   return {std::sqrt(differences / squares), n};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// A curve y(x), x > 0 ascending.
 struct ScaledCurve {
@@ -22,4 +22,4 @@ struct Collapse {
 /// NaN and no comparisons where no curve spans a point of another.
 Collapse collapse(std::span<const ScaledCurve> curves);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,8 +10,9 @@
 
 #include "ensemble/analysis/ageing/law.hpp"
 #include "ensemble/parallel.hpp"
+#include "fitting/solver/decompositions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -87,7 +87,7 @@ void for_each(int threads, std::size_t n, const std::function<void(std::size_t)>
 std::vector<double> scaled_errors(const AgeingLeastSquares& fit) {
   const LogCurves& curves = fit.curves();
   const Eigen::MatrixXd slopes = fit.slopes(fit.best());
-  const Eigen::MatrixXd parameters = slopes.colPivHouseholderQr().solve(curves.influences);
+  const Eigen::MatrixXd parameters = least_squares_of_columns(slopes, curves.influences);
   const auto m = static_cast<double>(curves.influences.cols());
   std::vector<double> errors;
   for (std::size_t k = 0; k < curves.size(); ++k) {
@@ -180,4 +180,4 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   return fits;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -9,7 +9,7 @@
 
 // Eq. 6 of Philippe & Bideau 2001, A(t) = A_inf (1 - 1/(1 + B ln(1 + t/tau))), fitted to ageing
 // curves. It is empirical: it starts like t, and in a steady state A is 2 sigma^2 (1 - C(t)).
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// The law at one waiting time. An end of an interval without a limit is infinite, or 0.
 struct AgeingLaw {
@@ -46,4 +46,4 @@ AgeingLaw own_law(const LogCurves& curve);
 /// does not depend on the number of threads.
 AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads = 1);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -1,14 +1,14 @@
 #include "ensemble/analysis/ageing/law.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
+#include "fitting/solver/decompositions.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -36,7 +36,7 @@ Eigen::MatrixXd without_column(const Eigen::MatrixXd& matrix, std::size_t column
 }  // namespace
 
 Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others) {
-  return column - others * others.colPivHouseholderQr().solve(column);
+  return column - others * least_squares(others, column);
 }
 
 double ln_eq_6(double lag, double ln_b, double ln_tau) {
@@ -141,11 +141,11 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
     const Eigen::MatrixXd j = slopes(at);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());
     if (held) {
-      const Eigen::VectorXd others = without_column(j, *held).colPivHouseholderQr().solve(off);
+      const Eigen::VectorXd others = least_squares(without_column(j, *held), off);
       const auto h = static_cast<Eigen::Index>(*held);
       change << others.head(h), 0, others.tail(others.size() - h);
     } else {
-      change = j.colPivHouseholderQr().solve(off);
+      change = least_squares(j, off);
     }
     Eigen::VectorXd next = at;
     for (std::size_t p = 0; p <= b(); ++p) {
@@ -245,4 +245,4 @@ LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {
           std::exp(ends[1][1])};
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -11,7 +11,7 @@
 // Eq. 6 of Philippe & Bideau 2001, A(t) = A_inf (1 - 1/(1 + B ln(1 + t/tau))), by least squares of
 // ln A, all lags alike, for one or several curves with one B. Lags of a path are not independent:
 // what is said of errors rests on realizations alone.
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// ln(1 - 1/(1 + B ln(1 + t/tau))).
 double ln_eq_6(double lag, double ln_b, double ln_tau);
@@ -68,4 +68,4 @@ class AgeingLeastSquares {
 /// least squares on them.
 Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 constexpr std::size_t fewest_lags = 4;  // one more than the law has parameters
@@ -71,4 +71,4 @@ LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
   return curves;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

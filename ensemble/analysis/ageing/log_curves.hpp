@@ -7,7 +7,7 @@
 #include "ensemble/analysis/ageing/ageing.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// ln A of some waiting times at their lags, one curve after another.
 struct LogCurves {
@@ -31,4 +31,4 @@ LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
 /// Standard error of the sum over points of weights times ln A, by the jackknife over realizations.
 ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 namespace {
 
@@ -107,4 +107,4 @@ AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
   return found;
 }
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -4,7 +4,7 @@
 
 #include "ensemble/analysis/ageing/law.hpp"
 
-namespace jostle {
+namespace jostle::inline ensemble {
 
 /// The factor by which something changes from the first waiting time to the last, its logarithm in
 /// equal steps from one waiting time to the next, by Student's t over realizations.
@@ -24,4 +24,4 @@ AgeTrend trend_of_a(const LogCurves& curves);
 /// one another only where there is none.
 AgeTrend trend_of_b(const AgeingLeastSquares& fit);
 
-}  // namespace jostle
+}  // namespace jostle::inline ensemble

@@ -10,7 +10,7 @@
 namespace jostle {
 namespace {
 
-Packing made(const Start& start, const FullyPeriodicBox& box, std::uint32_t n) {
+Packing packing_of(const Start& start, const FullyPeriodicBox& box, std::uint32_t n) {
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   return make_start(start, box, n, random);
 }
@@ -49,10 +49,10 @@ TEST_CASE("Grown spheres fill the box without overlap and without crystalline or
   constexpr std::uint32_t n = 500;
   // The measure tells a crystal from a fluid: a perfect fcc cube of the same number of spheres.
   const double side = 5 * std::sqrt(2.0);
-  CHECK(strongest_order(made(Crystal{Lattice::fcc, true}, {side, side, side}, 490)) > 0.3);
+  CHECK(strongest_order(packing_of(Crystal{Lattice::fcc, true}, {side, side, side}, 490)) > 0.3);
   for (const double fraction : {0.30, 0.49, 0.60}) {
     CAPTURE(fraction);
-    const Packing packing = made(Grow{}, cube(n, fraction), n);
+    const Packing packing = packing_of(Grow{}, cube(n, fraction), n);
     CHECK(packing.centres.size() == n);
     CHECK(deepest_overlap_brute_force(packing).depth == 0);
     CHECK(strongest_order(packing) < 0.1);
@@ -60,13 +60,13 @@ TEST_CASE("Grown spheres fill the box without overlap and without crystalline or
 }
 
 TEST_CASE("A box too full to grow in is refused, and growing never hangs") {
-  CHECK_THROWS_WITH(made(Grow{}, cube(200, 0.65), 200), Catch::Contains("0.64"));
-  CHECK_THROWS_WITH(made(Grow{.max_sweeps = 10}, cube(200, 0.6), 200),
+  CHECK_THROWS_WITH(packing_of(Grow{}, cube(200, 0.65), 200), Catch::Contains("0.64"));
+  CHECK_THROWS_WITH(packing_of(Grow{.max_sweeps = 10}, cube(200, 0.6), 200),
                     Catch::Contains("did not reach diameter 1 in 10 sweeps"));
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   CHECK_THROWS_WITH(make_start(Grow{}, PeriodicBox{}, 10, random),
                     Catch::Contains("fully_periodic container only"));
-  CHECK(made(Grow{}, FullyPeriodicBox{2.01, 2.01, 2.01}, 4).centres.size() == 4);
+  CHECK(packing_of(Grow{}, FullyPeriodicBox{2.01, 2.01, 2.01}, 4).centres.size() == 4);
 }
 
 }  // namespace jostle

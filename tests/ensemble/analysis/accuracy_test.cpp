@@ -44,15 +44,15 @@ TEST_CASE("A growth is the change of the pairs' differences, judged by Student's
   CHECK_FALSE(bias_growth(before, before, after, after).is_seen());
 }
 
-TEST_CASE("A bias that does not grow is called growing one time in twenty, with any rounds") {
+TEST_CASE("A bias that does not grow is called growing one time in twenty, with any replicates") {
   RandomStream random = test_stream(23);
   constexpr int repetitions = 4000;
-  for (const std::size_t rounds : {2u, 3u, 4u, 10u}) {
+  for (const std::size_t replicates : {2u, 3u, 4u, 10u}) {
     int alarms = 0, missed = 0;
     for (int k = 0; k < repetitions; ++k) {
       // Beds differ more than settings; a bias of 0.3 from the first tap on.
       std::vector<double> early, early_reference, late, late_reference, grown;
-      for (std::size_t r = 0; r < rounds; ++r) {
+      for (std::size_t r = 0; r < replicates; ++r) {
         const double bed = 10 * noise(random);
         early_reference.push_back(bed + noise(random));
         late_reference.push_back(bed + 2 + noise(random));
@@ -64,10 +64,10 @@ TEST_CASE("A bias that does not grow is called growing one time in twenty, with 
       missed += !bias_growth(early, early_reference, grown, late_reference).is_seen();
     }
     const double rate = static_cast<double>(alarms) / repetitions;
-    CAPTURE(rounds, rate, missed);
+    CAPTURE(replicates, rate, missed);
     CHECK(std::abs(rate - 0.05) <= 3 * std::sqrt(0.05 * 0.95 / repetitions));
-    // What is 15 deviations of a difference is seen even with three rounds.
-    if (rounds > 2) CHECK(missed < repetitions / 100);
+    // What is 15 deviations of a difference is seen even with three replicates.
+    if (replicates > 2) CHECK(missed < repetitions / 100);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("The error of what a ladder lacks is its deviation between ensembles")
 }
 
 TEST_CASE("The cheapest setting trades bias against realizations") {
-  const std::vector<Setting> settings = {
+  const std::vector<SettingCost> settings = {
       {.bias = 0.003, .bias_error = 0, .sigma = 0.01, .realization_seconds = 1},
       {.bias = 0, .bias_error = 0, .sigma = 0.01, .realization_seconds = 3},
       {.bias = 0.02, .bias_error = 0, .sigma = 0.01, .realization_seconds = 0.1}};
@@ -123,12 +123,12 @@ TEST_CASE("The cheapest setting trades bias against realizations") {
   REQUIRE(fine);
   CHECK(fine->setting == 1);
   CHECK(fine->realizations == 11);
-  CHECK_FALSE(cheapest(std::vector<Setting>{settings[2]}, 0.02));
+  CHECK_FALSE(cheapest(std::vector<SettingCost>{settings[2]}, 0.02));
 }
 
 TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Setting> settings = {
+  const std::vector<SettingCost> settings = {
       {.bias = 0.001, .bias_error = unknown, .sigma = 0.01, .realization_seconds = 1},
       {.bias = 0.001, .bias_error = 0.002, .sigma = 0, .realization_seconds = 1}};
   CHECK_FALSE(cheapest(settings, 0.003));
@@ -137,10 +137,10 @@ TEST_CASE("A bias that is not known is no choice, and its error counts as bias")
 }
 
 TEST_CASE("The front holds what is neither slower nor worse") {
-  const std::vector<Setting> settings = {{.bias = 0.01, .realization_seconds = 1},
-                                         {.bias = -0.02, .realization_seconds = 2},
-                                         {.bias = 0.001, .realization_seconds = 5},
-                                         {.bias = 0, .realization_seconds = 9}};
+  const std::vector<SettingCost> settings = {{.bias = 0.01, .realization_seconds = 1},
+                                             {.bias = -0.02, .realization_seconds = 2},
+                                             {.bias = 0.001, .realization_seconds = 5},
+                                             {.bias = 0, .realization_seconds = 9}};
   CHECK(pareto_front(settings) == std::vector<std::uint64_t>{1, 0, 1, 1});
 }
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -279,24 +277,4 @@ TEST_CASE("a link that another user planted where everybody may write is not fol
   CHECK_THROWS_WITH(end_of_links(path), Contains("another user"));
   CHECK_THROWS_WITH(publish(path, bytes_of("new")), Contains("is a link"));
   CHECK(text_of(folder / "victim") == "mine\n");
-}
-
-TEST_CASE("a lock whose owner has ended is dead, though nobody reaped it") {
-  const TemporaryFolder folder;
-  const std::string path = folder / "a.h5";
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const RunLock lock(path, false);
-    ::kill(::getpid(), SIGKILL);
-  }
-  siginfo_t ended;
-  REQUIRE(::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) == 0);  // a zombie
-  REQUIRE(lock_owner(path));
-  CHECK(lock_owner(path)->pid == child);
-  CHECK_FALSE(lock_owner(path)->alive);
-  {
-    const RunLock lock(path, false);
-    CHECK(lock_owner(path)->pid == ::getpid());
-  }
-  ::waitpid(child, nullptr, 0);
 }

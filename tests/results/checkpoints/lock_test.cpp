@@ -76,7 +76,8 @@ TEST_CASE("the lock of a living process that flock does not show is respected") 
   CHECK_NOTHROW(RunLock(path, false));
 }
 
-TEST_CASE("a killed owner leaves a lock that the next process takes over") {
+TEST_CASE("a killed owner leaves a lock that the next process takes over, reaped or a zombie") {
+  const bool reaped = GENERATE(true, false);
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
   const pid_t child = ::fork();
@@ -84,12 +85,16 @@ TEST_CASE("a killed owner leaves a lock that the next process takes over") {
     const RunLock lock(path, false);
     ::kill(::getpid(), SIGKILL);
   }
-  ::waitpid(child, nullptr, 0);
+  siginfo_t ended;
+  REQUIRE(::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | (reaped ? 0 : WNOWAIT)) == 0);
   REQUIRE(lock_owner(path));
   CHECK(lock_owner(path)->pid == child);
   CHECK_FALSE(lock_owner(path)->alive);
-  const RunLock lock(path, false);
-  CHECK(lock_owner(path)->pid == ::getpid());
+  {
+    const RunLock lock(path, false);
+    CHECK(lock_owner(path)->pid == ::getpid());
+  }
+  if (!reaped) ::waitpid(child, nullptr, 0);
 }
 
 TEST_CASE("the lock of another host is taken over by force only") {

@@ -55,7 +55,7 @@ void relax_and_measure(TrialLoop& loop, const Packing& excited, const Course& co
 void compare_taps(Packing bed, const Course& course, int taps) {
   TapSamples exhaustive, rejection_free;
   const auto all = loop_of(bed, course.move, Sampler::exhaustive, 1);
-  const auto few = loop_of(bed, course.move, Sampler::skipping, 1);
+  const auto few = loop_of(bed, course.move, Sampler::rejection_free, 1);
   const auto chain = loop_of(bed, course.move, Sampler::exhaustive, 2);
   RandomStream random(stream_key(72, 0, 0, Purpose::tap));
   for (int tap = 0; tap < taps; ++tap) {
@@ -101,7 +101,7 @@ StepSamples steps_from(const Packing& bed, const Move& move, Sampler sampler, in
     loop->load(bed);
     loop->begin_tap();
     loop->run(25 * n);
-    if (sampler == Sampler::skipping) REQUIRE(loop->sampler_state().skipping);
+    if (sampler == Sampler::rejection_free) REQUIRE(loop->sampler_state().active);
     Packing before = bed, after = bed;
     loop->store(before);
     loop->run(20 * n);
@@ -155,7 +155,7 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: accept
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
     const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
     const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 5000);
-    const StepSamples rejection_free = steps_from(bed, move, Sampler::skipping, 5000);
+    const StepSamples rejection_free = steps_from(bed, move, Sampler::rejection_free, 5000);
     CHECK(exhaustive.length.size() > 1000);
     check_same_law("length", exhaustive.length, rejection_free.length);
     check_same_law("fall", exhaustive.fall, rejection_free.fall);

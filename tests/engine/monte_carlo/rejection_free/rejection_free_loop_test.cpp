@@ -13,7 +13,7 @@ const StreamKey key = stream_key(61, 0, 0, Purpose::trials);
 
 std::unique_ptr<TrialLoop> rejection_free_loop(const Packing& packing, const Move& move,
                                                InstructionSet set = best_instruction_set()) {
-  auto loop = make_trial_loop(packing.container, move, key, set, Sampler::skipping);
+  auto loop = make_trial_loop(packing.container, move, key, set, Sampler::rejection_free);
   loop->load(packing);
   loop->begin_tap();
   return loop;
@@ -43,7 +43,7 @@ TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
       loop->run(trials);
       const Packing end = stored(*loop, start);
       CHECK(deepest_overlap_brute_force(end).depth == 0);
-      CHECK(loop->sampler_state().skipping);
+      CHECK(loop->sampler_state().active);
       CHECK(loop->state().next_trial == trials);
       CHECK(loop->tally().trials == trials);
       CHECK(loop->tally().candidates > 100);
@@ -66,7 +66,7 @@ TEST_CASE("rejection-free sampling does not depend on how trials are split over 
       sliced->run(piece);
       done += piece;
     }
-    REQUIRE(straight->sampler_state().skipping);
+    REQUIRE(straight->sampler_state().active);
     CHECK(stored(*straight, start).centres == stored(*sliced, start).centres);
     CHECK(straight->state() == sliced->state());
     CHECK(straight->sampler_state() == sliced->sampler_state());
@@ -81,8 +81,8 @@ TEST_CASE("rejection-free sampling resumed from its state goes on bit for bit") 
     bool skipped = false;
     for (const std::uint64_t trials : {1'000, 3'333, 100'000, 300'001, 77'777}) {
       straight->run(trials);
-      const auto resumed =
-          make_trial_loop(start.container, move, key, best_instruction_set(), Sampler::skipping);
+      const auto resumed = make_trial_loop(start.container, move, key, best_instruction_set(),
+                                           Sampler::rejection_free);
       resumed->load(stored(*straight, start));
       resumed->restore(straight->state(), straight->sampler_state());
       straight->run(50'000);
@@ -136,7 +136,7 @@ TEST_CASE("a rejection-free relaxation, cut into slices, takes the same course t
       excite(packing, Dilate{0.02}, random);
       loop->load(packing);
       loop->begin_tap();
-      CHECK_FALSE(loop->sampler_state().skipping);
+      CHECK_FALSE(loop->sampler_state().active);
     }
     return heights;
   };
@@ -156,7 +156,7 @@ TEST_CASE("a lone sphere on the floor stays there") {
 
 TEST_CASE("rejection-free sampling is an error where trials may rise") {
   const auto make = [](const Container& container, const Move& move) {
-    make_trial_loop(container, move, key, best_instruction_set(), Sampler::skipping);
+    make_trial_loop(container, move, key, best_instruction_set(), Sampler::rejection_free);
   };
   CHECK_THROWS_WITH(make(FullyPeriodicBox{}, MetropolisMove{}), Catch::Contains("without gravity"));
   CHECK_THROWS_WITH(make(PeriodicBox{}, MetropolisMove{0.1, 3.0}), Catch::Contains("finite beta"));

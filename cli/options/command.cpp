@@ -1,0 +1,186 @@
+#include "cli/options/command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace jostle::inline cli {
+
+namespace {
+
+/// The parser's own checks wrap negative numbers, and print ranges in 309 digits.
+std::string whole_number_fault(const std::string& text, std::uint64_t least) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec == std::errc() && read.ptr == end && value >= least) return {};
+  return fmt::format("{} is not a whole number from {} on", text, least);
+}
+
+std::string positive_number_fault(const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec == std::errc() && read.ptr == end && std::isfinite(value) && value > 0) return {};
+  return fmt::format("{} is not a number above 0", text);
+}
+
+std::string file_name_fault(const std::string& text) {
+  if (!text.empty() && text != "-") return {};
+  return fmt::format("\"{}\" is no file's name", text);
+}
+
+}  // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::environment(const std::string& variable) {
+  option_->envname(variable);
+  return *this;
+}
+
+Option& Option::separated_by(char character) {
+  option_->delimiter(character);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option& Option::between(int least, int most) {
+  option_->check(CLI::Range(least, most));
+  return *this;
+}
+
+Option& Option::whole_from(std::uint64_t least) {
+  return check([least](const std::string& text) { return whole_number_fault(text, least); }, "");
+}
+
+Option& Option::positive_number() {
+  return check(positive_number_fault, "");
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+  option_->check(CLI::IsMember(words));
+  return *this;
+}
+
+Option& Option::existing_file() {
+  option_->check(CLI::ExistingFile);
+  return *this;
+}
+
+Option& Option::file_to_write() {
+  return check(file_name_fault, "");
+}
+
+Option& Option::check(std::function<std::string(const std::string& text)> fault,
+                      const std::string& type) {
+  option_->check(CLI::Validator(std::move(fault), type));
+  return *this;
+}
+
+std::size_t Option::count() const {
+  return option_->count();
+}
+
+Command Command::add_command(const std::string& name, const std::string& description) {
+  return Command(*app_->add_subcommand(name, description));
+}
+
+template <class T>
+Option Command::add_option(const std::string& name, T& value, const std::string& description) {
+  return Option(*app_->add_option(name, value, description));
+}
+
+template <class T>
+Option Command::add_hidden_option(const std::string& name, T& value) {
+  return Option(*app_->add_option(name, value)->group(""));
+}
+
+#define JOSTLE_OPTION_OF(T)                                                        \
+  template Option Command::add_option(const std::string&, T&, const std::string&); \
+  template Option Command::add_hidden_option(const std::string&, T&)
+JOSTLE_OPTION_OF(std::string);
+JOSTLE_OPTION_OF(int);
+JOSTLE_OPTION_OF(std::uint32_t);
+JOSTLE_OPTION_OF(std::uint64_t);
+JOSTLE_OPTION_OF(double);
+JOSTLE_OPTION_OF(std::optional<double>);
+JOSTLE_OPTION_OF(std::vector<std::string>);
+JOSTLE_OPTION_OF(std::vector<std::uint64_t>);
+#undef JOSTLE_OPTION_OF
+
+Option Command::add_flag(const std::string& name, bool& value, const std::string& description) {
+  return Option(*app_->add_flag(name, value, description));
+}
+
+Option Command::add_flag(const std::string& name, std::function<void()> if_given,
+                         const std::string& description) {
+  return Option(*app_->add_flag_callback(name, std::move(if_given), description));
+}
+
+Option Command::add_reader(const std::string& name,
+                           std::function<void(const std::string& text)> read,
+                           const std::string& description) {
+  const std::function<void(const std::string&)> parse =
+      [name, read = std::move(read)](const std::string& text) {
+        try {
+          read(text);
+        } catch (const BadValue& fault) {
+          throw CLI::ValidationError(name, fault.what());
+        }
+      };
+  return Option(*app_->add_option_function(name, parse, description));
+}
+
+void Command::add_threads(int& threads, const std::string& description) {
+  add_option("--threads", threads, description).between(1, 4096).environment("JOSTLE_THREADS");
+}
+
+void Command::footer(const std::string& text) {
+  app_->footer(text);
+}
+
+void Command::run(std::function<void()> act) {
+  app_->callback(std::move(act));
+}
+
+void Command::require_command() {
+  app_->require_subcommand(1);
+}
+
+void Command::fall_through() {
+  app_->fallthrough();
+}
+
+std::string Command::name() const {
+  return app_->get_name();
+}
+
+bool Command::has_option(const std::string& name) const {
+  return app_->get_option_no_throw(name) != nullptr;
+}
+
+std::size_t Command::count(const std::string& option) const {
+  return app_->count(option);
+}
+
+std::vector<std::string> Command::hidden_options_given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : std::as_const(*app_).get_options())
+    if (option->count() > 0 && option->get_group().empty())
+      names.push_back("--" + option->get_single_name());
+  return names;
+}
+
+}  // namespace jostle::inline cli

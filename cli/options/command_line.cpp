@@ -1,0 +1,95 @@
+#include "cli/options/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+#include <vector>
+
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
+#include "study/bad_input.hpp"
+
+namespace jostle::inline cli {
+
+namespace {
+
+/// Has every option that holds unsigned numbers, of all commands, refuse negative ones.
+void refuse_negative_counts(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().starts_with("UINT")) Option(*option).whole_from(0);
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_negative_counts(*command);
+}
+
+std::string unknown_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (!app.get_subcommands().empty() || words.empty() || words.front().starts_with('-')) return {};
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return fmt::format("{}: there is no such command; there are {}.{}", words.front(),
+                     joined(names, ", "), did_you_mean(words.front(), names));
+}
+
+/// "jostle analyse steady", as far as the command line was understood; and its options.
+struct Understood {
+  std::string command;
+  std::vector<std::string> options;
+};
+Understood understood(const CLI::App& app) {
+  Understood all{app.get_name(), {}};
+  const CLI::App* here = &app;
+  while (!here->get_subcommands().empty()) {
+    here = here->get_subcommands().front();
+    all.command += " " + here->get_name();
+    for (const CLI::Option* option : here->get_options()) {
+      for (const std::string& name : option->get_lnames()) all.options.push_back("--" + name);
+    }
+  }
+  return all;
+}
+
+/// For a command line that could not be read: a word that should be a command, or an option that
+/// its command does not have, with those there are or the nearest of them. Empty for others.
+std::string unknown_word(const CLI::App& app) {
+  const std::string command = unknown_command(app);
+  if (!command.empty()) return command;
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("--") || word.size() < 3) continue;
+    const std::string option = word.substr(0, word.find('='));
+    const Understood known = understood(app);
+    return fmt::format("{}: {} has no such option; its --help lists them.{}", option, known.command,
+                       did_you_mean(option, known.options));
+  }
+  return {};
+}
+
+}  // namespace
+
+CommandLine::CommandLine(const std::string& name, const std::string& description)
+    : app_(std::make_unique<CLI::App>(description, name)) {}
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::program() {
+  return Command(*app_);
+}
+
+void CommandLine::set_version(const std::string& text) {
+  app_->set_version_flag("--version", text);
+}
+
+CommandLine::Outcome CommandLine::parse_and_run(int argc, char** argv) {
+  refuse_negative_counts(*app_);
+  try {
+    app_->parse(argc, argv);
+    return {};
+  } catch (const CLI::ParseError& error) {
+    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(*app_);
+    if (!unknown.empty()) throw BadInput(unknown);
+    std::ostringstream asked_for, fault;
+    const bool refused = app_->exit(error, asked_for, fault) != 0;
+    return {.asked_for = asked_for.str(), .fault = fault.str(), .refused = refused};
+  }
+}
+
+}  // namespace jostle::inline cli

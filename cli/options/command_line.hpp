@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cli/options/command.hpp"
+
+namespace jostle::inline cli {
+
+/// The whole command line of the program.
+class CommandLine {
+ public:
+  CommandLine(const std::string& name, const std::string& description);
+  ~CommandLine();
+
+  Command program();
+  void set_version(const std::string& text);
+
+  /// What is to be printed instead of running a command; empty where one was run.
+  struct Outcome {
+    std::string asked_for;  // a help or the version
+    std::string fault;      // what is wrong
+    bool refused = false;
+  };
+  /// Reads the words and runs the command that they name. Throws BadInput for unknown words, and
+  /// what the command throws.
+  Outcome parse_and_run(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace jostle::inline cli

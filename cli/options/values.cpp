@@ -1,0 +1,42 @@
+#include "cli/options/values.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "study/bad_input.hpp"
+
+namespace jostle::inline cli {
+
+namespace {
+
+double read_end(const std::string& text, double otherwise, const std::string& option,
+                const std::string& range) {
+  if (text.empty()) return otherwise;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || std::isnan(value)) {
+    throw BadInput(
+        fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left "
+                    "out",
+                    option, range));
+  }
+  return value;
+}
+
+}  // namespace
+
+FitRange read_range(const std::string& option, const std::string& text) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto colon = text.find(':');
+  const std::string first = text.substr(0, colon);
+  const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
+  const FitRange range{read_end(first, -infinite, option, text),
+                       read_end(last, infinite, option, text)};
+  if (range.first <= range.last) return range;
+  throw BadInput(fmt::format("{} {}: FIRST:LAST, and no number is so", option, text));
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,188 @@
+#include "cli/reports/cost_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "cli/reports/durations.hpp"
+#include "cli/reports/text_table.hpp"
+#include "ensemble/statistics/counted.hpp"
+
+namespace jostle::inline cli {
+
+namespace {
+
+std::string with_error(double value, double error) {
+  if (!(error > 0)) return fmt::format("{:+.4g}", value);
+  const int decimals = decimals_for(error);
+  return fmt::format("{:+.{}f} +- {:.{}f}", value, decimals, error, decimals);
+}
+
+std::string core_time(double seconds) {
+  if (seconds < 3600) return format_duration(Seconds(seconds)) + " of core time";
+  return fmt::format("{:.3g} core-hours", seconds / 3600);
+}
+
+std::string rows(const CostStudy& study, const CostOfObservable& cost) {
+  TextTable table({"setting", "bias", "pairing gains", "sweeps/tap", "s/tap", "realization", ""});
+  const auto front = pareto_front(cost.setting_costs);
+  for (std::size_t p = 0; p < study.settings().size(); ++p) {
+    const PairedBias& bias = cost.biases[p];
+    const bool reference = p == study.reference().last;
+    const double gain = bias.variance_reduction;
+    table.add({study.settings()[p].name,
+               reference ? "0, the reference" : with_error(bias.bias, bias.error),
+               reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
+               fmt::format("{:.0f}", study.times()[p].sweeps),
+               fmt::format("{:.3g}", study.times()[p].tap_seconds),
+               format_duration(Seconds(study.realization_seconds(p))),
+               front[p] != 0 ? "front" : ""});
+  }
+  return table.text();
+}
+
+/// What failed, with the first reason of each setting, and the settings of which it is so.
+std::string failures(const CostStudy& study) {
+  std::map<std::string, std::string> settings;
+  for (std::size_t p = 0; p < study.settings().size(); ++p) {
+    const auto is_here = [p](const RealizationSummary& one) { return one.id.point == p; };
+    const auto n = std::ranges::count_if(study.failed(), is_here);
+    if (n == 0) continue;
+    std::string& names = settings[fmt::format(
+        "{} of {} replicates failed, and are not in the numbers: {}", n, study.replicates(),
+        std::ranges::find_if(study.failed(), is_here)->reason)];
+    names.append(names.empty() ? "" : ", ").append(study.settings()[p].name);
+  }
+  std::string text;
+  for (const auto& [what, names] : settings) text += what + "\n  (" + names + ")\n";
+  return text;
+}
+
+/// A reference that ends its relaxations before a rougher setting does is none.
+std::string doubt_of_the_reference(const CostStudy& study) {
+  const double sweeps = study.times()[study.reference().last].sweeps;
+  for (std::size_t p = 0; p < study.settings().size(); ++p) {
+    const PilotSetting& setting = study.settings()[p];
+    if (setting.part != PilotSetting::Part::scene && setting.part != PilotSetting::Part::stop)
+      continue;
+    if (!(study.times()[p].sweeps > 1.1 * sweeps)) continue;
+    return fmt::format(
+        "DOUBTFUL: the reference takes {:.0f} sweeps a tap, and \"{}\" takes {:.0f}. It does not "
+        "relax more completely, and biases against it mean little: does its step die away "
+        "(\"reset_each_tap\": false), or are relaxations capped (\"max_sweeps\")?\n",
+        sweeps, setting.name, study.times()[p].sweeps);
+  }
+  return "";
+}
+
+std::string shortfall_of_the_reference(const CostOfObservable& cost) {
+  const PairedBias& step = cost.last_step;
+  const std::string text =
+      fmt::format("The step to the most complete setting: {}; ", with_error(step.bias, step.error));
+  if (!is_seen(step)) return text + "what it may itself lack is below what these replicates see.\n";
+  if (!std::isfinite(cost.remainder.error)) {
+    return text +
+           "steps are not seen to shrink, so that it may itself be short by more than this step.\n";
+  }
+  return text + fmt::format("if steps go on to shrink, it is itself short by {}.\n",
+                            with_error(cost.remainder.value, cost.remainder.error));
+}
+
+/// Whether more taps would change the bias of the scene's own setting.
+std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& cost) {
+  const std::string taps = fmt::format("tap {} of {}", study.pilot_taps(), study.taps());
+  if (cost.growths.empty() || !std::isfinite(cost.growths.front().least_seen) ||
+      study.reference().last == 0) {
+    return study.pilot_taps() < study.taps()
+               ? fmt::format("Biases are those after {}: they may grow with further taps.\n", taps)
+               : "";
+  }
+  const Growth& growth = cost.growths.front();
+  const double now = cost.biases.front().bias, before = now - growth.change.bias;
+  const std::string text =
+      fmt::format("Biases are those after {}. Since tap {} the scene's changed by {}: ", taps,
+                  study.middle_tap(), with_error(growth.change.bias, growth.change.error));
+  if (!growth.is_seen()) {
+    return text + fmt::format("no change is seen, and one below {:.2g} could not be (95 %).\n",
+                              growth.least_seen);
+  }
+  return text + fmt::format("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
+                            std::abs(now) > std::abs(before) ? "still grows" : "shrinks",
+                            growth.tails, growth.change.pairs);
+}
+
+std::string other_windows_line(const CostOfObservable& cost) {
+  std::string text;
+  for (const WindowEffect& one : cost.windows) {
+    text += text.empty() ? "Read through other windows, the same beds differ by " : "; ";
+    text += fmt::format("{} ({})", with_error(one.difference.bias, one.difference.error), one.name);
+  }
+  return text.empty() ? "" : text + ".\n";
+}
+
+std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
+  const auto choice = cheapest(cost.setting_costs, target);
+  const std::string& name = cost.label.name;
+  if (!choice) {
+    return fmt::format(
+        "For an error of {:g} in {} no setting will do: the least |bias| with its error is above "
+        "it.\nMore replicates make errors of biases smaller.\n",
+        target, name);
+  }
+  return fmt::format("For an error of {:g} in {} at tap {}: {}, {}, about {}.\n", target, name,
+                     study.taps(), study.settings()[choice->setting].name,
+                     counted(choice->realizations, "realization"), core_time(choice->core_seconds));
+}
+
+}  // namespace
+
+std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
+                      std::uint32_t scene_realizations, std::optional<double> target) {
+  const SettingCost& own = cost.setting_costs.front();
+  if (std::isnan(own.realization_seconds))
+    return failures(study);  // every replicate of the scene's own
+  std::string text =
+      fmt::format("{}: after {} tap{}, {} replicates, against {}\n{}", cost.label.name,
+                  study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
+                  study.settings()[study.reference().last].name, rows(study, cost));
+  text += fmt::format(
+      "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
+      "{} taps.\n",
+      with_error(own.bias, own.bias_error),
+      own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
+      scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
+      study.taps());
+  text += shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study);
+  text += growth_of_the_bias(study, cost) + other_windows_line(cost);
+  if (target) text += advice(study, cost, *target);
+  return text;
+}
+
+std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
+                        std::uint32_t scene_realizations, const std::string& image) {
+  std::string data;
+  for (std::size_t p = 0; p < study.settings().size(); ++p) {
+    if (p == study.reference().last) continue;
+    const SettingCost& setting = cost.setting_costs[p];
+    if (std::isnan(setting.bias)) continue;
+    data += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} \"{}\"\n", setting.realization_seconds,
+                        std::abs(setting.bias), setting.bias_error,
+                        total_error(setting, scene_realizations), study.settings()[p].name);
+  }
+  return fmt::format(
+      "# |bias| of {0} after tap {1}, against {2}, and the total error with {3} realizations.\n"
+      "$settings << END\n{4}END\n"
+      "set terminal svg size 800,600\nset output '{5}'\nset logscale xy\n"
+      "set xlabel 'core time of a realization, s'\nset ylabel 'error of {0}' noenhanced\n"
+      "set key outside bottom\n"
+      "plot $settings using 1:2:3 with yerrorbars pointtype 7 title '|bias|', \\\n"
+      "     $settings using 1:4 with points pointtype 4 title 'with the statistical error of {3} "
+      "realizations', \\\n"
+      "     $settings using 1:2:5 with labels offset 0,1 font ',9' noenhanced notitle\n",
+      cost.label.name, study.pilot_taps(), study.settings()[study.reference().last].name,
+      scene_realizations, data, image);
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "study/cost/cost_study.hpp"
+
+namespace jostle::inline cli {
+
+/// For people: a line a setting for one observable, what the scene's own setting gives with so many
+/// realizations, and, with a target, the cheapest way to it.
+std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
+                      std::uint32_t scene_realizations, std::optional<double> target);
+
+/// A gnuplot script, data included, that draws |bias| and the total error of each setting against
+/// the core time of a realization into `image` (SVG).
+std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
+                        std::uint32_t scene_realizations, const std::string& image);
+
+}  // namespace jostle::inline cli

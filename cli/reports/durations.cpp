@@ -1,0 +1,56 @@
+#include "cli/reports/durations.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace jostle::inline cli {
+namespace {
+
+constexpr std::pair<std::string_view, double> units[] = {
+    {"ms", 1e-3}, {"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86400}};
+
+/// Takes the unit at the front of `text`; nothing for an unknown one.
+std::optional<double> take_unit(std::string_view& text) {
+  for (const auto& [name, seconds] : units) {
+    if (!text.starts_with(name)) continue;
+    text.remove_prefix(name.size());
+    return seconds;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<Seconds> parse_duration(std::string_view text) {
+  if (text.empty()) return {};
+  double total = 0;
+  while (!text.empty()) {
+    double number = 0;
+    const auto [end, error] =
+        std::from_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed);
+    if (error != std::errc{} || !std::isfinite(number) || std::signbit(number)) return {};
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) return Seconds(total + number);
+    const auto unit = take_unit(text);
+    if (!unit) return {};
+    total += number * *unit;
+  }
+  return Seconds(total);
+}
+
+std::string format_duration(Seconds duration) {
+  const double seconds = duration.count();
+  if (!std::isfinite(seconds)) return "unknown";
+  if (seconds < 0.9995) return fmt::format("{:.0f} ms", seconds * 1e3);
+  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  if (whole < 86400) return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+  return fmt::format("{} d {} h", whole / 86400, whole % 86400 / 3600);
+}
+
+}  // namespace jostle::inline cli

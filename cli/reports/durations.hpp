@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "study/seconds.hpp"
+
+namespace jostle::inline cli {
+
+/// "90", "90s", "1.5h", "1h30m", "2d": numbers with the units ms, s, m, h, d, summed; without a
+/// unit, seconds. Nothing for anything else, negative numbers included.
+std::optional<Seconds> parse_duration(std::string_view text);
+
+/// For people, two units at most: "850 ms", "42 s", "3 min 10 s", "5 h 12 min", "2 d 4 h".
+std::string format_duration(Seconds duration);
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,63 @@
+#include "cli/reports/effects.hpp"
+
+#include <fmt/format.h>
+
+namespace jostle::inline cli {
+namespace {
+
+/// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
+std::string in_words(const Json& value) {
+  if (value.is_string()) return value.text();
+  if (!value.is_structured()) return value.dump();
+  std::string words;
+  if (value.is_array()) {
+    for (const Json& element : value.elements()) {
+      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(element));
+    }
+    return words;
+  }
+  for (const auto& [key, member] : value.members()) {
+    if (!words.empty()) words += ", ";
+    if (!member.is_object()) {
+      words += fmt::format("{} {}", key, in_words(member));
+    } else {
+      words += member.empty() ? key : fmt::format("{} ({})", key, in_words(member));
+    }
+  }
+  return words;
+}
+
+/// What is left of a part without the lists that are empty.
+Json without_empty_lists(const Json& part) {
+  if (!part.is_object()) return part;
+  Json kept = Json::object();
+  for (const auto& [key, member] : part.members()) {
+    if (!member.is_array() || !member.empty()) kept[key] = member;
+  }
+  return kept;
+}
+
+/// A snapshot without taps is kept of none.
+bool is_on(const std::string& part, const Json& value) {
+  if (part == "snapshots") return value.contains("taps");
+  return !value.empty();
+}
+
+}  // namespace
+
+std::string effects_text(const Json& resolved) {
+  std::string on = "effects\n", off;
+  for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots",
+                           "sweep", "until", "fits", "analyse", "structure"}) {
+    const Json value =
+        without_empty_lists(resolved.contains(part) ? resolved.at(part) : Json::object());
+    if (is_on(part, value)) {
+      on += fmt::format("  {:<11}{}\n", part, in_words(value));
+    } else {
+      off += fmt::format("{}{}", off.empty() ? "" : ", ", part);
+    }
+  }
+  return off.empty() ? on : on + fmt::format("  {:<11}{}\n", "off", off);
+}
+
+}  // namespace jostle::inline cli

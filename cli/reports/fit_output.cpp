@@ -1,0 +1,188 @@
+#include "cli/reports/fit_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace jostle::inline cli {
+
+namespace {
+
+const char* name_of(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::fixed:
+      return "fixed";
+    case Identifiability::not_examined:
+      return "not_examined";
+    case Identifiability::identified:
+      return "identified";
+    case Identifiability::wide:
+      return "wide";
+    case Identifiability::bounded_below:
+      return "bounded_below";
+    case Identifiability::bounded_above:
+      return "bounded_above";
+    case Identifiability::not_identifiable:
+      return "not_identifiable";
+  }
+  return "";
+}
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json interval_json(const Interval& interval) {
+  return Json::array({number(interval.lower), number(interval.upper)});
+}
+
+Json matrix_json(const Fit& fit, bool correlation) {
+  const auto& matrix = correlation ? fit.correlation : fit.covariance;
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(number(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json estimate_json(const Estimate& estimate) {
+  const bool known = estimate.has_value();
+  return {{"value", known ? number(estimate.value) : Json()},
+          {"error", known ? number(estimate.error) : Json()},
+          {"half_width_68", known ? number(estimate.half_width()) : Json()},
+          {"standard_error", number(estimate.standard_error)},
+          {"interval_68", interval_json(estimate.intervals[0])},
+          {"interval_95", interval_json(estimate.intervals[1])},
+          {"identifiability", name_of(estimate.identifiability)},
+          {"statement", estimate.statement}};
+}
+
+Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resampled) {
+  Json parameters = Json::object();
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    const Estimate& estimate = fit.estimates[j];
+    Json entry = estimate_json(estimate);
+    if (resampled) {
+      entry["resampled_error"] = number(resampled->errors[j]);
+      if (!resampled->central.empty()) {
+        entry["bootstrap_68"] = interval_json(resampled->middle[j]);
+        entry["bootstrap_95"] = interval_json(resampled->central[j]);
+      }
+    }
+    parameters[estimate.parameter.name] = entry;
+  }
+  return parameters;
+}
+
+}  // namespace
+
+Json fit_json(const FitOutcome& outcome) {
+  if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
+    return {{"model", outcome.model}, {"refused", refusal->message}};
+  }
+  const Fit& fit = std::get<Fit>(outcome.result);
+  Json names = Json::array(), combinations = Json::object();
+  for (const Estimate& found : fit.combinations) {
+    combinations[found.parameter.name] = estimate_json(found);
+  }
+  for (const Estimate& estimate : fit.estimates) names.push_back(estimate.parameter.name);
+  Json object = {{"model", fit.model},
+                 {"formula", fit.formula},
+                 {"source", fit.source},
+                 {"parameters", parameters_json(fit, outcome.resampled)},
+                 {"order", names},
+                 {"combinations", combinations},
+                 {"covariance", matrix_json(fit, false)},
+                 {"correlation", matrix_json(fit, true)},
+                 {"points", fit.n_points},
+                 {"free_parameters", fit.n_free},
+                 {"realizations", fit.n_realizations},
+                 {"error_dof", number(fit.error_dof)},
+                 {"weighted_points", number(fit.weighted_size)},
+                 {"memory", number(fit.memory.time)},
+                 {"bins", fit.n_bins},
+                 {"sigma_given", fit.sigma_given},
+                 {"logarithmic", fit.logarithmic},
+                 {"residual_sum", number(fit.residual_sum)},
+                 {"reduced_chi2", number(fit.reduced_chi2)},
+                 {"r2", number(fit.r2)},
+                 {"aic", number(fit.aic)},
+                 {"bic", number(fit.bic)},
+                 {"condition", number(fit.condition)},
+                 {"runs", fit.runs.runs},
+                 {"runs_expected", number(fit.runs.expected)},
+                 {"runs_p", number(fit.runs.p)},
+                 {"effective_points", number(fit.effective_size)},
+                 {"error_factor", number(fit.error_factor)},
+                 {"aic_effective", number(fit.aic_effective)},
+                 {"bic_effective", number(fit.bic_effective)},
+                 {"ended", describe(fit.reason)},
+                 {"settled", is_minimum(fit.reason)},
+                 {"iterations", fit.iterations},
+                 {"evaluations", fit.evaluations},
+                 {"starts_tried", fit.starts_tried},
+                 {"remarks", fit.remarks}};
+  if (outcome.resampled) {
+    object["resamples"] = outcome.resampled->resamples;
+    object["resamples_failed"] = outcome.resampled->failed;
+  }
+  return object;
+}
+
+std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
+  if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
+    return fmt::format("{}: no fit: {}\n", outcome.model, refusal->message);
+  }
+  const Fit& fit = std::get<Fit>(outcome.result);
+  std::string text = describe(fit, detail);
+  if (!outcome.resampled) return text;
+  const ResampledErrors& resampled = *outcome.resampled;
+  text +=
+      fmt::format("  standard errors from {} resamples of the realizations:", resampled.resamples);
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    text += fmt::format("{} {} {:.2g}", j == 0 ? "" : ",", fit.estimates[j].parameter.name,
+                        resampled.errors[j]);
+  }
+  text += "\n";
+  if (resampled.failed > 0) {
+    text += fmt::format("  ! {} of the resamples did not settle and are not counted\n",
+                        resampled.failed);
+  }
+  return text;
+}
+
+std::string fits_text(const FittedCurve& fitted, ReportDetail detail) {
+  std::string text = fitted.source.title + "\n";
+  std::vector<Fit> fits;
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    text += '\n';
+    text += fit_text(outcome, detail);
+    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+  }
+  if (fits.size() > 1) text.append("\n").append(compare(fits));
+  text += '\n';
+  return text;
+}
+
+std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes) {
+  std::string text = curve.sigma.empty() ? "t,X" : "t,X,sigma";
+  std::vector<const Fit*> fits;
+  for (const FitOutcome& outcome : outcomes) {
+    if (const auto* fit = std::get_if<Fit>(&outcome.result)) {
+      fits.push_back(fit);
+      text += "," + fit->model;
+    }
+  }
+  text += "\n";
+  for (std::size_t i = 0; i < curve.t.size(); ++i) {
+    text += fmt::format("{},{}", curve.t[i], curve.x[i]);
+    if (!curve.sigma.empty()) text += fmt::format(",{}", curve.sigma[i]);
+    for (const Fit* fit : fits) text += fmt::format(",{}", fit->fitted[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "config/json/json.hpp"
+#include "ensemble/analysis/table.hpp"
+
+// Tables of fits and analyses, for people and for programs. A quantity "x" and its "x_error" stand
+// together.
+namespace jostle::inline cli {
+
+enum class Detail {
+  brief,  // notes and single values, short columns; long ones are named
+  full
+};
+
+/// Notes, single values with their errors (with_half_widths), then columns, one block a set of
+/// axes.
+std::string table_text(const Table& table, Detail detail);
+
+/// {"name", "notes": {...}, "axes": {name: quantity}, "quantities": {name: quantity}}, a quantity
+/// being {"values", "axes", "units", "long_name", "source"}: a number or text, or nested lists,
+/// outermost axis first; what is not a number is null.
+Json table_json(const Table& table);
+
+/// One block a set of axes, under a header of names, a row a place along the axes; numbers to the
+/// last bit. Lines that begin with # hold the table's name and notes.
+std::string table_csv(const Table& table);
+
+}  // namespace jostle::inline cli

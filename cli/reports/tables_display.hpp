@@ -1,0 +1,22 @@
+#pragma once
+
+#include "study/scenes/scene_tables.hpp"
+
+namespace jostle::inline cli {
+
+enum class Quiet { no, yes };
+
+/// Prints briefly what a scene asks for, as it is made; where quiet, only what could not be made,
+/// on stderr.
+class TablesDisplay : public TablesObserver {
+ public:
+  explicit TablesDisplay(Quiet quiet) : quiet_(quiet) {}
+  void fitted(const FittedCurve& curve) override;
+  void analysed(const Table& table) override;
+  void without_structure(const std::string& reason) override;
+
+ private:
+  Quiet quiet_;
+};
+
+}  // namespace jostle::inline cli

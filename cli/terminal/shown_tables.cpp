@@ -1,0 +1,52 @@
+#include "cli/terminal/shown_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/terminal/exit_codes.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "study/tables/analyse.hpp"
+
+namespace jostle::inline cli {
+
+void add_table_output(Command& command, TableOutput& output) {
+  command.add_flag("--json", output.json, "Print JSON, for programs");
+  command.add_option("--csv", output.csv, "Also write the tables to this file").file_to_write();
+  command.add_flag("--force", output.force, "Replace the file of --csv if it exists");
+  command.add_flag("--no-store", output.not_stored, "Leave the results files as they are");
+  add_live(command, output.live);
+}
+
+void ShownTables::heading(const std::string& text) {
+  if (!output_.json) print(fmt::format("{}\n\n", text));
+}
+
+void ShownTables::show(std::span<const Table> tables, const std::string& input) {
+  for (const Table& table : tables) {
+    any_ = any_ || is_made(table);
+    if (output_.json) {
+      Json listed = table_json(table);
+      if (!input.empty()) listed["file"] = input;
+      listed_.push_back(std::move(listed));
+    } else {
+      print(fmt::format("{}\n", table_text(table, detail_)));
+    }
+    if (output_.csv.empty()) continue;
+    if (!input.empty()) csv_ += fmt::format("# {}\n", input);
+    csv_ += table_csv(table);
+  }
+}
+
+int ShownTables::end(const Provenance& by) const {
+  if (output_.json) {
+    const Json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
+    print_json(object);
+  }
+  if (!output_.csv.empty()) write_text(output_.csv, csv_);
+  return any_ ? exit_ok : exit_bad_input;
+}
+
+}  // namespace jostle::inline cli

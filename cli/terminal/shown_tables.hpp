@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/options/command.hpp"
+#include "cli/reports/table_output.hpp"
+#include "results/study.hpp"
+#include "study/results_input.hpp"
+
+namespace jostle::inline cli {
+
+/// Where the tables of a command go: to the terminal or as JSON to a program, to a CSV file, and
+/// into the results file they come from.
+struct TableOutput {
+  std::string csv;
+  bool json = false, force = false, not_stored = false;
+  Live live = Live::no;
+
+  /// A run that goes on would lose them.
+  bool stored() const { return !not_stored && live == Live::no; }
+};
+
+/// --json, --csv, --force, --no-store, --live.
+void add_table_output(Command& command, TableOutput& output);
+
+/// Prints tables as they come, and at the end what comes as a whole.
+class ShownTables {
+ public:
+  ShownTables(const TableOutput& output, Detail detail) : output_(output), detail_(detail) {}
+
+  /// A line for people above what follows.
+  void heading(const std::string& text);
+  /// `input`: what they were made of, for programs; may be empty.
+  void show(std::span<const Table> tables, const std::string& input);
+  /// Returns the exit code: bad input where no table was made.
+  int end(const Provenance& by) const;
+
+ private:
+  const TableOutput& output_;
+  Detail detail_;
+  Json listed_ = Json::array();
+  std::string csv_;
+  bool any_ = false;
+};
+
+}  // namespace jostle::inline cli

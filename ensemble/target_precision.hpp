@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+// How many realizations are enough.
+namespace jostle::inline ensemble {
+
+/// What is to become small: the standard error of the mean over realizations, which shrinks as
+/// 1/M^(1/2), or their population deviation sigma, which does not shrink: Rosato et al. 2010 add
+/// realizations until sigma(N_T; gamma) <= 0.001.
+enum class Spread { standard_error, sigma };
+
+struct SpreadTarget {
+  std::string observable;
+  std::vector<std::uint64_t> taps;  // ascending; empty: the last one
+  Spread spread = Spread::standard_error;
+  double at_most = 0;  // in units of the observable
+  bool operator==(const SpreadTarget&) const = default;
+};
+
+/// Realizations are added until every target is met at every sweep point, or there are `at_most`.
+struct TargetPrecision {
+  std::vector<SpreadTarget> targets;  // empty: as many as the scene says, and no more
+  std::uint32_t at_most = 0;
+  bool operator==(const TargetPrecision&) const = default;
+};
+
+/// The spread of one observable at one tap and sweep point.
+struct SpreadFound {
+  Spread spread = Spread::standard_error;
+  double value = 0;  // NaN below two realizations
+  double at_most = 0;
+  bool met() const { return value <= at_most; }
+};
+
+/// How many realizations there should be in all: `realizations` itself where every target is met
+/// or the limit is reached, else more: as many as a standard error needs, judged by what it is now,
+/// but at most twice as many at once; a quarter more for a sigma. It depends on its arguments
+/// alone.
+std::uint32_t next_realizations(std::uint32_t realizations, std::span<const SpreadFound> found,
+                                std::uint32_t at_most);
+
+}  // namespace jostle::inline ensemble

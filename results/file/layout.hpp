@@ -1,0 +1,57 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/engines.hpp"
+#include "ensemble/sink.hpp"
+#include "results/study.hpp"
+
+// Names inside a results file; docs/format.md describes them.
+namespace jostle::inline results {
+
+/// Attribute `jostle_format` of the root; raised when a reader of the old layout would go wrong.
+inline constexpr std::uint32_t layout_version = 1;
+
+inline std::string point_name(std::uint32_t point) {
+  return fmt::format("point_{:04}", point);
+}
+inline std::string realization_name(std::uint32_t realization) {
+  return fmt::format("realization_{:05}", realization);
+}
+inline std::string particles_name(RealizationId id) {
+  return point_name(id.point) + "_" + realization_name(id.realization);
+}
+
+/// The columns of the engine are named in the file where they are not those of Monte Carlo, which
+/// every file without names has.
+inline constexpr const char *diagnostics_name = "diagnostics", *diagnostics_prefix = "diagnostics_";
+inline std::vector<Column> unnamed_diagnostics() {
+  return columns(MonteCarlo{});
+}
+inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share"};  // of Shown
+
+/// What fitting did to the pours of points that start from one.
+inline constexpr const char* fitting_folder = "fitting";
+
+/// The datasets of /provenance, one text a process that worked on the file.
+struct ProvenanceField {
+  const char* name;
+  std::string Provenance::*field;
+};
+inline constexpr ProvenanceField provenance_fields[] = {
+    {"version", &Provenance::version},
+    {"git_revision", &Provenance::git_revision},
+    {"libraries", &Provenance::libraries},
+    {"host", &Provenance::host},
+    {"cpu", &Provenance::cpu},
+    {"instruction_set", &Provenance::instruction_set},
+    {"threads", &Provenance::threads},
+    {"command_line", &Provenance::command_line},
+    {"started", &Provenance::started}};
+
+}  // namespace jostle::inline results

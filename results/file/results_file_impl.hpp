@@ -1,0 +1,119 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "results/file/layout.hpp"
+#include "results/file/particles.hpp"
+#include "results/file/recently_used.hpp"
+#include "results/file/study_writer.hpp"
+#include "results/hdf5/read.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle::inline results {
+
+/// What is stored of a point, but for series, positions and restart states.
+struct PointTables {
+  std::uint32_t point = 0;
+  std::vector<std::uint8_t> statuses;
+  std::vector<std::uint64_t> rows;
+  std::vector<std::string> reasons;
+  std::vector<Work> work;
+  std::vector<double> coordination;  // [n_snapshot_taps, n_realizations], or empty
+  std::size_t n_bins = 0;            // of height histograms; 0 where there are none
+};
+
+/// An open file, and the blocks of it that were read last.
+class ResultsFile::Impl {
+ public:
+  Impl(const std::string& name, const std::string& known_as);
+
+  /// Taps that the columns of a point hold: those beyond which no realization has come are left
+  /// out.
+  std::uint64_t stored_rows(const Hdf5Handle& observables, std::uint32_t point) {
+    const Shape shape = shape_of(open_dataset(observables, "tap"));
+    const auto most = std::ranges::max(tables(point).rows);
+    if (shape.size() != 1 || shape[0] < most || shape[0] < 1 ||
+        shape[0] > study.points.at(point).taps + 1)
+      throw Hdf5Error("tap is not as long as the columns that stand along it must be");
+    return shape[0];
+  }
+
+  /// Whether the file has the groups of a point: not before one of its realizations has begun.
+  bool has_point(std::uint32_t point) const {
+    return exists(file, "observables/" + point_name(point));
+  }
+
+  const PointTables& tables(std::uint32_t point) {
+    if (!cached_ || cached_->point != point) cached_ = read_tables(point);
+    return *cached_;
+  }
+
+  /// [n_columns] of [n, n_realizations]: the block of rows that `row` is in.
+  const std::vector<std::vector<double>>& row_block(std::uint32_t point, std::uint64_t row) {
+    const std::uint64_t first = row / block_rows(point) * block_rows(point);
+    return row_blocks_.get({point, first}, [&] {
+      const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+      const std::uint64_t rows = stored_rows(observables, point);
+      const std::uint64_t n = std::min(block_rows(point), rows - std::min(first, rows));
+      std::vector<std::vector<double>> columns;
+      for (const Column& label : study.points.at(point).columns()) {
+        require_shape(observables, label.name, {rows, study.realizations});
+        columns.push_back(read_block(observables, label.name, {first, 0}, {n, study.realizations}));
+      }
+      return columns;
+    });
+  }
+  std::uint64_t block_rows(std::uint32_t point) const {
+    return rows_a_block(study.realizations, n_columns(point));
+  }
+  std::size_t n_columns(std::uint32_t point) const { return study.points.at(point).n_columns(); }
+
+  /// A snapshot's height histogram, with the zeros that pad it; empty where none was kept.
+  std::span<const double> histogram(RealizationId id, std::size_t snapshot) {
+    const std::size_t n_bins = tables(id.point).n_bins;
+    const std::uint64_t n_taps = study.points.at(id.point).snapshots.taps.size();
+    if (n_bins == 0) return {};
+    const Shape all{n_taps, study.realizations, n_bins};
+    const std::uint64_t n_a_block = chunk_along_first(all)[0];
+    const std::uint64_t first = snapshot / n_a_block * n_a_block;
+    const auto& block = histogram_blocks_.get({id.point, first}, [&] {
+      const Hdf5Handle group = open_group(file, "snapshots/" + point_name(id.point));
+      return read_block(group, "height_histogram", {first, 0, 0},
+                        {std::min(n_a_block, n_taps - first), study.realizations, n_bins});
+    });
+    const std::size_t cell = (snapshot - first) * study.realizations + id.realization;
+    const auto bins = std::span(block).subspan(cell * n_bins, n_bins);
+    return std::isnan(bins[0]) ? std::span<const double>{} : bins;
+  }
+
+  const ParticleFrames& frames(RealizationId id) {
+    return frames_.get(id, [&] {
+      return ParticleFrames(file, particles_name(id), study.points.at(id.point).n_spheres);
+    });
+  }
+
+  std::string path;
+  Hdf5Handle file;
+  Study study;
+  FileProvenance provenance;
+
+ private:
+  PointTables read_tables(std::uint32_t point) const;
+
+  std::optional<PointTables> cached_;
+  using Block = std::pair<std::uint32_t, std::uint64_t>;  // of a point, from a row or a snapshot on
+  // Two, as what is written from them comes in other blocks where it has more realizations.
+  RecentlyUsed<Block, std::vector<std::vector<double>>, 2> row_blocks_;
+  RecentlyUsed<Block, std::vector<double>, 2> histogram_blocks_;
+  RecentlyUsed<RealizationId, ParticleFrames, 1> frames_;
+};
+
+}  // namespace jostle::inline results

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "results/results_file.hpp"
+#include "results/stored_realization.hpp"
+#include "results/study.hpp"
+
+namespace jostle::inline results {
+
+/// What a results file is written from.
+struct FileContent {
+  const Study& study;
+  Shard shard;
+  std::vector<Provenance> provenance;
+  std::string run_id;
+  /// Called once for every realization of the study, in the order of (point, realization); those of
+  /// a point are kept while it is written. Absent: the small file of a run that has just begun.
+  std::function<std::unique_ptr<StoredRealization>(RealizationId)> realization;
+  /// Told how many realizations are written, of how many; may be absent.
+  StoringProgress progress = {};
+};
+
+/// Writes a whole results file and publishes it under `path`. In memory it holds some 32 MB of
+/// the series of a point, a snapshot, and about 1 kB for every realization and 100 bytes for every
+/// snapshot of a point. Throws ResultsError.
+void write_results(const std::string& path, const FileContent& content);
+
+}  // namespace jostle::inline results

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "results/export/container_text.hpp"
+#include "results/file/layout.hpp"
+#include "results/file/study_writer.hpp"
+#include "results/hdf5/read.hpp"
+
+namespace jostle::inline results {
+namespace {
+
+void check_layout(hid_t file) {
+  if (checked(H5Aexists(file, "jostle_format")) == 0)
+    throw Hdf5Error("not written by jostle: the root has no attribute jostle_format");
+  const auto version = read_number_attribute<std::uint32_t>(file, "jostle_format");
+  if (version != layout_version)
+    throw Hdf5Error(
+        fmt::format("layout {}, but this jostle reads layout {}", version, layout_version));
+}
+
+Container read_container(hid_t group) {
+  const auto widths = read_numbers_attribute<double>(group, "widths");
+  const std::string kind = read_text_attribute(group, "container");
+  if (widths.size() == 3)
+    if (const auto container = container_from(kind, {widths[0], widths[1], widths[2]}))
+      return *container;
+  throw Hdf5Error("unknown container \"" + kind + "\"");
+}
+
+std::vector<Column> read_labels(hid_t group, const char* named, const std::string& prefix) {
+  const auto names = read_texts(group, named), units = read_texts(group, prefix + "units");
+  const auto long_names = read_texts(group, prefix + "long_names"),
+             sources = read_texts(group, prefix + "sources");
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    columns.push_back({names[i], units.at(i), long_names.at(i), sources.at(i)});
+  return columns;
+}
+
+Shown shown_named(const std::string& name) {
+  const auto found = std::ranges::find(shown_names, name);
+  if (found == std::end(shown_names))
+    throw Hdf5Error("unknown way to show a column: \"" + name + "\"");
+  return static_cast<Shown>(found - std::begin(shown_names));
+}
+
+int decimals_from(const std::string& text) {
+  int decimals = -1;
+  std::from_chars(text.data(), text.data() + text.size(), decimals);
+  return decimals;
+}
+
+std::vector<Column> read_diagnostics(hid_t group) {
+  if (!exists(group, diagnostics_name)) return unnamed_diagnostics();
+  const std::string prefix = diagnostics_prefix;
+  std::vector<Column> columns = read_labels(group, diagnostics_name, prefix);
+  const auto shown = read_texts(group, prefix + "shown"),
+             decimals = read_texts(group, prefix + "decimals"),
+             if_any = read_texts(group, prefix + "if_any"),
+             if_none = read_texts(group, prefix + "if_none");
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    columns[i].shown = shown_named(shown.at(i));
+    columns[i].decimals = decimals_from(decimals.at(i));
+    columns[i].if_any = if_any.at(i);
+    columns[i].if_none = if_none.at(i);
+  }
+  return columns;
+}
+
+Snapshots read_snapshot_settings(hid_t group) {
+  const auto kept = read_numbers_attribute<std::uint8_t>(group, "snapshots_keep");
+  return {.taps = read_numbers<std::uint64_t>(group, "snapshot_taps"),
+          .positions = kept.at(0) != 0,
+          .coordination = kept.at(1) != 0,
+          .contact_cut = read_number_attribute<double>(group, "contact_cut"),
+          .height_histogram = kept.at(2) != 0,
+          .bin_width = read_number_attribute<double>(group, "bin_width")};
+}
+
+StudyPoint read_point(hid_t sweep, std::uint32_t number) {
+  const Hdf5Handle group = open_group(sweep, point_name(number));
+  StudyPoint point;
+  point.label = read_text_attribute(group, "label");
+  point.id = read_number_attribute<std::uint64_t>(group, "id");
+  point.seed = read_number_attribute<std::uint64_t>(group, "seed");
+  point.container = read_container(group);
+  point.n_spheres = read_number_attribute<std::uint32_t>(group, "n_spheres");
+  point.taps = read_number_attribute<std::uint64_t>(group, "taps");
+  const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
+  for (std::size_t i = 0; i < pointers.size(); ++i)
+    point.sweep_values.emplace_back(pointers[i], values.at(i));
+  point.observables = read_labels(group, "observables", "");
+  point.diagnostics = read_diagnostics(group);
+  point.snapshots = read_snapshot_settings(group);
+  if (checked(H5Aexists(group, "start_sha256")) > 0)
+    point.start_sum = read_text_attribute(group, "start_sha256");
+  return point;
+}
+
+RunState state_named(const std::string& name) {
+  if (name == "running") return RunState::running;
+  if (name == "interrupted") return RunState::interrupted;
+  if (name == "complete") return RunState::complete;
+  throw Hdf5Error("unknown state of the run: \"" + name + "\"");
+}
+
+}  // namespace
+
+Study read_study(hid_t file) {
+  check_layout(file);
+  Study study;
+  const Hdf5Handle scene = open_group(file, "scene");
+  study.scene = read_text(scene, "verbatim");
+  study.resolved_scene = read_text(scene, "resolved");
+  study.realizations = read_number_attribute<std::uint32_t>(scene, "realizations");
+  const Hdf5Handle sweep = open_group(file, "sweep");
+  const auto n_points = read_numbers<std::uint32_t>(sweep, "point").size();
+  for (std::uint32_t p = 0; p < n_points; ++p) study.points.push_back(read_point(sweep, p));
+  return study;
+}
+
+FileProvenance read_provenance(hid_t file) {
+  const Hdf5Handle group = open_group(file, "provenance");
+  FileProvenance provenance;
+  provenance.run_id = read_text_attribute(group, "run_id");
+  provenance.state = state_named(read_text_attribute(group, "state"));
+  const auto shard = read_numbers_attribute<std::uint32_t>(group, "shard");
+  provenance.shard = {shard.at(0), shard.at(1)};
+  for (const auto& [name, field] : provenance_fields) {
+    const auto texts = read_texts(group, name);
+    provenance.processes.resize(std::max(provenance.processes.size(), texts.size()));
+    for (std::size_t i = 0; i < texts.size(); ++i) provenance.processes[i].*field = texts[i];
+  }
+  return provenance;
+}
+
+}  // namespace jostle::inline results

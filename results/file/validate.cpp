@@ -1,0 +1,134 @@
+#include "results/file/validate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "results/export/container_text.hpp"
+#include "results/export/printable.hpp"
+#include "results/hdf5/handle.hpp"
+
+namespace jostle::inline results {
+namespace {
+
+// The limits of scenes, which docs/scene.md gives, and beyond them what no scene comes to.
+constexpr std::uint32_t most_realizations = 1'000'000;
+constexpr std::uint32_t most_spheres = 10'000'000;
+constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
+constexpr double widest = 10'000;
+constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
+constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols
+
+void require(bool sound, const std::string& what) {
+  if (!sound) throw Hdf5Error(printable(what) + ": not written by jostle");
+}
+
+bool is_name(const std::string& name) {
+  return !name.empty() && name.size() <= longest_name && name != "." &&
+         name.find('/') == std::string::npos && name.find('\0') == std::string::npos;
+}
+
+void validate_labels(const StudyPoint& point, const std::string& name) {
+  std::set<std::string> names(std::begin(names_beside_series), std::end(names_beside_series));
+  for (const Column& label : point.columns()) {
+    require(is_name(label.name) && names.insert(label.name).second,
+            name + " has an observable \"" + label.name + "\"");
+    require(std::max({label.units.size(), label.long_name.size(), label.source.size(),
+                      label.if_any.size(), label.if_none.size()}) <= longest_text,
+            name + " has a label of an observable that is too long");
+    require(label.decimals >= 0 && label.decimals <= 17,
+            name + " has a column of " + std::to_string(label.decimals) + " decimals");
+  }
+}
+
+void validate_container(const Container& container, const std::string& name) {
+  const auto [kind, widths] = container_text(container);
+  const auto fault = width_fault(container);
+  require(!fault, name + ": " + fault.value_or(""));
+  require(std::ranges::all_of(widths, [](double width) { return width <= widest; }),
+          fmt::format("{} has a container wider than {}", name, widest));
+}
+
+void validate_snapshots(const Snapshots& snapshots, std::uint64_t taps, const std::string& name) {
+  const auto& kept = snapshots.taps;
+  const bool ascending =
+      std::ranges::adjacent_find(kept, std::ranges::greater_equal{}) == kept.end();
+  require(ascending && (kept.empty() || kept.back() <= taps),
+          name + " has snapshots at taps that do not ascend up to its last");
+  require(snapshots.contact_cut > 0 && std::isfinite(snapshots.contact_cut) &&
+              snapshots.bin_width > 0 && std::isfinite(snapshots.bin_width),
+          name + " has a contact_cut or a bin_width that is no length");
+}
+
+void validate_point(const StudyPoint& point, const std::string& name) {
+  require(point.n_spheres >= 1 && point.n_spheres <= most_spheres,
+          fmt::format("{} has {} spheres", name, point.n_spheres));
+  require(point.taps <= most_total_taps, fmt::format("{} has {} taps", name, point.taps));
+  require(point.label.size() <= longest_label, name + " has a label that is too long");
+  for (const auto& [pointer, value] : point.sweep_values) {
+    require(nesting_of(value) <= deepest_nesting, name + " has a value nested too deep");
+    require(nlohmann::json::accept(value),
+            name + " has a value of " + pointer + " that is no JSON");
+  }
+  validate_container(point.container, name);
+  validate_labels(point, name);
+  validate_snapshots(point.snapshots, point.taps, name);
+}
+
+bool is_position(const Vec3& r) {
+  // A bed that is tapped before it has fallen back grows without end; squares stay finite.
+  constexpr double bound = 1e100;
+  return std::abs(r.x) <= bound && std::abs(r.y) <= bound && std::abs(r.z) <= bound;
+}
+
+}  // namespace
+
+void validate(const Study& study, const FileProvenance& provenance) {
+  require(!study.points.empty(), "the sweep has no points");
+  require(study.realizations >= 1 && study.realizations <= most_realizations,
+          fmt::format("{} realizations", study.realizations));
+  require(!provenance.processes.empty(), "no process has worked on the file");
+  const Shard shard = provenance.shard;
+  require(shard.index >= 1 && shard.index <= shard.count,
+          fmt::format("shard {}/{}", shard.index, shard.count));
+  require(nesting_of(study.resolved_scene) <= deepest_nesting,
+          "the scene (/scene/resolved) is nested too deep");
+  for (std::size_t p = 0; p < study.points.size(); ++p)
+    validate_point(study.points[p], fmt::format("sweep point {}", p));
+}
+
+void validate(const RealizationState& state, const StudyPoint& point) {
+  require(state.rows <= point.taps + 1, "a restart state beyond the last tap");
+  // Stopped while its start was made, a realization has nothing yet.
+  const bool not_begun = state.rows == 0 && !state.relaxing;
+  if (not_begun && state.centres.empty() && state.observable_windows.empty()) return;
+  require(
+      state.centres.size() == point.n_spheres && std::ranges::all_of(state.centres, is_position),
+      "a restart state without its spheres");
+  require(state.observable_windows.size() == point.observables.size(),
+          "a restart state of other observables");
+}
+
+std::size_t nesting_of(std::string_view json) {
+  std::size_t depth = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_text && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      in_text = !in_text;
+    } else if (!in_text && (c == '[' || c == '{')) {
+      deepest = std::max(deepest, ++depth);
+    } else if (!in_text && (c == ']' || c == '}')) {
+      depth -= std::min<std::size_t>(depth, 1);
+    }
+  }
+  return deepest;
+}
+
+}  // namespace jostle::inline results

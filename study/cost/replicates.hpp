@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "results/results_file.hpp"
+#include "study/seconds.hpp"
+
+// How many replicates of jostle cost fit into its budget. A replicate is one realization of every
+// setting.
+namespace jostle::inline study {
+
+/// Replicates of work between two looks at the realizations, by their processor times: one that was
+/// there before and only gained taps counts as the share that it gained. 0 where nothing was
+/// computed.
+double replicates_done(std::span<const RealizationSummary> before,
+                       std::span<const RealizationSummary> after);
+
+/// As many replicates in all as the budget has room for, at the pace of those done in the time
+/// spent; one more to find the pace. `replicates` are there.
+std::uint32_t affordable_replicates(std::uint32_t replicates, Seconds budget, Seconds spent,
+                                    double done);
+
+}  // namespace jostle::inline study

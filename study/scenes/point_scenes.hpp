@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/sweep.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle::inline study {
+
+/// The scene that a results file keeps, read once, and those of its sweep points, each read when it
+/// is first asked for.
+class PointScenes {
+ public:
+  /// Throws BadInput for a scene that this version does not read.
+  explicit PointScenes(const ResultsFile& file);
+
+  /// With its sweep.
+  const Scene& scene() const { return scene_; }
+  /// Without a sweep.
+  const Scene& at(std::uint32_t point) const;
+  /// The value that a JSON pointer leads to in the scene of a point; nothing where it leads
+  /// nowhere.
+  std::optional<Json> value_at(std::uint32_t point, const std::string& pointer) const;
+  /// Whether two pointers are swept together, zipped: where one is known, so is the other.
+  bool vary_together(const std::string& a, const std::string& b) const;
+
+ private:
+  Scene scene_;
+  Json resolved_;
+  std::vector<SweepPoint> points_;
+  mutable std::map<std::uint32_t, Scene> read_;  // one thread at a time
+};
+
+}  // namespace jostle::inline study

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/results_file.hpp"
+#include "study/tables/fits.hpp"
+
+namespace jostle::inline study {
+
+/// Told of what a scene asks for as it is made; what is left out is not told.
+class TablesObserver {
+ public:
+  virtual ~TablesObserver() = default;
+  virtual void fitted(const FittedCurve&) {}
+  virtual void analysed(const Table&) {}  // of analyses and of structure
+  virtual void without_structure(const std::string& /*reason*/) {}
+};
+
+/// Makes the fits, analyses and structure that the scene of a complete results file asks for, and
+/// how its targets are met, and stores them in one replacement of the file: nothing where it asks
+/// for nothing, or is not one that this version reads. Where one cannot be made, for want of memory
+/// as much as for the disk, those before it are stored first. Returns the names of the tables with
+/// their groups, "fits/...". Throws ResultsError.
+std::vector<std::string> store_scene_tables(const ResultsFile& file, int threads,
+                                            TablesObserver& observer);
+
+}  // namespace jostle::inline study

@@ -1,0 +1,71 @@
+#include "study/tables/target_precision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ensemble/moments.hpp"
+
+namespace jostle::inline study {
+
+namespace {
+
+/// The target's largest spread over its taps; NaN where one has fewer than two realizations.
+double largest_spread(const ResultsFile& file, std::uint32_t point, const SpreadTarget& target) {
+  std::vector<std::uint64_t> taps = target.taps;
+  if (taps.empty()) taps = {file.study().points[point].taps};
+  double largest = 0;
+  for (const std::uint64_t tap : taps) {
+    Moments moments;
+    for (const double value :
+         file.block(point, target.observable, {tap, tap + 1}, {0, file.study().realizations})) {
+      moments.add(value);
+    }
+    const double error = moments.standard_error();  // NaN below two, where sigma is 0
+    const double spread = target.spread == Spread::sigma && error >= 0 ? moments.sigma() : error;
+    if (!(spread <= largest)) largest = spread;
+  }
+  return largest;
+}
+
+const char* name_of(Spread spread) {
+  return spread == Spread::sigma ? "sigma" : "standard_error";
+}
+
+}  // namespace
+
+PrecisionStatus precision_status(const ResultsFile& file, const TargetPrecision& until) {
+  PrecisionStatus status;
+  status.realizations = file.study().realizations;
+  std::vector<SpreadFound> found;
+  std::vector<std::uint64_t> rows, points;
+  std::vector<std::string> observables, spreads;
+  std::vector<double> values, limits;
+  for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
+    for (const SpreadTarget& target : until.targets) {
+      const double value = largest_spread(file, point, target);
+      found.push_back({target.spread, value, target.at_most});
+      rows.push_back(rows.size());
+      points.push_back(point);
+      observables.push_back(target.observable);
+      spreads.emplace_back(name_of(target.spread));
+      values.push_back(value);
+      limits.push_back(target.at_most);
+    }
+  }
+  status.met = std::ranges::all_of(found, [](const SpreadFound& one) { return one.met(); });
+  status.next = next_realizations(status.realizations, found, until.at_most);
+  const std::vector<std::string> along = {"target"};
+  status.table = {.name = "target_precision",
+                  .axes = {{"target", along, rows, "1", "targets at sweep points", ""}},
+                  .quantities = {{"point", along, points, "1", "sweep point", ""},
+                                 {"observable", along, observables, "1", "observable", ""},
+                                 {"spread", along, spreads, "1", "what is to be small", ""},
+                                 {"value", along, values, "", "largest over the taps", ""},
+                                 {"at_most", along, limits, "", "what was asked for", ""}},
+                  .notes = {{"realizations", fmt::to_string(status.realizations)},
+                            {"verdict", status.met ? "met" : "not met"}}};
+  return status;
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ensemble/analysis/table.hpp"
+#include "ensemble/target_precision.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle::inline study {
+
+/// How far a file is from what a scene calls enough realizations.
+struct PrecisionStatus {
+  std::uint32_t realizations = 0, next = 0;  // `next` is the same where no more are to be made
+  bool met = false;
+  /// One row a sweep point and target: the largest spread over its taps.
+  /// /analysis/target_precision.
+  Table table;
+};
+
+/// `until` has targets, all of observables in the file. `file` holds its data. Throws ResultsError.
+PrecisionStatus precision_status(const ResultsFile& file, const TargetPrecision& until);
+
+}  // namespace jostle::inline study

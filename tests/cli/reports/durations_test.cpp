@@ -1,0 +1,31 @@
+#include "cli/reports/durations.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+using namespace jostle;
+
+TEST_CASE("Durations are read with units, summed, seconds by default") {
+  CHECK(parse_duration("90") == Seconds(90));
+  CHECK(parse_duration("0") == Seconds(0));
+  CHECK(parse_duration("1.5h") == Seconds(5400));
+  CHECK(parse_duration("1h30m") == Seconds(5400));
+  CHECK(parse_duration("2d1s") == Seconds(172801));
+  CHECK(parse_duration("250ms").value().count() == Approx(0.25));
+}
+
+TEST_CASE("What is no duration is refused") {
+  for (const char* text : {"", "h", "-5s", "5 s", "5x", "1h-2m", "inf", "nan", "1e400", "s5"}) {
+    INFO(text);
+    CHECK_FALSE(parse_duration(text));
+  }
+}
+
+TEST_CASE("Durations are shown in the two largest units") {
+  CHECK(format_duration(Seconds(0.05)) == "50 ms");
+  CHECK(format_duration(Seconds(5.25)) == "5.2 s");
+  CHECK(format_duration(Seconds(59.6)) == "1 min 0 s");
+  CHECK(format_duration(Seconds(3725)) == "1 h 2 min");
+  CHECK(format_duration(Seconds(180000)) == "2 d 2 h");
+  CHECK(format_duration(Seconds(std::numeric_limits<double>::infinity())) == "unknown");
+}

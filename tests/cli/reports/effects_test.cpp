@@ -1,0 +1,38 @@
+#include "cli/reports/effects.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/config/scene_files.hpp"
+
+using namespace jostle;
+using Catch::Matchers::Contains;
+
+TEST_CASE("Every part of a scene is among its effects, on or off") {
+  for (const auto& path : json_files(shipped_scenes)) {
+    CAPTURE(path);
+    const Scene scene = scene_of(text_of(path));
+    const std::string text = effects_text(resolved(scene));
+    const auto lists = [&](const std::string& part, bool on) {
+      const bool has_line = text.find("\n  " + part + " ") != std::string::npos;
+      CHECK(has_line == on);
+      if (!on) CHECK(text.find(part, text.find("\n  off ")) != std::string::npos);
+    };
+    for (const char* part : {"container", "start", "protocol", "relax", "observe"}) {
+      lists(part, true);
+    }
+    lists("sweep", !scene.sweep.empty());
+    lists("until", !scene.until.targets.empty());
+    lists("fits", !scene.fits.empty());
+    lists("analyse", !scene.analyse.empty());
+    lists("structure", !scene.structure.empty());
+  }
+}
+
+TEST_CASE("Effects are named with their settings") {
+  const Scene scene = scene_of(text_of(shipped_scenes / "quickstart.json"));
+  const std::string text = effects_text(resolved(scene));
+  CHECK_THAT(text, Contains("sides periodic, width 8") &&
+                       Contains("tap (dilate 0.02), count 100") && Contains("sampler exhaustive") &&
+                       Contains("off        sweep, until, fits, "
+                                "analyse, structure\n"));
+}

@@ -1,0 +1,84 @@
+#include "cli/reports/report.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/results/runs.hpp"
+#include "tests/results/temporary_folder.hpp"
+
+using namespace jostle;
+
+namespace {
+
+/// The report of a study of one point whose second realization ends after so many steps, three a
+/// tap.
+std::string report_of(std::uint64_t steps) {
+  const TemporaryFolder folder;
+  const Study study = synthetic::study({.points = 1, .realizations = 2});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  synthetic::run(*store, study, {0, 0});
+  synthetic::run(*store, study, {0, 1}, {.steps = steps});
+  store->finish();
+  return report(ResultsFile(folder / "a.h5"));
+}
+
+/// The report of a run whose <Z> is so high at its last tap.
+std::string report_of_height(double last) {
+  const TemporaryFolder folder;
+  const Study study =
+      synthetic::study({.points = 1, .realizations = 1, .taps = 1, .snapshot_taps = {}});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  store->begin({0, 0});
+  for (std::uint64_t tap = 0; tap < 2; ++tap) {
+    TapRow row = synthetic::expected_row(study, {0, 0}, tap);
+    row.observables[0] = tap == 0 ? 5 : last;
+    store->append({0, 0}, row);
+  }
+  RealizationState state;
+  state.rows = 2;
+  store->end({0, 0}, state, {.status = RealizationStatus::done, .reason = {}});
+  store->finish();
+  return report(ResultsFile(folder / "a.h5"));
+}
+
+}  // namespace
+
+TEST_CASE("A report says where taps make a bed grow without end") {
+  CHECK(report_of_height(49).find("<Z> has grown") == std::string::npos);
+  CHECK(report_of_height(51).find("<Z> has grown from 5 d to 51 d") != std::string::npos);
+}
+
+TEST_CASE("A report has the number of realizations a row where not all reached every tap") {
+  const std::string partial = report_of(7), whole = report_of(100);
+  CHECK(partial.starts_with("epsilon = 0\ntap  M  mean_height"));
+  CHECK(partial.find("\n  2  2  ") != std::string::npos);
+  CHECK(partial.find("\n  5  1  ") != std::string::npos);
+  CHECK(partial.find("\n  6  1  ") != std::string::npos);
+  CHECK(whole.starts_with("epsilon = 0\ntap  mean_height"));
+}
+
+TEST_CASE("A report shows the columns of an engine as they ask for") {
+  const TemporaryFolder folder;
+  Study study = synthetic::study({.points = 1, .realizations = 2});
+  study.points[0].diagnostics = {
+      {"steps", "1", "", "", Shown::mean, 1},
+      {"step", "diameter", "", "", Shown::spread},
+      {"late", "1", "", "", Shown::count, 0, "{} taps were late", "no tap was late"},
+      {"lost", "1", "", "", Shown::share, 0, "taps lost {} of it", "no tap lost any"}};
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  synthetic::run_pending(*store, study);
+  store->finish();
+  const std::string text = report(ResultsFile(folder / "a.h5"));
+  CAPTURE(text);
+  CHECK(text.find("  +- error  sigma  steps  ") != std::string::npos);
+  CHECK(text.find("  step  +- error  sigma\n") != std::string::npos);
+  CHECK(text.find("  3.0  ") != std::string::npos);
+  CHECK(text.find("\nno tap was late\n") != std::string::npos);
+  CHECK(text.find("\ntaps lost 43.8 % of it\n") != std::string::npos);
+}
+
+TEST_CASE("Reported taps are about three a decade, with both ends") {
+  CHECK(reported_taps(0) == std::vector<std::uint64_t>{0});
+  CHECK(reported_taps(1) == std::vector<std::uint64_t>{0, 1});
+  CHECK(reported_taps(50) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50});
+  CHECK(reported_taps(400) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50, 100, 200, 400});
+}

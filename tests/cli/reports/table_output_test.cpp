@@ -1,0 +1,95 @@
+#include "cli/reports/table_output.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace jostle;
+
+namespace {
+
+Table example() {
+  const std::vector<std::string> both = {"age", "lag"};
+  return {
+      .name = "point_0000/ageing",
+      .axes = {{"age", {"age"}, std::vector<std::uint64_t>{1, 10}, "taps", "waiting time", ""},
+               {"lag", {"lag"}, std::vector<std::uint64_t>{2, 4, 8}, "taps", "lag", ""}},
+      .quantities = {{"tau", {}, std::vector{12.345678}, "taps", "memory", "eq. 6"},
+                     {"tau_error", {}, std::vector{0.21}, "taps", "", ""},
+                     {"a", both, std::vector{1.0, 2.0, 3.0, 4.0, 5.0, std::nan("")}, "1", "", ""},
+                     {"kind", {"age"}, std::vector<std::string>{"x", "y, z"}, "", "", ""}},
+      .notes = {{"verdict", "it ages"}}};
+}
+
+}  // namespace
+
+TEST_CASE("A table for people has values with their errors, then columns") {
+  const std::string text = table_text(example(), Detail::full);
+  CHECK(text.find("  verdict                it ages\n") != std::string::npos);
+  CHECK(text.find("  tau                    12.35 +- 0.21 taps   (memory)\n") != std::string::npos);
+  CHECK(text.find("tau_error") == std::string::npos);
+  CHECK(text.find("age  lag  a\n  1    2  1\n") != std::string::npos);
+  CHECK(text.find(" 10    8  -\n") != std::string::npos);
+}
+
+TEST_CASE("A table for people has values with their 95 % intervals") {
+  Table table = example();
+  for (const auto& [ending, value] : {std::pair{"_low_68", 12.1}, std::pair{"_high_68", 12.6},
+                                      std::pair{"_low_95", 11.8}, std::pair{"_high_95", 12.9}}) {
+    table.quantities.push_back(
+        {std::string("tau").append(ending), {}, std::vector{value}, "taps", "", ""});
+  }
+  const std::string text = table_text(table, Detail::full);
+  CHECK(text.find("  tau                    12.35 (11.8 to 12.9) taps   (memory)\n") !=
+        std::string::npos);
+  CHECK(text.find("tau_") == std::string::npos);
+  std::get<std::vector<double>>(table.quantities.back().values)[0] = std::nan("");
+  CHECK(table_text(table, Detail::full).find("12.3457 taps") != std::string::npos);
+}
+
+TEST_CASE("A brief table leaves long columns out") {
+  Table table = example();
+  table.axes[1].values = std::vector<std::uint64_t>(20, 1);
+  table.quantities[2].values = std::vector<double>(40, 0.5);
+  const std::string text = table_text(table, Detail::brief);
+  CHECK(text.find("12.35") != std::string::npos);
+  CHECK(text.find("y, z") != std::string::npos);
+  CHECK(text.find("0.5") == std::string::npos);
+  CHECK(text.find("  40 rows of age, lag    in --csv FILE and --json: a\n") != std::string::npos);
+}
+
+TEST_CASE("A table says where it has no rows") {
+  Table table = example();
+  table.axes[1].values = std::vector<std::uint64_t>();
+  table.quantities[2].values = std::vector<double>();
+  for (const Detail detail : {Detail::brief, Detail::full}) {
+    CHECK(table_text(table, detail).find("  0 rows of age, lag     none: a\n") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("Rounding noise is seen beside the column it is in") {
+  Table table = {.name = "t",
+                 .axes = {{"n", {"n"}, std::vector<std::uint64_t>{1, 2}, "", "", ""}},
+                 .quantities = {{"x", {"n"}, std::vector{5000.0, 1e-12}, "1", "", ""},
+                                {"x_error", {"n"}, std::vector{2.5, 1e-12}, "1", "", ""}},
+                 .notes = {}};
+  const std::string text = table_text(table, Detail::full);
+  CHECK(text.find("5000.0 +- 2.5\n") != std::string::npos);
+  CHECK(text.find(" 0\n") != std::string::npos);
+}
+
+TEST_CASE("A table for programs nests its axes, and has null for what is no number") {
+  const Json json = table_json(example());
+  CHECK(json.at("quantities").at("a").at("values").dump() == "[[1.0,2.0,3.0],[4.0,5.0,null]]");
+  CHECK(json.at("quantities").at("tau").at("values") == 12.345678);
+  CHECK(json.at("axes").at("lag").at("values").dump() == "[2,4,8]");
+  CHECK(json.at("notes").at("verdict") == "it ages");
+}
+
+TEST_CASE("A table as CSV has a block a set of axes") {
+  CHECK(table_csv(example()) ==
+        "# point_0000/ageing\n# verdict: it ages\n"
+        "tau,tau_error\n12.345678,0.21\n\n"
+        "age,lag,a\n1,2,1\n1,4,2\n1,8,3\n10,2,4\n10,4,5\n10,8,nan\n\n"
+        "age,kind\n1,x\n10,\"y, z\"\n\n");
+}
