@@ -27,6 +27,10 @@ inline std::string particles_name(RealizationId id) {
   return point_name(id.point) + "_" + realization_name(id.realization);
 }
 
+/// Of a sweep point that keeps the same as an earlier one: the number of that one, which alone has
+/// the datasets of /sweep/P. So a point of a long sweep takes some hundred bytes.
+inline constexpr const char* keeps_what_point_keeps = "keeps_what_point_keeps";
+
 /// The columns of the engine are named in the file where they are not those of Monte Carlo, which
 /// every file without names has.
 inline constexpr const char *diagnostics_name = "diagnostics", *diagnostics_prefix = "diagnostics_";

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <span>
 
 #include "results/export/container_text.hpp"
 #include "results/file/layout.hpp"
@@ -78,7 +79,36 @@ Snapshots read_snapshot_settings(hid_t group) {
           .bin_width = read_number_attribute<double>(group, "bin_width")};
 }
 
-StudyPoint read_point(hid_t sweep, std::uint32_t number) {
+/// /sweep/value, [n_points, n_pointers].
+struct SweptValues {
+  std::vector<std::string> pointers, values;
+};
+
+SweptValues read_swept_values(hid_t sweep, std::size_t n_points) {
+  if (!exists(sweep, "pointer")) return {};
+  SweptValues all{read_texts(sweep, "pointer"), {}};
+  require_shape(sweep, "value", {n_points, all.pointers.size()});
+  all.values = read_texts(sweep, "value");
+  return all;
+}
+
+/// The pointers of an earlier point, with the values of this one.
+std::vector<std::pair<std::string, std::string>> values_like(const StudyPoint& earlier,
+                                                             const SweptValues& swept,
+                                                             std::size_t number) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& [pointer, unused] : earlier.sweep_values) {
+    const auto found = std::ranges::find(swept.pointers, pointer);
+    if (found == swept.pointers.end()) throw Hdf5Error("the sweep has no values of " + pointer);
+    const auto column = static_cast<std::size_t>(found - swept.pointers.begin());
+    values.emplace_back(pointer, swept.values.at(number * swept.pointers.size() + column));
+  }
+  return values;
+}
+
+/// `earlier`: the points before this one.
+StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const SweptValues& swept) {
+  const auto number = static_cast<std::uint32_t>(earlier.size());
   const Hdf5Handle group = open_group(sweep, point_name(number));
   StudyPoint point;
   point.label = read_text_attribute(group, "label");
@@ -87,12 +117,21 @@ StudyPoint read_point(hid_t sweep, std::uint32_t number) {
   point.container = read_container(group);
   point.n_spheres = read_number_attribute<std::uint32_t>(group, "n_spheres");
   point.taps = read_number_attribute<std::uint64_t>(group, "taps");
-  const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
-  for (std::size_t i = 0; i < pointers.size(); ++i)
-    point.sweep_values.emplace_back(pointers[i], values.at(i));
-  point.observables = read_labels(group, "observables", "");
-  point.diagnostics = read_diagnostics(group);
-  point.snapshots = read_snapshot_settings(group);
+  if (checked(H5Aexists(group, keeps_what_point_keeps)) > 0) {
+    const auto as = read_number_attribute<std::uint32_t>(group, keeps_what_point_keeps);
+    if (as >= number) throw Hdf5Error("a sweep point keeps what a later one keeps");
+    point.sweep_values = values_like(earlier[as], swept, number);
+    point.observables = earlier[as].observables;
+    point.diagnostics = earlier[as].diagnostics;
+    point.snapshots = earlier[as].snapshots;
+  } else {
+    const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
+    for (std::size_t i = 0; i < pointers.size(); ++i)
+      point.sweep_values.emplace_back(pointers[i], values.at(i));
+    point.observables = read_labels(group, "observables", "");
+    point.diagnostics = read_diagnostics(group);
+    point.snapshots = read_snapshot_settings(group);
+  }
   if (checked(H5Aexists(group, "start_sha256")) > 0)
     point.start_sum = read_text_attribute(group, "start_sha256");
   return point;
@@ -116,7 +155,9 @@ Study read_study(hid_t file) {
   study.realizations = read_number_attribute<std::uint32_t>(scene, "realizations");
   const Hdf5Handle sweep = open_group(file, "sweep");
   const auto n_points = read_numbers<std::uint32_t>(sweep, "point").size();
-  for (std::uint32_t p = 0; p < n_points; ++p) study.points.push_back(read_point(sweep, p));
+  const SweptValues swept = read_swept_values(sweep, n_points);
+  for (std::size_t p = 0; p < n_points; ++p)
+    study.points.push_back(read_point(sweep, study.points, swept));
   return study;
 }
 

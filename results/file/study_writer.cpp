@@ -72,7 +72,33 @@ void write_columns(hid_t group, const StudyPoint& point) {
   write_texts_along(group, own);
 }
 
-void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
+Texts pointers_of(const StudyPoint& point) {
+  Texts pointers;
+  for (const auto& [pointer, value] : point.sweep_values) pointers.push_back(pointer);
+  return pointers;
+}
+
+bool keeps_the_same(const StudyPoint& a, const StudyPoint& b) {
+  return a.observables == b.observables && a.diagnostics == b.diagnostics &&
+         a.snapshots == b.snapshots && pointers_of(a) == pointers_of(b);
+}
+
+/// What is kept of a point.
+void write_kept(hid_t group, const StudyPoint& point) {
+  Texts values;
+  for (const auto& [pointer, value] : point.sweep_values) values.push_back(value);
+  write_texts_along(group, {{"pointers", pointers_of(point)}, {"values", values}});
+  write_columns(group, point);
+  make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
+  const std::array<std::uint8_t, 3> kept = {point.snapshots.positions, point.snapshots.coordination,
+                                            point.snapshots.height_histogram};
+  write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
+  write_attribute(group, "contact_cut", point.snapshots.contact_cut);
+  write_attribute(group, "bin_width", point.snapshots.bin_width);
+}
+
+/// `as`: the number of an earlier point that keeps the same, or its own.
+void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point, std::uint32_t as) {
   const Hdf5Handle group = create_group(sweep, point_name(number));
   const ContainerText container = container_text(point.container);
   write_attribute(group, "label", point.label);
@@ -82,19 +108,10 @@ void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point) {
   write_attribute<double>(group, "widths", container.widths);
   write_attribute(group, "n_spheres", point.n_spheres);
   write_attribute(group, "taps", point.taps);
-  Texts pointers, values;
-  for (const auto& [pointer, value] : point.sweep_values) {
-    pointers.push_back(pointer);
-    values.push_back(value);
-  }
-  write_texts_along(group, {{"pointers", pointers}, {"values", values}});
-  write_columns(group, point);
-  make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
-  const std::array<std::uint8_t, 3> kept = {point.snapshots.positions, point.snapshots.coordination,
-                                            point.snapshots.height_histogram};
-  write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
-  write_attribute(group, "contact_cut", point.snapshots.contact_cut);
-  write_attribute(group, "bin_width", point.snapshots.bin_width);
+  if (as == number)
+    write_kept(group, point);
+  else
+    write_attribute(group, keeps_what_point_keeps, as);
   if (!point.start_sum.empty()) write_attribute(group, "start_sha256", point.start_sum);
 }
 
@@ -198,7 +215,11 @@ void write_study(hid_t file, const Study& study) {
   write_texts(scene, "resolved", {}, {&study.resolved_scene, 1});
   const Hdf5Handle sweep = create_group(file, "sweep");
   write_table(sweep, study);
-  for (std::uint32_t p = 0; p < study.points.size(); ++p) write_point(sweep, p, study.points[p]);
+  std::uint32_t as = 0;
+  for (std::uint32_t p = 0; p < study.points.size(); ++p) {
+    if (!keeps_the_same(study.points[as], study.points[p])) as = p;
+    write_point(sweep, p, study.points[p], as);
+  }
 }
 
 void write_provenance(hid_t file, const FileContent& content, RunState state) {

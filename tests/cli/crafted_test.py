@@ -167,6 +167,8 @@ KIN = {
     "series of texts": lambda file: replace(file, f"{SERIES}/mean_height", ["x"] * 123,
                                             dtype=h5py.string_dtype()),
     "an axis with a hole": lambda file: file.__delitem__(f"{SERIES}/tap"),
+    "a point that keeps what it keeps itself": attribute(
+        POINT, "keeps_what_point_keeps", np.uint32(0)),
     "4 billion spheres": attribute(POINT, "n_spheres", np.uint32(2**32 - 1)),
     "no spheres": attribute(POINT, "n_spheres", np.uint32(0)),
     "other spheres": attribute(POINT, "n_spheres", np.uint32(47)),

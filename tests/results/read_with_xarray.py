@@ -102,7 +102,7 @@ def check_every_group_opens(path):
     expected = ["/provenance", "/sweep/point_0000", "/restart/point_0001",
                 "/particles/point_0000_realization_00002/box"]
     assert set(expected) <= set(groups), groups
-    point = open_group(path, "/sweep/point_0001")
+    point = open_group(path, "/sweep/point_0000")
     assert point["units"].dims == point["sources"].dims == ("observables",)
     assert point["units"].sel(observables="mean_height") == "diameter"
     assert open_group(path, "/provenance")["host"].dims == ("process",)
