@@ -15,11 +15,32 @@ endif()
 add_library(jostle_not_hot INTERFACE)
 target_compile_options(jostle_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
-# jostle_library(engine SOURCES a.cpp ... DEPENDS jostle_x ...): one folder, one library, installed
-# as jostle::engine. Link only what the arrows allow: engine <- structure <- ensemble; config and
-# results stand on those; study joins them, and cli is its command line.
+# jostle_precompile(TARGET GROUP [HEADER ...]): what nearly every source includes is parsed once for the
+# targets of a group, all compiled alike; the first of them names the headers. Sources name what they
+# use all the same: the preset dev and other compilers build without.
+function(jostle_precompile target group)
+  if(CMAKE_DISABLE_PRECOMPILE_HEADERS OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    return()
+  endif()
+  # GCC forgets that precompiled headers are the system's, and 12 warns of its own strings.
+  target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+                                           -Wno-stringop-overread)
+  get_property(first GLOBAL PROPERTY jostle_precompiled_${group})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(GLOBAL PROPERTY jostle_precompiled_${group} ${target})
+  endif()
+endfunction()
+set(JOSTLE_COMMON_HEADERS <algorithm> <array> <chrono> <cmath> <functional> <map> <memory> <numeric>
+                          <optional> <span> <string> <variant> <vector>)
+
+# jostle_library(engine [NOT_HOT] SOURCES a.cpp ... PUBLIC jostle_x ... PRIVATE ...): one folder, one
+# library, installed as jostle::engine. Link only what the arrows allow: engine <- structure <-
+# ensemble; config and results stand on those; study joins them, and cli is its command line.
 function(jostle_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(jostle_${name} STATIC ${arg_SOURCES})
   add_library(jostle::${name} ALIAS jostle_${name})
   set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
@@ -29,5 +50,11 @@ function(jostle_library name)
   target_include_directories(
     jostle_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle>)
+  if(arg_NOT_HOT)
+    target_link_libraries(jostle_${name} PRIVATE $<BUILD_INTERFACE:jostle_not_hot>)
+    jostle_precompile(jostle_${name} not_hot ${JOSTLE_COMMON_HEADERS} <fmt/format.h>)
+  else()
+    jostle_precompile(jostle_${name} hot ${JOSTLE_COMMON_HEADERS})
+  endif()
   set_property(GLOBAL APPEND PROPERTY jostle_libraries jostle_${name})
 endfunction()
