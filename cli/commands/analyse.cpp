@@ -139,6 +139,8 @@ std::vector<std::uint64_t> ascending(const char* option, std::vector<std::uint64
 std::string file_or_kind_fault(const std::string& text) {
   if (std::filesystem::exists(text) && !std::filesystem::is_directory(text)) return {};
   const std::vector<std::string> kinds{"steady", "spectrum", "ageing", "hysteresis", "sweep"};
+  if (std::ranges::find(kinds, text) != kinds.end())
+    return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
   return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
                      joined(kinds, ", "), did_you_mean(text, kinds));
 }

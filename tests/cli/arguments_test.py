@@ -73,6 +73,8 @@ class Words(Refused):
         self.refused("analyze", answer='Did you mean "analyse"?')
         self.refused("analyse", "tiny.h5", "stedy", "--observable", "mean_height",
                      answer="stedy: there is no such file, and no such analysis; there are steady")
+        self.refused("analyse", "steady", "tiny.h5", "--observable", "mean_height",
+                     answer="steady is an analysis, and follows the files: jostle analyse FILE st")
 
     def test_the_nearest_word_is_proposed(self):
         self.results()
