@@ -123,11 +123,8 @@ void add_check(Command& app, int& code) {
   Command command = app.add_command("check", "Say what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
   command.add_option("scene", arguments->scene, "The scene, a JSON file").required();
-  command
-      .add_option("--threads", arguments->threads,
-                  "Estimate for so many (default: the CPUs this process may use)")
-      .between(1, 4096)
-      .environment("JOSTLE_THREADS");
+  command.add_threads(arguments->threads,
+                      "Estimate for so many (default: the CPUs this process may use)");
   command.add_flag("--no-pilot", arguments->no_pilot,
                    "Leave out the short trial that time and memory are estimated from");
   command.footer(
