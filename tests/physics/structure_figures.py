@@ -192,7 +192,8 @@ OCTAHEDRAL = (np.sqrt(2) - 1)**3
 
 
 def pore_sizes(run):
-    kept = [packings["pores"] for packings in run.structure(["pores"])]
+    packings = run.structure(["pores", "holes"])  # a realization each
+    kept = [parts["pores"] for parts in packings]
     pores, holes = (run.ensemble_structure(part) for part in ("pores", "holes"))
     fraction, taps = run.curves("corrected_fraction")[0], [int(tap) for tap in pores["tap"]]
 
@@ -209,7 +210,7 @@ def pore_sizes(run):
     text.append(table(["rho_v at v ="] + [f"{pores['xi'][i] ** 3:.3f}" for i in xi],
                       [[str(tap)] + [Estimate.of(of("rho_v")[:, k, i]).text(0) for i in xi]
                        for k, tap in enumerate(taps)]))
-    text += hole_tables(holes, taps)
+    text += hole_tables(holes, [parts["holes"] for parts in packings], taps)
     sizes = of("xi")[0]
     small, large = sizes**3 <= OCTAHEDRAL, sizes**3 > 0.15
     counts = of("rho_xi")
@@ -246,16 +247,18 @@ def pore_statements(pores, taps, fraction, nu, v0, n_pores, shrunk):
     return statements
 
 
-def hole_tables(holes, taps):
+def hole_tables(holes, kept, taps):
+    def of(name, tap, *hole):
+        return Estimate.of([table_of[name][(tap, *hole)] for table_of in kept]).text(3)
     rows = []
     for i, name in enumerate(holes["hole"]):
         row = [name.decode()]
         for kind in ("number", "volume"):
-            row += [f"{holes[f'{kind}_fraction'][k, i]:.3f}" for k in (0, -1)]
+            row += [of(f"{kind}_fraction", k, i) for k in (0, -1)]
             row.append(f"{holes[f'{kind}_fraction_published'][0, i]:.3f}")
         rows.append(row)
     header = ["table I"]
     for kind in ("number", "volume"):
         header += [f"{kind}, tap 0", f"tap {taps[-1]}", "Bernal"]
     return [table(header, rows), "Unclassified part of the volume: " + ", ".join(
-        f"{holes['unclassified'][k]:.3f} at tap {tap}" for k, tap in enumerate(taps)) + "."]
+        f"{of('unclassified', k)} at tap {tap}" for k, tap in enumerate(taps)) + "."]
