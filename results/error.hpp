@@ -9,13 +9,18 @@ namespace jostle::inline results {
 /// reason and, where there is one, the way out.
 class ResultsError : public std::runtime_error {
  public:
-  ResultsError(std::string path, const std::string& reason)
-      : std::runtime_error(path + ": " + reason), path_(std::move(path)) {}
+  enum class Force { no, helps };
+
+  /// `force`: whether the way out that `reason` ends with is to call again with `force`.
+  ResultsError(std::string path, const std::string& reason, Force force = Force::no)
+      : std::runtime_error(path + ": " + reason), path_(std::move(path)), force_(force) {}
 
   const std::string& path() const { return path_; }
+  bool force_helps() const { return force_ == Force::helps; }
 
  private:
   std::string path_;
+  Force force_;
 };
 
 }  // namespace jostle::inline results

@@ -48,10 +48,10 @@ void check_same_starts(const ResultsFile& first, const ResultsFile& other) {
 
 void claim(Owners& owners, const ResultsFile& file, const Study& study) {
   if (file.state() != RunState::complete || parts_exist(file.path()))
-    throw ResultsError(file.path(), "is not finished; finish it by jostle run --resume");
+    throw ResultsError(file.path(), "is not finished; resume its run to the end");
   if (file.study().realizations != study.realizations)
-    throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; add "
-                                                "some by jostle run --resume",
+    throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; resume "
+                                                "its run with more",
                                                 file.study().realizations, study.realizations));
   const PointNumbers numbers(study);
   for (const RealizationSummary& summary : file.realizations()) {
@@ -106,12 +106,14 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
   remove_stale_temporaries(output);
   struct stat status;
   if (!force && ::stat(output.c_str(), &status) == 0)
-    throw ResultsError(output, "exists already; overwrite it by --force, or choose another name");
+    throw ResultsError(output, "exists already; choose another name, or replace it",
+                       ResultsError::Force::helps);
   if (!force && parts_exist(output))
     throw ResultsError(
         parts_folder(output),
         "holds parts of another run, which the merged file would cut off from theirs; "
-        "choose another name, or discard them by --force");
+        "choose another name, or discard them",
+        ResultsError::Force::helps);
   if (inputs.empty()) throw ResultsError(output, "nothing to merge");
   std::vector<ResultsFile> files;
   for (const std::string& input : inputs) files.emplace_back(input);

@@ -116,10 +116,8 @@ void RunStore::Impl::go_on(const std::function<Study(const ResultsFile&)>& study
 void RunStore::Impl::check_shard_and_points() const {
   const Shard stored = file->shard();
   if (stored != shard)
-    throw ResultsError(path, fmt::format("holds shard {}/{} of its study, not {}/{}; resume it "
-                                         "with --shard {}/{}",
-                                         stored.index, stored.count, shard.index, shard.count,
-                                         stored.index, stored.count));
+    throw ResultsError(path, fmt::format("holds shard {}/{} of its study, not {}/{}", stored.index,
+                                         stored.count, shard.index, shard.count));
   const PointNumbers numbers(study);
   for (const StudyPoint& point : file->study().points)
     if (!numbers.of(point.id))
@@ -205,13 +203,13 @@ std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study&
   auto impl = std::make_unique<Impl>(path, shard, force);
   impl->study = study;
   if (!force && file_exists(path))
-    throw ResultsError(path,
-                       "exists already; go on with it by --resume, overwrite it by --force, or "
-                       "choose another name by --output");
+    throw ResultsError(path, "exists already; resume it, choose another name, or replace it",
+                       ResultsError::Force::helps);
   if (!force && parts_exist(path))
     throw ResultsError(parts_folder(path),
                        "holds parts of an earlier run whose results file is gone; restore that "
-                       "file, or discard the parts by --force");
+                       "file, or discard the parts",
+                       ResultsError::Force::helps);
   impl->start(provenance);
   return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
 }

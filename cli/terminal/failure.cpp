@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "results/error.hpp"
 #include "study/results_input.hpp"
 #include "study/run.hpp"
 
@@ -60,6 +61,10 @@ std::string text_of(const OtherShard& error) {
                      error.stored().count);
 }
 
+std::string text_of(const ResultsError& error) {
+  return fmt::format("{}{}", error.what(), error.force_helps() ? " (--force)" : "");
+}
+
 /// Nothing for an error of another kind.
 template <class Error>
 bool tell(const std::exception& error, std::string& text) {
@@ -74,7 +79,7 @@ std::string failure_text(const std::exception& error) {
   std::string text;
   if (tell<BadArgument>(error, text) || tell<NoTapsYet>(error, text) ||
       tell<OutputExists>(error, text) || tell<OtherScene>(error, text) ||
-      tell<OtherShard>(error, text)) {
+      tell<OtherShard>(error, text) || tell<ResultsError>(error, text)) {
     return text;
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {

@@ -71,9 +71,11 @@ bool is_still_at(const std::string& path, int descriptor) {
 void refuse_living_owner(const std::string& path, const LockOwner& owner, bool force) {
   if (owner.host != this_host()) {
     if (force) return;
-    throw ResultsError(path, fmt::format("process {} on host {} may still be working on this file; "
-                                         "if it is not, take over with --force",
-                                         owner.pid, owner.host));
+    throw ResultsError(path,
+                       fmt::format("process {} on host {} may still be working on this file; if it "
+                                   "is not, take the file over",
+                                   owner.pid, owner.host),
+                       ResultsError::Force::helps);
   }
   if (owner.alive && owner.pid != ::getpid())
     throw ResultsError(path, fmt::format("process {} on this host is working on this file; wait "

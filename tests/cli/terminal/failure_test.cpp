@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <new>
 
+#include "results/error.hpp"
 #include "study/run.hpp"
 
 using namespace jostle;
@@ -24,6 +25,11 @@ TEST_CASE("Errors of the library are said by the names of options") {
   CHECK(failure_text(OtherScene("out.h5", "/seed: changed")) ==
         "out.h5 was begun with another scene and cannot be resumed with this one:\n/seed: changed\n"
         "Undo the change, or write to another file with -o.");
+  CHECK(failure_text(ResultsError("out.h5", "is gone; restore it")) ==
+        "out.h5: is gone; restore it");
+  CHECK(failure_text(ResultsError("out.h5", "exists already; choose another name, or replace it",
+                                  ResultsError::Force::helps)) ==
+        "out.h5: exists already; choose another name, or replace it (--force)");
 }
 
 TEST_CASE("Memory that ran out is said with what to do") {
