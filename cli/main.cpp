@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <exception>
 #include <stdexcept>
@@ -8,6 +6,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/options/command_line.hpp"
 #include "cli/terminal/failure.hpp"
+#include "cli/terminal/log.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/version.hpp"
 #include "results/export/printable.hpp"
@@ -65,9 +64,7 @@ void say(const std::string& what) {
 /// Every error ends here, and says on stderr what is wrong.
 int run_program(int argc, char** argv) {
   try {
-    const auto log = spdlog::stderr_color_mt("jostle");
-    log->set_pattern("%T jostle: %v");
-    spdlog::set_default_logger(log);
+    begin_log();
     const int code = parse_and_run(argc, argv);
     return code == exit_ok && output_is_lost() ? exit_io_error : code;
   } catch (const BadInput& error) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/bed/boundary.hpp"
 #include "structure/measure_parts.hpp"

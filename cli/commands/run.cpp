@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "cli/reports/report.hpp"
 #include "cli/reports/tables_display.hpp"
 #include "cli/terminal/failure.hpp"
+#include "cli/terminal/log.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
 #include "cli/terminal/standard_streams.hpp"
@@ -162,9 +162,9 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
 int run(const RunArguments& arguments) {
   StopRequest stop;  // from here on, signals stop and do not kill
   ignore_sigpipe();
-  if (arguments.quiet) spdlog::set_level(spdlog::level::warn);
+  if (arguments.quiet) silence_log();
   if (arguments.force && (arguments.resume || arguments.retry_failed)) {
-    spdlog::info("--force with a resume takes over another host's lock, and replaces no file");
+    log_line("--force with a resume takes over another host's lock, and replaces no file");
   }
   const LoadedScene loaded = load_scene(arguments.scene);
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
@@ -173,7 +173,7 @@ int run(const RunArguments& arguments) {
   RunDisplay display(progress_style(arguments), settings.output, threads, !arguments.quiet);
   SceneRun run(loaded, settings, display);
   for (const std::string& warning : scene_warnings(loaded))
-    spdlog::info("warning: {}", printable(warning));
+    log_line(fmt::format("warning: {}", printable(warning)));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
     return run_to_end(arguments, run, settings, stop);

@@ -1,8 +1,8 @@
 #include "cli/terminal/run_display.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "cli/terminal/log.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/printable.hpp"
@@ -12,8 +12,9 @@ namespace jostle::inline cli {
 void RunDisplay::computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
                            std::uint64_t all) {
   if (!file_.empty()) {
-    spdlog::info("{}: {} of {} to do on {}", printable(file_), pending, counted(all, "realization"),
-                 counted(static_cast<std::uint64_t>(threads_), "thread"));
+    log_line(fmt::format("{}: {} of {} to do on {}", printable(file_), pending,
+                         counted(all, "realization"),
+                         counted(static_cast<std::uint64_t>(threads_), "thread")));
   }
   computing_.emplace(progress, ahead, style_);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/bed/philox.hpp"
+
 namespace jostle::inline engine {
 
 namespace {

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <Random123/philox.h>
-
-#include <array>
 #include <cstdint>
 
-// Counter-based random numbers: Philox4x32-10 (Salmon et al., SC11, doi:10.1145/2063384.2063405).
-// A stream is a 64-bit key; the n-th block of a stream is a function of (key, n) alone, so a
-// realization can be resumed anywhere and depends on no other.
+// Counter-based random numbers (philox.hpp): a stream is a 64-bit key, and its n-th number is a
+// function of (key, n) alone, so a realization can be resumed anywhere and depends on no other.
 namespace jostle::inline engine {
 
 /// What a stream of a realization is for. The numbers are part of the results' identity.
@@ -27,18 +23,6 @@ enum class StreamKey : std::uint64_t {};
 /// sweep_point is the sweep point's id, not its index, so that adding a point changes no other.
 StreamKey stream_key(std::uint64_t seed, std::uint64_t sweep_point, std::uint64_t realization,
                      Purpose purpose);
-
-/// The block of four 32-bit words with number (block, lane) of a stream.
-inline std::array<std::uint32_t, 4> philox_block(StreamKey key, std::uint64_t block,
-                                                 std::uint32_t lane = 0) {
-  const auto k = static_cast<std::uint64_t>(key);
-  const philox4x32_ctr_t counter = {
-      {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(block >> 32), lane, 0}};
-  const philox4x32_key_t philox_key = {
-      {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(k >> 32)}};
-  const philox4x32_ctr_t words = philox4x32_R(10, counter, philox_key);
-  return {words.v[0], words.v[1], words.v[2], words.v[3]};
-}
 
 /// A stream read one number after another; `position` alone restores it.
 class RandomStream {

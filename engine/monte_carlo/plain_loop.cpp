@@ -5,6 +5,7 @@
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/elementary.hpp"
+#include "engine/bed/philox.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
 namespace jostle::inline engine {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 // Decompositions of matrices with few columns. Eigen's templates for them take seconds of every
 // source that uses one: they stand in one, behind plain functions.
@@ -14,6 +15,33 @@ Eigen::MatrixXd least_squares_of_columns(const Eigen::MatrixXd& a, const Eigen::
 
 /// Columns that are independent to rounding, by the same decomposition.
 Eigen::Index column_rank(const Eigen::MatrixXd& a);
+
+/// a = Q R P^T by Householder reflections with column pivoting, kept for several right sides.
+/// a: [n, m].
+class PivotedQr {
+ public:
+  explicit PivotedQr(const Eigen::MatrixXd& a);
+  ~PivotedQr();
+
+  /// Columns that are independent to rounding.
+  Eigen::Index rank() const;
+  /// R P^T, [min(n, m), m].
+  Eigen::MatrixXd triangle() const;
+  /// The first min(n, m) rows of Q^T v; v: [n].
+  Eigen::VectorXd rotated(const Eigen::VectorXd& v) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+struct TriangularSystem {
+  Eigen::MatrixXd upper;  // R, [m, m]
+  Eigen::VectorXd right;  // the first m rows of Q^T b
+};
+/// What is left to solve of the least squares problem a x = b, without pivoting. a: [n, m], n >= m;
+/// b: [n].
+TriangularSystem triangular_system(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// R of a = Q R, [min(n, m), m], without pivoting.
 Eigen::MatrixXd upper_triangle(const Eigen::MatrixXd& a);

@@ -18,18 +18,12 @@ Eigen::MatrixXd scaled(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& s
 TrustStep::TrustStep(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& r,
                      const Eigen::VectorXd& scale)
     : qr_(scaled(jacobian, scale)),
+      triangle_(qr_.triangle()),
+      projected_(qr_.rotated(r)),
       scale_(scale),
       column_norms_(jacobian.colwise().norm().transpose()),
-      r_norm_(r.norm()) {
-  const Eigen::Index rows = std::min(jacobian.rows(), jacobian.cols());
-  Eigen::VectorXd rotated = r;
-  rotated.applyOnTheLeft(qr_.householderQ().adjoint());
-  projected_ = rotated.head(rows);
-  const Eigen::MatrixXd upper =
-      qr_.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
-  triangle_ = upper * qr_.colsPermutation().transpose();
-  full_rank_ = qr_.rank() == jacobian.cols();
-}
+      r_norm_(r.norm()),
+      full_rank_(qr_.rank() == jacobian.cols()) {}
 
 Eigen::VectorXd TrustStep::solve(double lambda, const Eigen::VectorXd& b,
                                  Eigen::MatrixXd* triangle) const {
@@ -40,11 +34,9 @@ Eigen::VectorXd TrustStep::solve(double lambda, const Eigen::VectorXd& b,
   augmented.bottomRows(n).diagonal().setConstant(std::sqrt(lambda));
   Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + n);
   right.head(rows) = -b;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(augmented);
-  const Eigen::MatrixXd upper = qr.matrixQR().topRows(n).template triangularView<Eigen::Upper>();
-  right.applyOnTheLeft(qr.householderQ().adjoint());
-  if (triangle) *triangle = upper;
-  return upper.template triangularView<Eigen::Upper>().solve(right.head(n));
+  const TriangularSystem system = triangular_system(augmented, right);
+  if (triangle) *triangle = system.upper;
+  return system.upper.template triangularView<Eigen::Upper>().solve(system.right);
 }
 
 Eigen::VectorXd TrustStep::within(double radius) {
@@ -89,9 +81,7 @@ Eigen::VectorXd TrustStep::within(double radius) {
 }
 
 Eigen::VectorXd TrustStep::damped(const Eigen::VectorXd& v) const {
-  Eigen::VectorXd rotated = v;
-  rotated.applyOnTheLeft(qr_.householderQ().adjoint());
-  return solve(lambda_, rotated.head(triangle_.rows())).cwiseQuotient(scale_);
+  return solve(lambda_, qr_.rotated(v)).cwiseQuotient(scale_);
 }
 
 double TrustStep::gradient_cosine() const {

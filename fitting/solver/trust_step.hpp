@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
+
+#include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
 
@@ -32,7 +33,7 @@ class TrustStep {
   Eigen::VectorXd solve(double lambda, const Eigen::VectorXd& b,
                         Eigen::MatrixXd* triangle = nullptr) const;
 
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  PivotedQr qr_;
   Eigen::MatrixXd triangle_;   // R P^T, [min(n_residuals, n_variables), n_variables]
   Eigen::VectorXd projected_;  // first rows of Q^T r
   Eigen::VectorXd scale_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/bed/elementary.hpp"
-#include "engine/bed/random.hpp"
+#include "engine/bed/philox.hpp"
 #include "engine/monte_carlo/kernel/falling_trials.hpp"
 #include "engine/monte_carlo/kernel/neighbourhood.hpp"
 #include "engine/monte_carlo/kernel/proposals.hpp"

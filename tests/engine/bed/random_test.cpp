@@ -1,4 +1,4 @@
-#include "engine/bed/random.hpp"
+#include "engine/bed/philox.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

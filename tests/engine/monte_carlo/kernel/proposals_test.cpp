@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/bed/random.hpp"
+#include "engine/bed/philox.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
