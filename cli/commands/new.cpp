@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -40,14 +39,14 @@ std::string text_of(const std::string& name) {
                              did_you_mean(name, names), joined(names, "\n  ")));
 }
 
-/// The text with another string at a key (a regular expression) of its outermost object, the first
-/// of that name.
-std::string with_string(const std::string& text, const char* key, const std::string& value) {
-  const std::regex member(fmt::format("(\"{}\"\\s*:\\s*)\"[^\"]*\"", key));
-  std::smatch found;
-  if (!std::regex_search(text, found, member)) return text;
-  return fmt::format("{}{}\"{}\"{}", found.prefix().str(), found.str(1), value,
-                     found.suffix().str());
+/// The text of a shipped scene with another string, without escapes, at a key of its outermost
+/// object, the first of that name.
+std::string with_string(std::string text, const std::string& key, const std::string& value) {
+  const std::string before = fmt::format("\"{}\": \"", key);
+  const std::size_t found = text.find(before);
+  if (found == std::string::npos) return text;
+  const std::size_t begin = found + before.size();
+  return text.replace(begin, text.find('"', begin) - begin, value);
 }
 
 /// The schema beside the scene, which editors complete its keys by.
@@ -68,7 +67,7 @@ int write_new_scene(const NewArguments& arguments) {
   const std::string name = path.filename().string();
   path += ".json";
   std::string text = with_string(text_of(arguments.from), "name", name);
-  text = with_string(text, "\\$schema", schema_name);
+  text = with_string(text, "$schema", schema_name);
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
     throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));

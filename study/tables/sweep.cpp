@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
-#include <regex>
+#include <string_view>
+#include <system_error>
 
 #include "config/json/json_text.hpp"
 #include "ensemble/analysis/sweep_curve.hpp"
@@ -37,11 +39,16 @@ struct Member {
 };
 
 /// "/protocol/0/tap/dilate" -> 0.
-std::optional<std::size_t> tap_line(const std::string& pointer) {
-  static const std::regex of_tap("/protocol/([0-9]+)/tap(/.*)?");
-  std::smatch match;
-  if (!std::regex_match(pointer, match, of_tap)) return std::nullopt;
-  return std::stoul(match[1]);
+std::optional<std::size_t> tap_line(std::string_view pointer) {
+  constexpr std::string_view before = "/protocol/";
+  if (!pointer.starts_with(before)) return std::nullopt;
+  pointer.remove_prefix(before.size());
+  std::size_t line = 0;
+  const char* const last = pointer.data() + pointer.size();
+  const auto [end, error] = std::from_chars(pointer.data(), last, line);
+  const std::string_view rest(end, last);
+  const bool of_tap = rest == "/tap" || rest.starts_with("/tap/");
+  return error == std::errc{} && of_tap ? std::optional(line) : std::nullopt;
 }
 
 /// What is swept, and the values of the sweep that do not vary with it.
