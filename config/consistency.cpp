@@ -13,19 +13,6 @@ namespace jostle::inline config {
 
 namespace {
 
-/// The start as the engine has it; the packing of a file is read later.
-Start engine_start(const StartChoice& choice) {
-  return std::visit(
-      [](const auto& start) -> Start {
-        if constexpr (std::is_same_v<std::decay_t<decltype(start)>, PackingFile>) {
-          return GivenPacking{};
-        } else {
-          return start;
-        }
-      },
-      choice);
-}
-
 /// Notes faults between parts, each only where the parts it joins have none of their own. What goes
 /// with what, the engine says; here it gets its place in the scene.
 class Check {

@@ -102,7 +102,7 @@ class LadderMaker {
     for (const double factor : {0.5, 2.0}) {
       AnyMove other = move;
       other.max_step = rounded(move.max_step * factor);
-      if (other.max_step > 2) continue;
+      if (other.max_step > least_periodic_width) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
       add(PilotSetting::Part::step, fmt::format("{} = {:.3g}", name, other.max_step), relax);
@@ -114,7 +114,7 @@ class LadderMaker {
     for (const double factor : {0.5, 2.0}) {
       PolarMove other = move;
       other.theta0 = rounded(move.theta0 * factor);
-      if (other.theta0 < 1e-6 || other.theta0 > 1000) continue;
+      if (other.theta0 < least_theta0 || other.theta0 > most_theta0) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
       add(PilotSetting::Part::step, fmt::format("theta_0 = {:.3g}", other.theta0), relax);
@@ -242,8 +242,9 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
     if (count > 0) out.protocol.push_back({stage.tap, std::nullopt, count});
     taps -= count;
   }
-  const bool relaxes = std::holds_alternative<RandomSettle>(scene.start);
-  if (relaxes && !out.relax_start) out.relax_start = scene.relax;
+  const MonteCarlo engine{scene.relax, scene.relax_start};
+  if (const auto* relaxation = relaxation_of_start(engine, engine_start(scene.start)))
+    out.relax_start = *relaxation;
   for (const OtherWindow& other : other_windows(scene)) out.observables.push_back(other.observable);
   SweepAxis axis;
   axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "ensemble/plan.hpp"
 
@@ -29,7 +31,14 @@ std::string name_in(const NameTable<Enum, n>& names, Enum value) {
   for (const auto& [name, enumerator] : names) {
     if (enumerator == value) return std::string(name);
   }
-  return {};
+  throw std::logic_error("an enumerator that scenes have no name for");
+}
+
+template <class Enum, std::size_t n>
+std::vector<std::string> names_in(const NameTable<Enum, n>& names) {
+  std::vector<std::string> all;
+  for (const auto& [name, enumerator] : names) all.emplace_back(name);
+  return all;
 }
 
 }  // namespace jostle::inline config

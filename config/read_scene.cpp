@@ -10,8 +10,6 @@ namespace jostle::inline config {
 namespace {
 
 constexpr std::size_t longest_name = 100;
-constexpr std::uint64_t most_spheres = 10'000'000;
-constexpr std::uint64_t most_realizations = 1'000'000;
 
 bool is_file_name(const std::string& name) {
   const auto letter_or_digit = [](char c) {

@@ -10,6 +10,11 @@ std::uint64_t total_taps(const Plan& plan) {
   return total;
 }
 
+StreamKey stream_key(const Plan& plan, std::uint32_t realization, Purpose purpose) {
+  const bool shared = plan.streams == Streams::matched && purpose != Purpose::trials;
+  return stream_key(plan.seed, shared ? 0 : plan.point_id, realization, purpose);
+}
+
 const Tap& tap_number(const Plan& plan, std::uint64_t t) {
   assert(t >= 1 && t <= total_taps(plan));
   auto stage = plan.protocol.begin();

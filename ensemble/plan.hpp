@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "engine/bed/container.hpp"
+#include "engine/bed/random.hpp"
 #include "engine/engines.hpp"
 #include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
 #include "structure/observables.hpp"
 
 namespace jostle::inline ensemble {
+
+/// Realizations of a plan, at most.
+inline constexpr std::uint32_t most_realizations = 1'000'000;
 
 /// `count` taps of the same kind and strength.
 struct Stage {
@@ -58,6 +62,10 @@ struct Plan {
 
 /// Taps of the whole protocol.
 std::uint64_t total_taps(const Plan& plan);
+
+/// The stream of a realization at the plan's sweep point. Matched: the start, its relaxation and
+/// the taps draw at every point what they draw at the point without values.
+StreamKey stream_key(const Plan& plan, std::uint32_t realization, Purpose purpose);
 
 /// The tap with number t in 1 .. total_taps(plan).
 const Tap& tap_number(const Plan& plan, std::uint64_t t);

@@ -11,16 +11,9 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-// Matched streams: the start, its relaxation and the taps draw at every sweep point what they draw
-// at the point without one.
-StreamKey key_of(const Plan& plan, std::uint32_t index, Purpose purpose) {
-  const bool shared = plan.streams == Streams::matched && purpose != Purpose::trials;
-  return stream_key(plan.seed, shared ? 0 : plan.point_id, index, purpose);
-}
-
 std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index) {
-  return make_dynamics(plan.engine, {.start = key_of(plan, index, Purpose::start_trials),
-                                     .taps = key_of(plan, index, Purpose::trials)});
+  return make_dynamics(plan.engine, {.start = stream_key(plan, index, Purpose::start_trials),
+                                     .taps = stream_key(plan, index, Purpose::trials)});
 }
 
 }  // namespace
@@ -36,7 +29,7 @@ Realization::Realization(const Plan& plan, std::uint32_t index, std::unique_ptr<
       state_(resumed ? std::move(*resumed) : RealizationState{}),
       dynamics_(std::move(dynamics)),
       packing_{plan.container, std::exchange(state_.centres, {})},
-      tap_random_(key_of(plan, index, Purpose::tap), state_.tap_stream_position) {
+      tap_random_(stream_key(plan, index, Purpose::tap), state_.tap_stream_position) {
   if (state_.rows > 0) observer_.emplace(plan.observables, state_.observable_windows);
   if (packing_.centres.empty()) return;
   dynamics_->load(packing_);
@@ -64,7 +57,7 @@ Slice Realization::advance(std::uint64_t units, const StopAsked& stop) {
 
 // Returns whether it was made, not stopped.
 bool Realization::start(const StopAsked& stop) {
-  RandomStream random(key_of(plan_, index_, Purpose::start));
+  RandomStream random(stream_key(plan_, index_, Purpose::start));
   Packing poured;
   try {
     packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random, stop, &poured);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-// How many realizations are enough.
+// How many realizations a target precision needs.
 namespace jostle::inline ensemble {
 
 /// What is to become small: the standard error of the mean over realizations, which shrinks as

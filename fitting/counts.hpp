@@ -20,7 +20,7 @@ struct Bin {
 struct CountsFit {
   ParameterValues values;        // [n_parameters]
   std::vector<double> expected;  // [n_bins]
-  std::string fault;             // why there is none: the fit did not settle, or ran away
+  std::string fault;             // why there is none: the fit did not settle, or diverged
 };
 
 /// The most likely parameters of Poisson counts (or their mean over realizations) whose expectation

@@ -222,7 +222,7 @@ bool Fitter::find_intervals(const Eigen::VectorXd& inflation, Fit& fit) {
   return true;
 }
 
-// What two parameters that have run away together still determine. Found after the parameters are
+// What two parameters that have diverged together still determine. Found after the parameters are
 // judged.
 void Fitter::find_combinations(Fit& fit) const {
   const auto loose = [&](std::size_t j) {

@@ -132,7 +132,7 @@ std::vector<RealizationId> realizations_of(const Study& study, const Shard& shar
 std::uint64_t disk_estimate(const Study& study, const Shard& shard) {
   std::uint64_t bytes = 1 << 20;
   for (const StudyPoint& point : study.points) {
-    const std::uint64_t ensemble = (point.taps + 1) * (point.observables.size() + 3) * 28;
+    const std::uint64_t ensemble = (point.taps + 1) * point.n_columns() * 28;
     bytes += ensemble + 65536;
   }
   for (const RealizationId id : realizations_of(study, shard))

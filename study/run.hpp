@@ -91,8 +91,8 @@ class RunObserver {
 class SceneRun {
  public:
   /// Begins a file, or goes on with one. `loaded` and `observer` must outlive this. Throws
-  /// OutputExists, OtherScene, OtherShard; BadArgument for a shard of a scene that runs until its
-  /// realizations are enough; ResultsError.
+  /// OutputExists, OtherScene, OtherShard; BadArgument for a shard of a scene that has a
+  /// target precision; ResultsError.
   SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunObserver& observer);
 
   /// Computes what is pending and folds it into the file, realizations of sweep point `first`

@@ -55,8 +55,9 @@ void print_size(const LoadedScene& loaded, const Study& study) {
   }
   print(labels);
   if (!loaded.scene.until.targets.empty()) {
-    print(fmt::format("  at first: realizations are added until they are enough, at most {}\n",
-                      loaded.scene.until.at_most));
+    print(fmt::format(
+        "  at first: realizations are added until the target precision is reached, at most {}\n",
+        loaded.scene.until.at_most));
   }
   print(fmt::format("  disk: at most {}, parts and results together\n",
                     format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));

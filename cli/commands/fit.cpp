@@ -151,8 +151,8 @@ int run_fits(const FitArguments& arguments) {
       print(fits_text(fitted, detail));
     }
     if (source.point) {
-      const auto made = fit_tables(fitted, manner);
-      tables.insert(tables.end(), made.begin(), made.end());
+      const auto fits = fit_tables(fitted, manner);
+      tables.insert(tables.end(), fits.begin(), fits.end());
     }
     if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, fitted.outcomes));
   }

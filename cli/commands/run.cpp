@@ -150,8 +150,8 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
     TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no);
-    const auto made = store_scene_tables(file, settings.threads, display);
-    tables.insert(tables.end(), made.begin(), made.end());
+    const auto stored = store_scene_tables(file, settings.threads, display);
+    tables.insert(tables.end(), stored.begin(), stored.end());
   }
   say_which_tables_are_gone(before, tables, settings.output);
   const std::string failures = failure_lines(file);

@@ -33,23 +33,14 @@ void RunDisplay::compared(const PrecisionStatus& status) {
 }
 
 std::string precision_line(const PrecisionStatus& status) {
-  const auto& values = std::get<std::vector<double>>(status.table.quantities[3].values);
-  const auto& limits = std::get<std::vector<double>>(status.table.quantities[4].values);
-  std::size_t farthest = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double excess = values[i] / limits[i], most = values[farthest] / limits[farthest];
-    if (!(excess <= most)) farthest = i;
-  }
-  const auto text = [&](std::size_t column) {
-    return std::get<std::vector<std::string>>(status.table.quantities[column].values)[farthest];
-  };
-  const char* const verdict = status.met                          ? "enough"
-                              : status.next > status.realizations ? "not enough yet"
-                                                                  : "NOT enough, but the limit";
-  return fmt::format("{} {} {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
-                     counted(status.realizations, "realization"),
-                     status.realizations == 1 ? "is" : "are", verdict, text(2), text(1),
-                     values[farthest], limits[farthest]);
+  const char* const verdict = status.met ? "reached"
+                              : status.next > status.realizations
+                                  ? "not reached yet"
+                                  : "NOT reached, and no more are allowed";
+  const PrecisionStatus::Target& farthest = status.farthest;
+  return fmt::format("{}: target precision {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
+                     counted(status.realizations, "realization"), verdict, farthest.spread,
+                     farthest.observable, farthest.value, farthest.at_most);
 }
 
 }  // namespace jostle::inline cli

@@ -7,8 +7,6 @@ namespace jostle::inline config {
 
 namespace {
 
-constexpr double widest = 10'000;
-
 struct Widths {
   double x = 16, y = 16;
 };
@@ -21,11 +19,11 @@ Widths read_widths(const Reader& in) {
     return widths;
   }
   if (!width->value().is_array()) {
-    widths.x = width->number(above(0, widest)).value_or(widths.x);
+    widths.x = width->number(above(0, widest_container)).value_or(widths.x);
     widths.y = widths.x;
   } else if (width->is_list(2, 2, "numbers")) {
-    widths.x = width->element(0).number(above(0, widest)).value_or(widths.x);
-    widths.y = width->element(1).number(above(0, widest)).value_or(widths.y);
+    widths.x = width->element(0).number(above(0, widest_container)).value_or(widths.x);
+    widths.y = width->element(1).number(above(0, widest_container)).value_or(widths.y);
   }
   return widths;
 }
@@ -41,7 +39,7 @@ Container read_cylinder(const Reader& in) {
   Cylinder tube;
   if (!in.is_object_of({"sides", "diameter"})) return tube;
   if (!in.find("diameter")) in.missing("diameter", "a number, diameters of a sphere");
-  in.read("diameter", tube.diameter, above(0, widest));
+  in.read("diameter", tube.diameter, above(0, widest_container));
   check_width(in, "diameter", tube);
   return tube;
 }
@@ -53,7 +51,7 @@ Container read_fully_periodic(const Reader& in) {
   box.width_x = widths.x;
   box.width_y = widths.y;
   if (!in.find("height")) in.missing("height", "a number, diameters");
-  in.read("height", box.height, above(0, widest));
+  in.read("height", box.height, above(0, widest_container));
   const double narrower = std::min(widths.x, widths.y);
   check_width(in, "width", FullyPeriodicBox{narrower, narrower, narrower});
   check_width(in, "height", FullyPeriodicBox{box.height, box.height, box.height});

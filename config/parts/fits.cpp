@@ -14,12 +14,12 @@ FitRequest read_fit(const Reader& in) {
   } else {
     in.missing("observable", "the name of an observable of this scene");
   }
+  std::vector<std::string> allowed = relaxation_laws();
+  allowed.emplace_back("all");
   if (const auto model = in.find("model")) {
-    std::vector<std::string> allowed = relaxation_laws();
-    allowed.emplace_back("all");
     fit.model = model->one_of(allowed).value_or("");
   } else {
-    in.missing("model", "a law: inverse_log, inverse_log_height, two_exponentials, kww or all");
+    in.missing("model", "one of the strings " + listed(allowed));
   }
   const auto range = in.find("range");
   if (!range || !range->is_list(1, 2, "taps, first and last")) return fit;

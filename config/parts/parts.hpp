@@ -26,6 +26,8 @@ StructureSettings read_structure(const Reader& in);
 
 Json written(const Container& container);
 Json written(const StartChoice& start);
+/// The start as the engine has it; the packing of a file is read later.
+Start engine_start(const StartChoice& choice);
 /// What scenes call the kind of start: "pour", ...
 std::string key_of(const StartChoice& start);
 Json written(const std::vector<ProtocolLine>& protocol);
@@ -35,7 +37,7 @@ Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
 Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
-Json written(const TargetPrecision& enough);
+Json written(const TargetPrecision& wanted);
 Json written(const Analyses& analyses);
 Json written(const StructureSettings& settings);
 /// [low, high]

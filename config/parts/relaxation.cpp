@@ -17,7 +17,7 @@ Move read_polar(const Reader& in) {
   PolarMove move;
   if (!in.is_object_of({"max_step", "theta0", "law"})) return move;
   in.read("max_step", move.max_step, steps);
-  in.read("theta0", move.theta0, between(1e-6, 1000));
+  in.read("theta0", move.theta0, between(least_theta0, most_theta0));
   in.read_name("law", move.law, theta_laws);
   return move;
 }

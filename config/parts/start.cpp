@@ -32,7 +32,7 @@ StartChoice read_pour(const Reader& in) {
 StartChoice read_random_settle(const Reader& in) {
   RandomSettle settle;
   if (in.is_object_of({"dilute_fraction"})) {
-    in.read("dilute_fraction", settle.dilute_fraction, above(0, 0.25));
+    in.read("dilute_fraction", settle.dilute_fraction, above(0, densest_dilution));
   }
   return settle;
 }
@@ -42,7 +42,8 @@ StartChoice read_crystal(const Reader& in) {
   if (in.value().is_string()) {
     if (const auto lattice = in.named(lattices)) crystal.lattice = *lattice;
   } else if (in.is_object_of({"lattice", "stretch"})) {
-    if (!in.find("lattice")) in.missing("lattice", "one of the strings hcp, fcc");
+    if (!in.find("lattice"))
+      in.missing("lattice", "one of the strings " + listed(names_in(lattices)));
     in.read_name("lattice", crystal.lattice, lattices);
     in.read_flag("stretch", crystal.stretch);
   }
@@ -147,6 +148,18 @@ StartChoice read_start(const Reader& in) {
   const auto start = in.choice(names_of(kinds));
   if (!start) return SteepestDescentPour{};
   return read_kind(kinds, *start);
+}
+
+Start engine_start(const StartChoice& choice) {
+  return std::visit(
+      [](const auto& start) -> Start {
+        if constexpr (std::is_same_v<std::decay_t<decltype(start)>, PackingFile>) {
+          return GivenPacking{};
+        } else {
+          return start;
+        }
+      },
+      choice);
 }
 
 std::string key_of(const StartChoice& start) {

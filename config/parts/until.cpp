@@ -10,7 +10,6 @@ namespace jostle::inline config {
 
 namespace {
 
-constexpr std::uint64_t most_realizations = 1'000'000;
 constexpr double largest_spread = 1e6;
 
 SpreadTarget read_target(const Reader& in) {
@@ -33,28 +32,28 @@ SpreadTarget read_target(const Reader& in) {
 }  // namespace
 
 TargetPrecision read_until(const Reader& in) {
-  TargetPrecision enough;
-  if (!in.is_object_of({"targets", "at_most"})) return enough;
+  TargetPrecision wanted;
+  if (!in.is_object_of({"targets", "at_most"})) return wanted;
   if (!in.find("at_most")) in.missing("at_most", "the largest number of realizations");
-  in.read_whole("at_most", enough.at_most, 1, most_realizations);
+  in.read_whole("at_most", wanted.at_most, 1, most_realizations);
   const auto targets = in.find("targets");
   if (!targets) in.missing("targets", "a list of observables and how small their spread must be");
-  if (!targets || !targets->is_list(1, 100, "targets")) return enough;
+  if (!targets || !targets->is_list(1, 100, "targets")) return wanted;
   for (std::size_t i = 0; i < targets->value().size(); ++i) {
-    enough.targets.push_back(read_target(targets->element(i)));
+    wanted.targets.push_back(read_target(targets->element(i)));
   }
-  return enough;
+  return wanted;
 }
 
-Json written(const TargetPrecision& enough) {
+Json written(const TargetPrecision& wanted) {
   Json targets = Json::array();
-  for (const SpreadTarget& target : enough.targets) {
+  for (const SpreadTarget& target : wanted.targets) {
     targets.push_back({{"observable", target.observable},
                        {"taps", target.taps},
                        {target.spread == Spread::sigma ? "sigma" : "standard_error",
                         plain_number(target.at_most)}});
   }
-  return {{"targets", targets}, {"at_most", enough.at_most}};
+  return {{"targets", targets}, {"at_most", wanted.at_most}};
 }
 
 void check_until(const Scene& scene, std::vector<Fault>& faults) {

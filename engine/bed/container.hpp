@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -44,6 +45,10 @@ using Container = std::variant<PeriodicBox, WalledBox, Cylinder, FullyPeriodicBo
 /// 2 diameters (exclusive), walls and tubes at least 1 diameter.
 inline constexpr double least_periodic_width = 2;
 inline constexpr double least_walled_width = 1;
+/// Widths, heights and diameters of a container, at most: diameters.
+inline constexpr double widest_container = 10'000;
+/// Spheres of a packing, at most.
+inline constexpr std::uint32_t most_spheres = 10'000'000;
 
 /// What is wrong with the container's widths, naming the least width; nothing if they are right.
 std::optional<std::string> width_fault(const Container& container);
@@ -55,6 +60,7 @@ double footprint_area(const Container& container);
 double width_x(const Container& container);
 double width_y(const Container& container);
 
+/// Whether there is a floor to fall on: in every container but the fully periodic one.
 bool has_gravity(const Container& container);
 
 }  // namespace jostle::inline engine

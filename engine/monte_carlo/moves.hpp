@@ -14,6 +14,9 @@ namespace jostle::inline engine {
 /// max(0, 1 - theta/theta0). Philippe & Bideau 2001, eq. 1 and the text below it.
 enum class ThetaLaw { gaussian, exponential, linear };
 
+/// Scales of the law of theta that make a table.
+inline constexpr double least_theta0 = 1e-6, most_theta0 = 1000;
+
 /// A downward step: azimuth uniform, length uniform in [0, max_step], theta by its law; accepted if
 /// and only if nothing overlaps. Philippe & Bideau 2001, sec. II: max_step = R/5, theta0 = pi/4.
 struct PolarMove {

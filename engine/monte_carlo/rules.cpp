@@ -12,6 +12,7 @@ std::optional<std::string> move_fault(const Move& move, const Container& contain
 
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
                                          const Container& container) {
+  static_assert(std::variant_size_v<Move> == 2, "say here what samplers suit the new move");
   if (sampler == Sampler::exhaustive) return std::nullopt;
   std::string why;
   if (!has_gravity(container)) {

@@ -58,7 +58,7 @@ std::string_view name(InstructionSet set);
 /// JOSTLE_INSTRUCTION_SET (baseline, avx2, avx512) asks for. All give the same bits.
 InstructionSet best_instruction_set();
 
-/// Trial moves of hard spheres: proposes, tests for overlap, accepts or refuses. The container and
+/// Trial moves of hard spheres: proposes, tests for overlap, accepts or rejects. The container and
 /// the move are chosen once, here; the loop inside is compiled for that pair.
 class TrialLoop {
  public:

@@ -61,7 +61,7 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
   for (const Vec3& centre : *given.centres) {
     const std::string name = "sphere " + std::to_string(packing.centres.size());
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
-      refuse(name + " has a coordinate that is not a finite number; mend the file");
+      refuse(name + " has a coordinate that is not a finite number; correct the file");
     }
     const Vec3 r = into_box(boundary, centre);
     if (r.z < -far_outside || r.x < -far_outside || r.y < -far_outside ||

@@ -9,13 +9,12 @@ namespace jostle::inline engine {
 
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           std::uint32_t n_spheres, RandomStream& random) {
-  constexpr double most_dilute_fraction = 0.25;
   constexpr int max_draws = 20'000;  // of one sphere
   const Boundary boundary(container);
-  if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= most_dilute_fraction)) {
+  if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= densest_dilution)) {
     throw StartError("random settle: dilute_fraction is " + std::to_string(settle.dilute_fraction) +
-                     ", but non-overlapping random places are found only up to 0.25; choose one in "
-                     "(0, 0.25]");
+                     ", but non-overlapping random places are found only above 0 and up to " +
+                     std::to_string(densest_dilution));
   }
   const double height =
       n_spheres * sphere_volume / (footprint_area(container) * settle.dilute_fraction);

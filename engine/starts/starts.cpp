@@ -41,6 +41,16 @@ struct Builder {
   }
 };
 
+/// Whether spheres may move before tap 0.
+struct MayMove {
+  bool operator()(const SteepestDescentPour&) const { return false; }
+  bool operator()(const FittedPour&) const { return true; }
+  bool operator()(const RandomSettle&) const { return true; }
+  bool operator()(const Crystal&) const { return false; }
+  bool operator()(const Grow&) const { return false; }
+  bool operator()(const GivenPacking&) const { return false; }
+};
+
 struct StartFault {
   const Container& container;
 
@@ -65,8 +75,7 @@ struct StartFault {
            " (widen the box or take \"steepest_descent\")";
   }
   Fault operator()(const Crystal& crystal) const {
-    const bool periodic = std::holds_alternative<PeriodicBox>(container) || !has_gravity(container);
-    if (periodic || !crystal.stretch) return std::nullopt;
+    if (Boundary(container).periodic_sides() || !crystal.stretch) return std::nullopt;
     return "stretch spaces rows out to a period, and there is none between walls: leave it out or "
            "use periodic sides";
   }
@@ -101,9 +110,7 @@ std::optional<std::string> n_spheres_fault(const Start& start, const Container& 
 }
 
 std::optional<std::string> settling_fault(const Start& start) {
-  if (std::holds_alternative<RandomSettle>(start) || std::holds_alternative<FittedPour>(start)) {
-    return std::nullopt;
-  }
+  if (std::visit(MayMove{}, start)) return std::nullopt;
   return "this start is at rest from the beginning: only random_settle and a fitted pour can be "
          "relaxed before tap 0";
 }

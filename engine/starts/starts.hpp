@@ -74,6 +74,8 @@ struct GivenPacking {
 using Start =
     std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
 
+/// Solids fraction up to which random places that do not overlap are found one after another.
+inline constexpr double densest_dilution = 0.25;
 /// Spheres that grow without order jam beyond this solids fraction.
 inline constexpr double densest_growth = 0.64;
 

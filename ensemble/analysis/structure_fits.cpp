@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "ensemble/analysis/histogram_fit.hpp"
+#include "ensemble/statistics/diverged.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 #include "ensemble/statistics/resampled_fit.hpp"
-#include "ensemble/statistics/runaway.hpp"
 #include "fitting/models/models.hpp"
 #include "structure/density/gradient.hpp"
 
@@ -86,7 +86,8 @@ FoundLaw fitted_curve(const std::string& quantity, const Model& model, const Pac
   if (!is_minimum(result.reason)) {
     return status = std::string("did not settle: ") + describe(result.reason), found;
   }
-  if (const std::string lost = runaways(result); !lost.empty()) return status = lost, found;
+  if (const std::string lost = diverged_parameters(result); !lost.empty())
+    return status = lost, found;
   found.fit.values = result.values();
   if (curves.realizations < 2) return found;
   const ResampledErrors errors = resample(model, curves, result, {});

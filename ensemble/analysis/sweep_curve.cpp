@@ -46,7 +46,7 @@ SweepCurve::SweepCurve(std::vector<double> x, std::vector<double> y, std::vector
   sort_and_drop();
   fitted_y_ = y_;
   const auto serves = [](const ErrorOf& one) {
-    return one.dof + 1 >= enough_for_own && one.error > 0;
+    return one.dof + 1 >= fewest_for_own_error && one.error > 0;
   };
   own_errors_ = std::ranges::all_of(error_, serves);
   if (own_errors_) return;
@@ -97,7 +97,7 @@ void SweepCurve::pool_independent() {
     pooled_.dof += static_cast<double>(count_[i] - 1);
   }
   if (pooled_.known()) pooled_.error = std::sqrt(squares / pooled_.dof);
-  own_errors_ = n_points() > 0 && std::ranges::min(count_) >= enough_for_own;
+  own_errors_ = n_points() > 0 && std::ranges::min(count_) >= fewest_for_own_error;
 }
 
 void SweepCurve::pool_matched() {
@@ -138,7 +138,7 @@ std::vector<double> SweepCurve::weights() const {
 }
 
 bool SweepCurve::pools() const {
-  return streams_ == Streams::matched ? common_.size() < enough_for_own : !own_errors_;
+  return streams_ == Streams::matched ? common_.size() < fewest_for_own_error : !own_errors_;
 }
 
 ErrorOf SweepCurve::error_of(std::span<const double> coefficients) const {

@@ -22,7 +22,7 @@ class SweepCurve {
  public:
   /// Below so many realizations a point's own scatter says too little: variances are then pooled
   /// over points.
-  static constexpr std::uint64_t enough_for_own = 10;
+  static constexpr std::uint64_t fewest_for_own_error = 10;
 
   /// Any values with their standard errors, each [n_points]; a dof of 0 is an error that is
   /// unknown, an infinite one an error that is known.
@@ -45,14 +45,15 @@ class SweepCurve {
   /// What lines and maxima are fitted to, [n_points]: y; of matched streams the mean over those
   /// realizations that all points have, where there are any.
   const std::vector<double>& fitted_y() const { return fitted_y_; }
-  /// How points count in a fit, [n_points]: 1/error where errors are known or of `enough_for_own`
-  /// realizations, else by their number of realizations, never by their scatter.
+  /// How points count in a fit, [n_points]: 1/error where errors are known or of
+  /// `fewest_for_own_error` realizations, else by their number of realizations, never by their
+  /// scatter.
   std::vector<double> weights() const;
   /// The error of sum_i c_i fitted_y_i, c: [n_points]. Independent points: their own variances
-  /// where all have `enough_for_own` realizations, else one variance, pooled over points. Matched
-  /// streams: the scatter of the sums over realizations where there are `enough_for_own`; else
-  /// realizations shift all points alike, and what is left has one variance, pooled over points
-  /// (a two-way layout without interaction).
+  /// where all have `fewest_for_own_error` realizations, else one variance, pooled over points.
+  /// Matched streams: the scatter of the sums over realizations where there are
+  /// `fewest_for_own_error`; else realizations shift all points alike, and what is left has one
+  /// variance, pooled over points (a two-way layout without interaction).
   ErrorOf error_of(std::span<const double> coefficients) const;
   /// Whether error_of() pools variances over points.
   bool pools() const;

@@ -5,7 +5,7 @@
 namespace jostle::inline fitting {
 
 /// A model with one of its parameters, `kept`, replaced by a combination of it with another,
-/// kept * other^power: what a curve may still determine where the two run away together.
+/// kept * other^power: what a curve may still determine where the two diverge together.
 class CombinedModel final : public Model {
  public:
   /// Keeps a reference to the model. Both parameters are positive.

@@ -69,7 +69,7 @@ class Model {
   /// NaN marks those that are free.
   virtual std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                               std::size_t n) const;
-  /// Pairs of positive parameters that can run away together, and what a curve then determines.
+  /// Pairs of positive parameters that can diverge together, and what a curve then determines.
   virtual std::vector<Combination> combinations() const { return {}; }
   /// The same curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }

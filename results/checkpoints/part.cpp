@@ -15,7 +15,6 @@ namespace jostle::inline results {
 namespace {
 
 constexpr std::string_view magic = "jostle part\n";
-constexpr std::uint32_t format_version = 4;
 constexpr std::uint32_t state_number = 0xffffffff;
 constexpr std::size_t sum_size = std::tuple_size_v<Sha256::Sum>;
 
@@ -23,7 +22,7 @@ void write_part(const std::string& path, const PartIdentity& identity, std::uint
                 ByteWriter& content) {
   ByteWriter part;
   for (const char c : magic) part.put(c);
-  part.put(format_version);
+  part.put(part_format);
   part.put(identity.run_id);
   part.put(identity.id.point);
   part.put(identity.id.realization);
@@ -54,9 +53,9 @@ ByteReader open_part(const std::string& path, std::span<const std::byte> bytes,
   check_sum(path, bytes);
   ByteReader reader(bytes.first(bytes.size() - sum_size));
   for (std::size_t i = 0; i < magic.size(); ++i) reader.get<char>();
-  if (const auto version = reader.get<std::uint32_t>(); version != format_version)
+  if (const auto version = reader.get<std::uint32_t>(); version != part_format)
     throw ResultsError(path, fmt::format("part of format {}, but this jostle reads format {}",
-                                         version, format_version));
+                                         version, part_format));
   if (reader.get_string() != identity.run_id) throw ResultsError(path, "part of another run");
   RealizationId id;
   id.point = reader.get<std::uint32_t>();

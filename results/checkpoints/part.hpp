@@ -13,6 +13,9 @@
 // checkpoint, and numbered segments of its series, each written once.
 namespace jostle::inline results {
 
+/// The number of the parts' format.
+inline constexpr std::uint32_t part_format = 4;
+
 /// What every part carries, so that a foreign one is told from ours.
 struct PartIdentity {
   std::string run_id;

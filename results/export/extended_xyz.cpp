@@ -18,8 +18,6 @@ namespace jostle::inline results {
 namespace {
 
 // As in scenes; a column of all spheres is as high as they are many.
-constexpr double widest = 10'000;
-constexpr std::size_t most_spheres = 10'000'000;
 constexpr std::size_t most_columns = 1000;
 
 using Keys = std::map<std::string, std::string>;
@@ -124,9 +122,9 @@ Container FrameReader::container(const Keys& keys) const {
   }
   const auto made = container_from(kind, widths);
   for (std::size_t k = 0; k < (kind == "fully_periodic" ? 3U : 2U); ++k)
-    if (!(widths[k] > 0) || widths[k] > widest)
+    if (!(widths[k] > 0) || widths[k] > widest_container)
       fail(fmt::format("the sides of Lattice must be above 0 and at most {} diameters, not {}",
-                       widest, widths[k]));
+                       widest_container, widths[k]));
   if (!made)
     fail(
         "neither container=periodic|walls|cylinder|fully_periodic nor pbc=\"T T F\", \"T T T\" "

@@ -16,10 +16,7 @@ namespace jostle::inline results {
 namespace {
 
 // The limits of scenes, which docs/scene.md gives, and beyond them what no scene comes to.
-constexpr std::uint32_t most_realizations = 1'000'000;
-constexpr std::uint32_t most_spheres = 10'000'000;
 constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
-constexpr double widest = 10'000;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
 constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols
 
@@ -49,8 +46,8 @@ void validate_container(const Container& container, const std::string& name) {
   const auto [kind, widths] = container_text(container);
   const auto fault = width_fault(container);
   require(!fault, name + ": " + fault.value_or(""));
-  require(std::ranges::all_of(widths, [](double width) { return width <= widest; }),
-          fmt::format("{} has a container wider than {}", name, widest));
+  require(std::ranges::all_of(widths, [](double width) { return width <= widest_container; }),
+          fmt::format("{} has a container wider than {}", name, widest_container));
 }
 
 void validate_snapshots(const Snapshots& snapshots, std::uint64_t taps, const std::string& name) {

@@ -13,12 +13,6 @@
 
 namespace jostle::inline structure {
 
-double solid_volume(const Profile& profile) {
-  double volume = 0;
-  for (std::size_t k = 0; k < profile.size(); ++k) volume += profile.volumes[k] * profile.values[k];
-  return volume;
-}
-
 std::vector<double> even_edges(double low, double high, double width) {
   if (!(width > 0 && low < high)) {
     throw std::invalid_argument("profile: bins need a width above 0 and a range that ascends");

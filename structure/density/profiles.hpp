@@ -24,9 +24,6 @@ struct Profile {
   double middle(std::size_t bin) const { return 0.5 * (edges[bin] + edges[bin + 1]); }
 };
 
-/// The volume of spheres in all bins, diameters cubed.
-double solid_volume(const Profile& profile);
-
 /// Edges from `low` by steps of `width` to `high`: the last bin is what is left, if not less than
 /// 1e-9 of a step.
 std::vector<double> even_edges(double low, double high, double width);

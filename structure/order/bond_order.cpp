@@ -173,17 +173,4 @@ std::vector<BondOrder> bond_order(const NeighbourTable& neighbours) {
   return invariants(bond_multipoles(neighbours));
 }
 
-std::vector<BondOrder> averaged_bond_order(const NeighbourTable& neighbours) {
-  const std::vector<Multipoles> own = bond_multipoles(neighbours);
-  std::vector<Multipoles> means = own;
-  for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    for (const Neighbour& neighbour : neighbours.of(i)) {
-      add(means[i].four, own[neighbour.sphere].four);
-      add(means[i].six, own[neighbour.sphere].six);
-    }
-    scale(means[i], 1 / static_cast<double>(neighbours.of(i).size() + 1));
-  }
-  return invariants(means);
-}
-
 }  // namespace jostle::inline structure

@@ -32,8 +32,4 @@ struct BondOrder {
 /// Of every sphere, [n], each bond weighing the same.
 std::vector<BondOrder> bond_order(const NeighbourTable& neighbours);
 
-/// With the q_lm of a sphere replaced by their mean over itself and its neighbours, which tells
-/// crystals from fluids more sharply. Lechner & Dellago 2008, doi:10.1063/1.2977970.
-std::vector<BondOrder> averaged_bond_order(const NeighbourTable& neighbours);
-
 }  // namespace jostle::inline structure

@@ -72,30 +72,4 @@ std::vector<CrystalOrder> crystal_order(const NeighbourTable& nearest) {
   return orders;
 }
 
-double OrderProfile::fraction(std::size_t bin, CrystalOrder order) const {
-  const auto& counts = order == CrystalOrder::fcc   ? fcc
-                       : order == CrystalOrder::hcp ? hcp
-                                                    : disordered;
-  const std::uint64_t all = disordered[bin] + fcc[bin] + hcp[bin];
-  return static_cast<double>(counts[bin]) / static_cast<double>(all);
-}
-
-OrderProfile order_profile(const Packing& packing, std::span<const CrystalOrder> orders,
-                           double bin_width) {
-  assert(bin_width > 0 && orders.size() == packing.centres.size());
-  OrderProfile profile;
-  profile.bin_width = bin_width;
-  if (orders.empty()) return profile;
-  const auto bin = [&](double z) { return static_cast<std::size_t>(z / bin_width); };
-  const std::size_t n_bins = bin(top_height(packing)) + 1;
-  for (auto* counts : {&profile.disordered, &profile.fcc, &profile.hcp}) counts->assign(n_bins, 0);
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    auto& counts = orders[i] == CrystalOrder::fcc   ? profile.fcc
-                   : orders[i] == CrystalOrder::hcp ? profile.hcp
-                                                    : profile.disordered;
-    ++counts[bin(packing.centres[i].z)];
-  }
-  return profile;
-}
-
 }  // namespace jostle::inline structure

@@ -26,17 +26,4 @@ std::vector<CrystalOrder> crystal_order(const Packing& packing);
 /// disordered.
 std::vector<CrystalOrder> crystal_order(const NeighbourTable& nearest);
 
-/// Spheres in bins of height [k width, (k + 1) width), k = 0 .. up to the highest centre.
-struct OrderProfile {
-  double bin_width = 1;                             // diameters
-  std::vector<std::uint64_t> disordered, fcc, hcp;  // [n_bins]
-
-  /// Fraction of a bin's spheres; NaN where there are none.
-  double fraction(std::size_t bin, CrystalOrder order) const;
-};
-
-/// Of all spheres, whose order is given, [n].
-OrderProfile order_profile(const Packing& packing, std::span<const CrystalOrder> orders,
-                           double bin_width = 1);
-
 }  // namespace jostle::inline structure

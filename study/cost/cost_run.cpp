@@ -25,7 +25,7 @@ Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
     throw BadInput("/protocol: there is no tap whose relaxation could cost anything");
   }
   if (scene.observables.empty()) throw BadInput("/observe: there is nothing to be accurate in");
-  if (std::holds_alternative<FullyPeriodicBox>(scene.container)) {
+  if (!has_gravity(scene.container)) {
     throw BadInput("/container: a fluid without gravity does not relax, so nothing is incomplete");
   }
   return scene;

@@ -87,11 +87,11 @@ class Pilot {
       : plan_(plan),
         bed_(bed),
         budget_(budget),
-        dynamics_(make_dynamics(
-            plan.engine, {.start = key(Purpose::start_trials), .taps = key(Purpose::trials)})),
-        tap_random_(key(Purpose::tap)) {
+        dynamics_(make_dynamics(plan.engine, {.start = stream_key(plan, 0, Purpose::start_trials),
+                                              .taps = stream_key(plan, 0, Purpose::trials)})),
+        tap_random_(stream_key(plan, 0, Purpose::tap)) {
     const auto began = Clock::now();
-    RandomStream random(key(Purpose::start));
+    RandomStream random(stream_key(plan, 0, Purpose::start));
     const Packing start = make_start(plan.start, bed.container, bed.n_spheres, random);
     dynamics_->load(start);
     dynamics_->settle(plan.start);
@@ -162,10 +162,6 @@ class Pilot {
         .realization = scale * (start_time_ + taps_time),
         .bytes =
             static_cast<std::size_t>(scale * (static_cast<double>(dynamics_->bytes()) + observed))};
-  }
-
-  StreamKey key(Purpose purpose) const {
-    return stream_key(plan_.seed, plan_.point_id, 0, purpose);
   }
 
   const Plan& plan_;

@@ -45,6 +45,9 @@ PrecisionStatus precision_status(const ResultsFile& file, const TargetPrecision&
     for (const SpreadTarget& target : until.targets) {
       const double value = largest_spread(file, point, target);
       found.push_back({target.spread, value, target.at_most});
+      const double excess = value / target.at_most;
+      if (rows.empty() || !(excess <= status.farthest.value / status.farthest.at_most))
+        status.farthest = {target.observable, name_of(target.spread), value, target.at_most};
       rows.push_back(rows.size());
       points.push_back(point);
       observables.push_back(target.observable);

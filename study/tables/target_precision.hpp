@@ -9,10 +9,16 @@
 
 namespace jostle::inline study {
 
-/// How far a file is from what a scene calls enough realizations.
+/// How far a file is from the precision that its scene wants.
 struct PrecisionStatus {
   std::uint32_t realizations = 0, next = 0;  // `next` is the same where no more are to be made
   bool met = false;
+  /// The target that is farthest from being met.
+  struct Target {
+    std::string observable, spread;  // "sigma" or "standard_error"
+    double value = 0, at_most = 0;
+  };
+  Target farthest;
   /// One row a sweep point and target: the largest spread over its taps.
   /// /analysis/target_precision.
   Table table;

@@ -17,14 +17,14 @@ SCENES = {
     "exponential polar in a tube": changed(
         TINY, container={"sides": "cylinder", "diameter": 5},
         relax={"polar": {"theta0": 0.5, "law": "exponential"}, "stop": {"sweeps": 100}}),
-    "cold Metropolis": changed(
+    "Metropolis at zero temperature": changed(
         TINY, start={"random_settle": {}},
         relax={"metropolis": {"max_step": 0.1},
                "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}}),
     "polar, skipping": changed(
         TINY, relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-6, "every_sweeps": 100}},
                      "sampler": "skipping"}),
-    "cold Metropolis between walls, skipping": changed(
+    "Metropolis at zero temperature between walls, skipping": changed(
         TINY, container={"sides": "walls", "width": 5},
         relax={"metropolis": {"max_step": 0.2, "adapt": {}}, "stop": {"sweeps": 1000},
                "sampler": "skipping"}),

@@ -1,4 +1,4 @@
-"""Scenes that run until their realizations are enough."""
+"""Scenes that run until a target precision is reached."""
 
 import unittest
 
@@ -29,8 +29,8 @@ class TargetPrecision(Case):
         self.assertLessEqual(height, 0.012)
         self.assertLessEqual(bottom, 0.004)
         self.assertGreater(number, 4)
-        self.assertIn("2 realizations are not enough yet", done.stdout)
-        self.assertIn(f"\n{number} realizations are enough: ", done.stdout)
+        self.assertIn("2 realizations: target precision not reached yet: ", done.stdout)
+        self.assertIn(f"\n{number} realizations: target precision reached: ", done.stdout)
         self.assertEqual(done.stdout.count("this run: "), 1)
         self.assertEqual(self.info("tiny.h5")["tables"], ["analysis/target_precision"])
         with h5py.File(self.folder / "tiny.h5") as stored:
@@ -64,17 +64,17 @@ class TargetPrecision(Case):
         sigma = [{"observable": "mean_height", "sigma": 1e-6}]
         self.write(changed(UNTIL, until={"targets": sigma, "at_most": 5}))
         done = self.run_scene()
-        self.assertIn("5 realizations are NOT enough, but the limit: sigma of mean_height",
+        self.assertIn("5 realizations: target precision NOT reached, and no more are allowed: sigma of mean_height",
                       done.stdout)
         self.assertEqual(self.spreads()[2], 5)
         self.write(changed(UNTIL, until={"targets": sigma, "at_most": 7}))
         self.run_scene("--resume")
         self.assertEqual(self.spreads()[2], 7)
 
-    def test_a_share_cannot_tell_what_is_enough(self):
+    def test_a_share_cannot_tell_the_precision(self):
         self.write(UNTIL)
         refused = self.run_scene("--shard", "1/2", expect=BAD_INPUT)
-        self.assertIn("a share of them cannot tell", refused.stderr)
+        self.assertIn("a share of its realizations cannot tell", refused.stderr)
         self.assertEqual(self.files(), ["scene.json"])
 
 

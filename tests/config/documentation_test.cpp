@@ -41,7 +41,7 @@ TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
            fmt::format(
                "`lambda` 0 to 10 ({}), `lateral_radius` 0 to 1 ({}), `retries` 0 to 1000 ({})",
                Shake{}.lambda, Shake{}.lateral_radius, Shake{}.retries),
-           fmt::format("at most 0.25; {})", RandomSettle{}.dilute_fraction),
+           fmt::format("at most {}; {})", densest_dilution, RandomSettle{}.dilute_fraction),
            fmt::format("`max_sweeps` (1 to {}, {})", power_of_ten(most_sweeps),
                        spaced(Grow{}.max_sweeps)),
            fmt::format("solids fraction at most {}", densest_growth),

@@ -57,7 +57,7 @@ TEST_CASE("the smallest theta_0 falls straight down") {
   }
 }
 
-TEST_CASE("beta of 0, 1e-6 and 1e300 are a gas, nearly one, and the cold") {
+TEST_CASE("beta of 0, 1e-6 and 1e300 are a gas, nearly one, and zero temperature") {
   const Packing start = bed();
   const auto rises = [&](double beta) {
     return mean_height(run_trials(start, MetropolisMove{0.2, beta}, 200'000)) - mean_height(start);

@@ -50,7 +50,7 @@ void add_curves(const AgeingCurves& curves, const std::string& units, Table& tab
   add("count", curves.count, "1", "realizations that reached both taps", "");
 }
 
-// What has no limit on a side has run away, and is no number; scales at a B that is held have no
+// What has no limit on a side has diverged, and is no number; scales at a B that is held have no
 // errors of their own.
 LogEstimate storable(const AgeingLaw& law, LogEstimate AgeingLaw::*parameter, bool together) {
   const LogEstimate& estimate = law.*parameter;

@@ -18,7 +18,7 @@ double ln_eq_6(double lag, double ln_b, double ln_tau);
 
 /// The least squares over B from 0.001 to 1000 and tau from a hundredth of the first lag to ten
 /// thousand times the last, found on a grid and then between its places: no start is needed and
-/// nothing runs away. A point is [n_parameters]: ln A_inf and ln tau of every curve, then ln B.
+/// nothing diverges. A point is [n_parameters]: ln A_inf and ln tau of every curve, then ln B.
 class AgeingLeastSquares {
  public:
   /// Each curve has more than three points, of at least two realizations.

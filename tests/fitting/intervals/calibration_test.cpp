@@ -130,7 +130,7 @@ TEST_CASE("One realization with memory: intervals hold the truth, or none are gi
   }
 }
 
-TEST_CASE("Where B and tau run away together, their ratio has limits that hold the truth") {
+TEST_CASE("Where B and tau diverge together, their ratio has limits that hold the truth") {
   // 1 - 1/(1 + t/50): the inverse log's limit of B and tau without bound, B/tau = 1/50.
   int covered = 0, found = 0;
   constexpr int curves = 40;

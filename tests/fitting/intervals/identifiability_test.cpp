@@ -107,7 +107,7 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
   CHECK(shortest.estimates[0].statement.find("X_inf >") != std::string::npos);
 }
 
-TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters run away together") {
+TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters diverge together") {
   // Twenty nearly straight points: nothing says where the logarithm bends.
   for (const double noise : {1e-6, 1e-4, 1e-3}) {
     Curve curve;

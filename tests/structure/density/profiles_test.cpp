@@ -34,6 +34,13 @@ HeightWindow whole(const Packing& packing) {
   return {0, top_height(packing) + sphere_radius};
 }
 
+// The volume of spheres in all bins.
+double solid_volume(const Profile& profile) {
+  double volume = 0;
+  for (std::size_t k = 0; k < profile.size(); ++k) volume += profile.volumes[k] * profile.values[k];
+  return volume;
+}
+
 }  // namespace
 
 TEST_CASE("Bins of profiles hold all that is solid") {

@@ -78,16 +78,6 @@ void check(const BondOrder& order, const BondOrder& expected) {
   CHECK(order.w6 == Approx(expected.w6).margin(1e-11).epsilon(0));
 }
 
-double spread_of_q6(const std::vector<BondOrder>& orders) {
-  double sum = 0, squares = 0;
-  for (const BondOrder& order : orders) {
-    sum += order.q6;
-    squares += order.q6 * order.q6;
-  }
-  const double n = static_cast<double>(orders.size()), mean = sum / n;
-  return std::sqrt(squares / n - mean * mean);
-}
-
 // From sums over the bonds with scipy's spherical harmonics and sympy's exact 3j symbols. In closed
 // form: fcc q4 = sqrt(7 / 192), q6 = sqrt(169 / 512); hcp q4 = 7 / 72; icosahedron q6 = sqrt(11) /
 // 5, w6 = -11 / sqrt(4199).
@@ -149,25 +139,4 @@ TEST_CASE("A single bond has q 1, and as w the 3j symbol of three zeros") {
   const BondOrder expected{1, 1, std::sqrt(18.0 / 1001), -std::sqrt(400.0 / 46189)};
   check(one, expected);
   check(two, expected);
-}
-
-TEST_CASE("Averaged bond order is that of the mean multipoles of a sphere and its neighbours") {
-  for (const BondOrder& order : averaged_bond_order(nearest_neighbours(fcc_points()))) {
-    check(order, fcc);
-  }
-  const NeighbourTable table = nearest_neighbours(shaken(fcc_points(), 0.05));
-  CHECK(spread_of_q6(averaged_bond_order(table)) < 0.5 * spread_of_q6(bond_order(table)));
-
-  // Two spheres, one bond each: both have q = 1 along it, and so has their mean.
-  const Packing pair{WalledBox{9, 9}, {{3, 3, 3}, {3.6, 3.8, 3}}};
-  CHECK(averaged_bond_order(nearest_neighbours(pair, 1))[0].q6 == Approx(1));
-  // Three in a bend: the middle one's mean is of the bond, the bond and both halved. By addition of
-  // Legendre polynomials, q_l^2 = sum of weights w_a w_b P_l(cos angle between bonds a and b).
-  const Packing bend{WalledBox{9, 9}, {{3, 3, 3}, {4, 3, 3}, {3, 4, 3}}};
-  const double across = std::legendre(6, 0.0);
-  CHECK(averaged_bond_order(neighbours_within(bend, 1.1))[0].q6 ==
-        Approx(std::sqrt(0.5 + 0.5 * across)));
-  // An end's mean: weight 3/4 on its own bond, 1/4 on the other.
-  CHECK(averaged_bond_order(neighbours_within(bend, 1.1))[1].q6 ==
-        Approx(std::sqrt(10.0 / 16 + 6.0 / 16 * across)));
 }

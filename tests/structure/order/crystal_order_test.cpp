@@ -56,19 +56,6 @@ TEST_CASE("In a mixed stacking every layer is what its neighbours make it") {
   const std::vector<CrystalOrder> orders = crystal_order(packing);
   const std::vector<CrystalOrder> layers = expected_layers(stacking);
   for (std::size_t i = 0; i < orders.size(); ++i) CHECK(orders[i] == layers[i / layer_size]);
-
-  // A bin a layer, with the layers in the middle of their bins.
-  const double rise = std::sqrt(2.0 / 3);
-  Packing lifted = packing;
-  for (Vec3& r : lifted.centres) r.z += 0.5 * rise - sphere_radius;
-  const OrderProfile profile = order_profile(lifted, orders, rise);
-  REQUIRE(profile.fcc.size() == stacking.size());
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    CHECK(profile.fcc[k] == (layers[k] == CrystalOrder::fcc ? layer_size : 0));
-    CHECK(profile.hcp[k] == (layers[k] == CrystalOrder::hcp ? layer_size : 0));
-    CHECK(profile.disordered[k] == (layers[k] == CrystalOrder::disordered ? layer_size : 0));
-    CHECK(profile.fraction(k, layers[k]) == 1);
-  }
 }
 
 TEST_CASE("A poured bed and points at random are disordered") {
@@ -91,17 +78,4 @@ TEST_CASE("An icosahedron, bcc and too few neighbours are disordered") {
   const Packing few{WalledBox{9, 9}, {{1, 1, 1}, {2, 1, 1}, {3, 1, 1}}};
   CHECK(count(crystal_order(few), CrystalOrder::disordered) == 3);
   CHECK(crystal_order(Packing{WalledBox{9, 9}, {}}).empty());
-}
-
-TEST_CASE("The order profile counts every sphere once, in half-open bins") {
-  const Packing packing{PeriodicBox{5, 5}, {{1, 1, 0.5}, {3, 1, 1}, {1, 3, 1.25}, {3, 3, 3.1}}};
-  const std::vector<CrystalOrder> orders{CrystalOrder::disordered, CrystalOrder::fcc,
-                                         CrystalOrder::hcp, CrystalOrder::fcc};
-  const OrderProfile profile = order_profile(packing, orders);
-  using Counts = std::vector<std::uint64_t>;
-  CHECK(profile.disordered == Counts{1, 0, 0, 0});
-  CHECK(profile.fcc == Counts{0, 1, 0, 1});
-  CHECK(profile.hcp == Counts{0, 1, 0, 0});
-  CHECK(profile.fraction(1, CrystalOrder::hcp) == 0.5);
-  CHECK(std::isnan(profile.fraction(2, CrystalOrder::fcc)));
 }

@@ -140,7 +140,8 @@ TEST_CASE("Where B has no limit it is held, and curves keep their scales", "[sta
   CHECK(std::isfinite(scalar(table, "scaled_a_error")));
 }
 
-TEST_CASE("Curves that nothing bounds have no shared law, and nothing is scaled by a runaway") {
+TEST_CASE(
+    "Curves that nothing bounds have no shared law, and nothing is scaled by a fit that diverged") {
   // Changes whose spread grows with the lag itself: A goes with its square, and never bends.
   RandomStream random = test_stream(6);
   TapRows rows{.taps = taps_of(grid), .realizations = 20, .values = {}};

@@ -9,9 +9,9 @@ namespace jostle::inline ensemble {
 /// Whether the least squares have carried a free parameter away from all that the data could say of
 /// it: overflown, or with a standard error over 100 times a positive parameter, or a level over 100
 /// times the largest value of the curve. Such a number is neither stored nor printed.
-bool has_run_away(const Fit& fit, std::size_t parameter);
+bool has_diverged(const Fit& fit, std::size_t parameter);
 
-/// "b and tau have run away: ...", or nothing.
-std::string runaways(const Fit& fit);
+/// "the data do not limit b, tau: ...", or nothing.
+std::string diverged_parameters(const Fit& fit);
 
 }  // namespace jostle::inline ensemble

@@ -1,4 +1,4 @@
-#include "ensemble/statistics/runaway.hpp"
+#include "ensemble/statistics/diverged.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ double largest_of(const std::vector<double>& fitted) {
 
 }  // namespace
 
-bool has_run_away(const Fit& fit, std::size_t parameter) {
+bool has_diverged(const Fit& fit, std::size_t parameter) {
   const Estimate& estimate = fit.estimates[parameter];
   if (estimate.identifiability == Identifiability::fixed) return false;
   const double size = std::abs(estimate.value);
@@ -28,10 +28,10 @@ bool has_run_away(const Fit& fit, std::size_t parameter) {
          size > absurd * largest_of(fit.fitted);
 }
 
-std::string runaways(const Fit& fit) {
+std::string diverged_parameters(const Fit& fit) {
   std::string names;
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
-    if (!has_run_away(fit, j)) continue;
+    if (!has_diverged(fit, j)) continue;
     names += (names.empty() ? "" : ", ") + fit.estimates[j].parameter.name;
   }
   if (names.empty()) return "";

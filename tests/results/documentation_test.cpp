@@ -1,0 +1,20 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "results/checkpoints/part.hpp"
+#include "results/export/input_file.hpp"
+#include "results/file/layout.hpp"
+
+using namespace jostle;
+
+TEST_CASE("The page of the format quotes the numbers of its formats as they are") {
+  const std::string page = read_text_file(SOURCE_ROOT "/docs/format.md");
+  for (const std::string& quoted : {fmt::format("its format's number ({})", part_format),
+                                    fmt::format("**layout {}**", layout_version),
+                                    fmt::format("`{}`", keeps_what_point_keeps)}) {
+    INFO(quoted);
+    CHECK(page.find(quoted) != std::string::npos);
+  }
+}
