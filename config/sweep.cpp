@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "config/grids.hpp"
 #include "config/json/suggestion.hpp"
 #include "config/parts/parts.hpp"
 
@@ -67,6 +68,7 @@ class SweepCheck {
     }
     if (faults_.size() > base_faults_.size() || !points_are_few()) return;
     const std::vector<SweepPoint> points = sweep_points(scene_.sweep);
+    check_amounts(points.size());
     check_points(points);
     points_differ(points);
   }
@@ -107,6 +109,23 @@ class SweepCheck {
       return false;
     }
     return true;
+  }
+
+  /// What a results file lists of every point.
+  void check_amounts(std::uint64_t points) {
+    const auto check = [&](const char* pointer, const char* what, std::uint64_t n,
+                           std::uint64_t most) {
+      if (n * points <= most) return;
+      faults_.push_back({pointer, fmt::format("{} {} at {} sweep points are more than {} in all", n,
+                                              what, points, most)});
+    };
+    const bool grows = !scene_.until.targets.empty();
+    const std::uint64_t realizations =
+        std::max<std::uint64_t>(scene_.realizations, grows ? scene_.until.at_most : 0);
+    check("/realizations", "realizations", realizations, most_realizations_in_all);
+    check("/observe", "observables", scene_.observables.size(), most_observables_in_all);
+    check("/snapshots/taps", "taps with snapshots", chosen_taps(scene_.snapshots.taps).size(),
+          most_snapshots_in_all);
   }
 
   void check_points(const std::vector<SweepPoint>& points) {

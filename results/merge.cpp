@@ -128,12 +128,13 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
   // kept.
   const Study& study = whole ? *whole : owners.begin()->second.file->study();
   require_free_space(output, bytes_of(inputs));
-  remove_parts(output);
-  write_results(output, {study, Shard{}, all_processes(files, provenance), random_identity(),
-                         [&](RealizationId id) {
-                           const Source& source = owners.at(id);
-                           return source.file->realization(source.stored);
-                         }});
+  write_results(output,
+                {study, Shard{}, all_processes(files, provenance), random_identity(),
+                 [&](RealizationId id) {
+                   const Source& source = owners.at(id);
+                   return source.file->realization(source.stored);
+                 }},
+                [&] { remove_parts(output); });
 }
 
 }  // namespace jostle::inline results

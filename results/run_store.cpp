@@ -26,6 +26,14 @@ bool file_exists(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0;
 }
 
+/// Device and number; zeros where there is no file.
+using FileIdentity = std::pair<dev_t, ino_t>;
+FileIdentity identity_of(const std::string& path) {
+  struct stat status;
+  if (::lstat(path.c_str(), &status) != 0) return {};
+  return {status.st_dev, status.st_ino};
+}
+
 std::uint64_t file_bytes(const std::string& path) {
   struct stat status;
   return ::stat(path.c_str(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
@@ -77,18 +85,19 @@ class RunStore::Impl {
 
  private:
   void open_file();
+  bool still_ours() const;
   void check_shard_and_points() const;
   void fold_parts_of_the_stored_points();
 
   RunLock lock;
+  FileIdentity opened;  // of the file that `file` reads
 };
 
 void RunStore::Impl::start(const Provenance& provenance) {
   require_room_for_run(path, disk_estimate(study, shard));
-  remove_parts(path);
   run_id = random_identity();
   processes = {provenance};
-  write_results(path, {study, shard, processes, run_id, {}});
+  write_results(path, {study, shard, processes, run_id, {}}, [this] { remove_parts(path); });
   open_file();
 }
 
@@ -135,8 +144,15 @@ void RunStore::Impl::check_shard_and_points() const {
                                    *point));
 }
 
+/// Whether nobody has put another file in the place of ours; taking ours away is nobody's loss.
+bool RunStore::Impl::still_ours() const {
+  const FileIdentity found = identity_of(path);
+  return found == opened || found == FileIdentity{};
+}
+
 void RunStore::Impl::open_file() {
   file.emplace(path);
+  opened = identity_of(path);
   folded.clear();
   for (RealizationSummary& summary : file->realizations()) folded[summary.id] = summary;
 }
@@ -162,7 +178,15 @@ void RunStore::Impl::fold(const StoringProgress& progress) {
     if (!in_parts.contains(id)) return base;
     return continued(std::move(base), path, {run_id, id}, n_columns(id));
   };
-  write_results(path, {study, shard, processes, run_id, realization, progress});
+  const FileContent content{study, shard, processes, run_id, realization, progress};
+  if (!still_ours()) {
+    const std::string elsewhere = fmt::format("{}.{}", path, run_id.substr(0, 8));
+    write_results(elsewhere, content);
+    throw ResultsError(path, fmt::format("another file was put here while the run went on, and is "
+                                         "kept; what was computed is in {}",
+                                         elsewhere));
+  }
+  write_results(path, content);
   open_file();
 }
 

@@ -56,7 +56,8 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   }
   const std::string& output = settings.output;
   const Provenance by = provenance_of_this_run(fmt::to_string(settings.threads));
-  if (!std::filesystem::exists(output) || settings.existing == Existing::replace) {
+  std::error_code unreadable;  // a ring of links, a name too long: said when it is opened
+  if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
     store_ = RunStore::create(output, study_, settings.shard, by,
                               settings.take_over || settings.existing == Existing::replace);
     return;

@@ -137,7 +137,9 @@ std::vector<std::uint64_t> ascending(const char* option, std::vector<std::uint64
 
 /// Of a word that may name a file or a kind: what is wrong with it. Nothing, if it is a file.
 std::string file_or_kind_fault(const std::string& text) {
-  if (std::filesystem::exists(text) && !std::filesystem::is_directory(text)) return {};
+  std::error_code unreadable;
+  if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
+    return {};
   const std::vector<std::string> kinds{"steady", "spectrum", "ageing", "hysteresis", "sweep"};
   if (std::ranges::find(kinds, text) != kinds.end())
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);

@@ -159,11 +159,11 @@ struct InfoArguments {
 };
 
 void info(const InfoArguments& arguments) {
+  const ResultsFile file(arguments.file);  // also refuses what is not as jostle writes it
   if (arguments.digest) {
     print(fmt::format("{}\n", digest_of(arguments.file)));
     return;
   }
-  const ResultsFile file(arguments.file);
   const RunStatus status = run_status(arguments.file);
   try {
     if (arguments.json) {

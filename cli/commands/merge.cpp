@@ -30,7 +30,8 @@ void require_output(const MergeArguments& arguments) {
   require_replaceable(arguments.output, "merged.h5");
   require_not_read("-o", arguments.output, arguments.inputs);
   if (arguments.force) return require_results_or_empty(arguments.output);
-  if (std::filesystem::exists(arguments.output)) {
+  std::error_code unreadable;
+  if (std::filesystem::exists(arguments.output, unreadable)) {
     throw BadInput(
         fmt::format("{} exists and is kept. Write elsewhere with -o FILE, or replace it with "
                     "--force.",

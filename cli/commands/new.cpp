@@ -8,6 +8,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
@@ -51,6 +52,8 @@ std::string with_string(std::string text, const std::string& key, const std::str
 
 /// The schema beside the scene, which editors complete its keys by.
 void write_schema(const fs::path& path, bool force) {
+  require_replaceable(path.string(), "scene.json");
+  require_no_link(path.string());
   if (fs::exists(path) && !force) {
     if (read_text_file(path.string()) == scene_schema()) return;
     print_to_standard_error(fmt::format(
@@ -71,14 +74,15 @@ int write_new_scene(const NewArguments& arguments) {
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
     throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));
+  require_replaceable(path.string(), "scene.json");
   if (fs::exists(path) && !arguments.force) {
     throw BadInput(
         fmt::format("{} exists and is kept: take another name, or replace it with "
                     "--force",
                     path.string()));
   }
-  write_text(path.string(), text);
   write_schema(path.parent_path() / schema_name, arguments.force);
+  write_text(path.string(), text);
   print(fmt::format(
       "{0}: a copy of {1}; jostle check {0} says what it costs, jostle run {0} writes {2}.h5\n",
       path.string(), arguments.from, parsed.scene->name));

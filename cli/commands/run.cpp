@@ -66,7 +66,8 @@ std::string output_path(const RunArguments& arguments, const LoadedScene& loaded
   const std::string output =
       arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output;
   require_replaceable(output, loaded.scene.name + ".h5");
-  if (!std::filesystem::is_symlink(output)) return output;
+  std::error_code unreadable;
+  if (!std::filesystem::is_symlink(output, unreadable)) return output;
   const std::filesystem::path link(output);
   return (link.parent_path() / std::filesystem::read_symlink(link)).string();
 }

@@ -54,6 +54,15 @@ void require_replaceable(const std::string& output, const std::string& example) 
   require_replaceable_file(output);
 }
 
+void require_no_link(const std::string& output) {
+  std::error_code ignored;
+  if (fs::is_symlink(output, ignored)) {
+    throw ResultsError(output,
+                       "is a link that jostle did not make: remove it, or choose another "
+                       "name or folder");
+  }
+}
+
 void require_not_read(const std::string& option, const std::string& output,
                       std::span<const std::string> read) {
   for (const std::string& input : read) {

@@ -15,6 +15,9 @@ bool is_stream(const std::string& path);
 /// `example` is a file's name to choose instead.
 void require_replaceable(const std::string& output, const std::string& example);
 
+/// Refuses a link at a name that the command made up itself: nobody asked for what it leads to.
+void require_no_link(const std::string& output);
+
 /// Refuses an output that is one of the files that the command reads, by whatever name. `option` is
 /// the one that names the output.
 void require_not_read(const std::string& option, const std::string& output,

@@ -151,6 +151,10 @@ LibraryJson library_value(const Json& value) {
 }  // namespace
 
 std::optional<Json> read_json(std::string_view text, std::vector<Fault>& faults) {
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {  // read as the end
+    faults.push_back({"", fmt::format("byte {} is NUL: JSON is text without it", nul + 1)});
+    return std::nullopt;
+  }
   ValueBuilder builder(text, faults);
   if (!LibraryJson::sax_parse(text, &builder)) return std::nullopt;
   return std::move(builder.value());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <variant>
 
 // Horizontal slices of a bed, in which solids fractions are taken.
@@ -10,6 +11,11 @@ struct HeightWindow {
   double low = 0, high = 2;
   bool operator==(const HeightWindow&) const = default;
 };
+
+/// Whether both heights are numbers, the lower first.
+inline bool is_window(HeightWindow window) {
+  return std::isfinite(window.low) && std::isfinite(window.high) && window.low <= window.high;
+}
 
 /// Between two quantiles of the heights of the centres of the starting packing; fixed for the run.
 struct QuantileWindow {

@@ -1,5 +1,7 @@
 #include "engine/monte_carlo/state.hpp"
 
+#include <cmath>
+
 #include "engine/bytes.hpp"
 
 namespace jostle::inline engine {
@@ -8,6 +10,16 @@ namespace {
 
 // "MC" and a number that counts up when the bytes change.
 constexpr std::uint32_t version = 0x4d430001;
+
+bool is_length(double x) {
+  return std::isfinite(x) && x >= 0;
+}
+
+/// Whether trials can be made from here.
+bool is_possible(const MonteCarloState& state) {
+  return is_length(state.move.step) && is_length(state.sampler.reference_step) &&
+         is_window(state.stop_window);
+}
 
 MonteCarloState read(ByteReader& reader) {
   if (reader.get<std::uint32_t>() != version) throw std::out_of_range("another version");
@@ -34,6 +46,7 @@ MonteCarloState read(ByteReader& reader) {
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
   if (!reader.at_end()) throw std::out_of_range("too long");
+  if (!is_possible(state)) throw std::out_of_range("no state of ours");
   return state;
 }
 
@@ -72,7 +85,7 @@ MonteCarloState monte_carlo_state(std::span<const std::byte> bytes) {
     return read(reader);
   } catch (const std::out_of_range&) {
     throw StateError(
-        "the state it goes on from is of another engine or was written by another version of "
+        "the state it goes on from is of another engine, damaged, or written by another version of "
         "jostle: resume with the one that wrote it");
   }
 }

@@ -90,6 +90,12 @@ bool is_half_written(const std::string& text) {
                                     : text.starts_with(host) && text.back() != '\n';
 }
 
+[[noreturn]] void refuse_foreign(const std::string& path) {
+  throw ResultsError(path,
+                     "is no lock of jostle, which needs this name: move it away, or name the "
+                     "results file otherwise");
+}
+
 /// What a lock holds. It is written in place: what is no lock of ours must not be written over.
 std::string read_lock(const std::string& path, int descriptor) {
   struct stat status;
@@ -98,9 +104,7 @@ std::string read_lock(const std::string& path, int descriptor) {
     std::string text = read_all(path, descriptor);
     if (text.size() <= most_bytes && (parse_owner(text) || is_half_written(text))) return text;
   }
-  throw ResultsError(path,
-                     "is no lock of jostle, which needs this name: move it away, or name the "
-                     "results file otherwise");
+  refuse_foreign(path);
 }
 
 Descriptor open_lock(const std::string& path, int flags) {
@@ -111,6 +115,7 @@ Descriptor open_lock(const std::string& path, int flags) {
 /// The lock file, opened and flocked; none if it was taken away meanwhile.
 Descriptor try_open(const std::string& path) {
   Descriptor file = open_lock(path, O_RDWR | O_CREAT);
+  if (!file && (errno == EISDIR || errno == ENXIO || errno == ELOOP)) refuse_foreign(path);
   if (!file) fail_on_disk(path, "create", errno);
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     const auto owner = parse_owner(read_lock(path, file.get()));
@@ -141,7 +146,7 @@ RunLock::RunLock(const std::string& results_path, bool force) : path_(lock_path(
 }
 
 RunLock::~RunLock() {
-  ::unlink(path_.c_str());
+  if (is_still_at(path_, file_.get())) ::unlink(path_.c_str());
 }
 
 std::optional<LockOwner> lock_owner(const std::string& results_path) {

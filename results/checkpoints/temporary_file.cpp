@@ -82,8 +82,9 @@ void TemporaryFile::write(std::span<const std::byte> bytes) {
   write_all(name_, file_.get(), bytes);
 }
 
-void TemporaryFile::publish() {
+void TemporaryFile::publish(const std::function<void()>& before) {
   if (::fsync(file_.get()) != 0) fail_on_disk(name_, "fsync", errno);
+  if (before) before();
   if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
   published_ = true;
   sync_folder_of(target_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -24,8 +25,9 @@ class TemporaryFile {
   /// Where it goes.
   const std::string& target() const { return target_; }
   void write(std::span<const std::byte> bytes);
-  /// On disk first, then under its name, then the name on disk.
-  void publish();
+  /// On disk first, then under its name, then the name on disk. `before` is called once it is on
+  /// disk: what must go when the new file comes, and must stay if it does not.
+  void publish(const std::function<void()>& before = {});
 
  private:
   std::string target_, name_;

@@ -1,10 +1,13 @@
 #include "results/file/particles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "engine/bed/boundary.hpp"
 #include "results/file/axes.hpp"
+#include "results/file/validate.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/write.hpp"
 
@@ -73,6 +76,8 @@ std::vector<Vec3> ParticleFrames::centres(std::uint64_t tap) const {
   std::vector<Vec3> centres(n_spheres_);
   read_rows(value_, Hdf5Number<double>::memory(), {1, n_spheres_, 3},
             static_cast<hsize_t>(found - taps_.begin()), centres.data());
+  if (!std::ranges::all_of(centres, is_position))
+    throw Hdf5Error(fmt::format("the snapshot of tap {} has a position that is none", tap));
   return centres;
 }
 

@@ -43,11 +43,12 @@ void write_hdf5(const std::string& path, const FileContent& content) {
 
 }  // namespace
 
-void write_results(const std::string& path, const FileContent& content) {
+void write_results(const std::string& path, const FileContent& content,
+                   const std::function<void()>& before) {
   TemporaryFile temporary(path);
   naming_file(temporary.name(), [&] { write_hdf5(temporary.name(), content); });
   seal(temporary.name());
-  temporary.publish();
+  temporary.publish(before);
 }
 
 }  // namespace jostle::inline results

@@ -106,6 +106,22 @@ std::vector<std::pair<std::string, std::string>> values_like(const StudyPoint& e
   return values;
 }
 
+/// What all points keep, together: a few bytes of a file make a list of each point anew.
+class KeptInAll {
+ public:
+  /// Throws Hdf5Error beyond what memory is for.
+  void add(const StudyPoint& point) {
+    columns_ += point.n_columns() + point.sweep_values.size();
+    taps_ += point.snapshots.taps.size();
+    constexpr std::uint64_t other_columns = 2 * most_observables_in_all;  // diagnostics, values
+    if (columns_ > most_observables_in_all + other_columns || taps_ > most_snapshots_in_all)
+      throw Hdf5Error("the sweep points keep more columns or snapshots than jostle writes");
+  }
+
+ private:
+  std::uint64_t columns_ = 0, taps_ = 0;
+};
+
 /// `earlier`: the points before this one.
 StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const SweptValues& swept) {
   const auto number = static_cast<std::uint32_t>(earlier.size());
@@ -156,8 +172,11 @@ Study read_study(hid_t file) {
   const Hdf5Handle sweep = open_group(file, "sweep");
   const auto n_points = read_numbers<std::uint32_t>(sweep, "point").size();
   const SweptValues swept = read_swept_values(sweep, n_points);
-  for (std::size_t p = 0; p < n_points; ++p)
+  KeptInAll kept;
+  for (std::size_t p = 0; p < n_points; ++p) {
     study.points.push_back(read_point(sweep, study.points, swept));
+    kept.add(study.points.back());
+  }
   return study;
 }
 

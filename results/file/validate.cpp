@@ -76,18 +76,20 @@ void validate_point(const StudyPoint& point, const std::string& name) {
   validate_snapshots(point.snapshots, point.taps, name);
 }
 
-bool is_position(const Vec3& r) {
-  // A bed that is tapped before it has fallen back grows without end; squares stay finite.
-  constexpr double bound = 1e100;
-  return std::abs(r.x) <= bound && std::abs(r.y) <= bound && std::abs(r.z) <= bound;
-}
-
 }  // namespace
+
+bool is_position(const Vec3& centre) {
+  constexpr double bound = 1e100;
+  return std::abs(centre.x) <= bound && std::abs(centre.y) <= bound && std::abs(centre.z) <= bound;
+}
 
 void validate(const Study& study, const FileProvenance& provenance) {
   require(!study.points.empty(), "the sweep has no points");
   require(study.realizations >= 1 && study.realizations <= most_realizations,
           fmt::format("{} realizations", study.realizations));
+  const std::uint64_t in_all = std::uint64_t{study.realizations} * study.points.size();
+  require(in_all <= most_realizations_in_all,
+          fmt::format("{} realizations of all sweep points together", in_all));
   require(!provenance.processes.empty(), "no process has worked on the file");
   const Shard shard = provenance.shard;
   require(shard.index >= 1 && shard.index <= shard.count,
@@ -108,6 +110,8 @@ void validate(const RealizationState& state, const StudyPoint& point) {
       "a restart state without its spheres");
   require(state.observable_windows.size() == point.observables.size(),
           "a restart state of other observables");
+  require(std::ranges::all_of(state.observable_windows, is_window),
+          "a restart state with a window that is none");
 }
 
 std::size_t nesting_of(std::string_view json) {

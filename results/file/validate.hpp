@@ -16,6 +16,10 @@ void validate(const Study& study, const FileProvenance& provenance);
 /// What a realization goes on from.
 void validate(const RealizationState& state, const StudyPoint& point);
 
+/// Whether squares of the coordinates are numbers: a bed that is tapped before it has fallen back
+/// grows without end.
+bool is_position(const Vec3& centre);
+
 /// Brackets within brackets in a JSON text, at most; of a text that is no JSON, no matter what.
 std::size_t nesting_of(std::string_view json);
 

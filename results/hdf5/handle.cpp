@@ -15,7 +15,8 @@ std::string hdf5_reason() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
   H5Eclear2(H5E_DEFAULT);
-  return "HDF5: " + (reason.empty() ? "unknown failure" : reason);
+  if (reason.empty()) return "HDF5 failed: out of memory, or the file is not as jostle writes it";
+  return "HDF5: " + reason + "; the file is not as jostle writes it, or the disk failed";
 }
 
 }  // namespace jostle::inline results

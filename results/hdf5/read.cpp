@@ -2,23 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "results/hdf5/policy.hpp"
 
 namespace jostle::inline results {
 namespace {
 
-/// Texts of any length come as pointers that HDF5 owns until they are reclaimed.
+constexpr std::size_t most_texts_of_an_attribute = 1000;
+
+/// Texts of any length come as pointers that HDF5 owns until they are reclaimed. `space`: of what
+/// is read at once.
 template <class Read>
-std::vector<std::string> collect_texts(hid_t space, Read&& read) {
-  const std::size_t n = n_elements(shape_of_space(space));
+void collect_texts(hid_t space, std::size_t n, std::vector<std::string>& texts, Read&& read) {
   const Hdf5Handle type = text_type();
   std::vector<char*> pointers(n, nullptr);
-  if (n == 0) return {};
   checked(read(type, pointers.data()));
-  std::vector<std::string> texts;
   for (const char* text : pointers) texts.emplace_back(text ? text : "");
   H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
-  return texts;
+}
+
+hsize_t size_of_file(hid_t object) {
+  const Hdf5Handle file(H5Iget_file_id(object), H5Fclose);
+  hsize_t bytes = 0;
+  checked(H5Fget_filesize(file, &bytes));
+  return bytes;
+}
+
+/// Rows of a dataset: a single value is one.
+hsize_t shape_rows(const Shape& shape) {
+  return shape.empty() ? 1 : shape[0];
+}
+
+void select_rows(hid_t space, const Shape& shape, hsize_t first, hsize_t rows) {
+  if (shape.empty()) return;
+  Shape offset(shape.size(), 0), count = shape;
+  offset[0] = first;
+  count[0] = rows;
+  checked(
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr));
 }
 
 std::string only(const std::string& name, const std::vector<std::string>& texts) {
@@ -120,9 +142,31 @@ std::vector<double> read_block(hid_t parent, const std::string& name, const Shap
 std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
   const Hdf5Handle dataset = open_dataset(parent, name);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  return collect_texts(space, [&](hid_t type, char** pointers) {
-    return H5Dread(dataset, type, H5S_ALL, H5S_ALL, transfer_properties(), pointers);
-  });
+  const Shape shape = shape_of_space(space);
+  const std::size_t n = n_elements(shape);
+  if (n == 0) return {};
+  // Each text lies in the file by itself. References to one and the same make more of it than there
+  // is: so many are read at once as cannot take all memory, and counted.
+  constexpr hsize_t most_bytes_at_once = 256u << 20, fewest_at_once = 16;
+  const hsize_t bytes_there = size_of_file(dataset), n_rows = shape_rows(shape), row = n / n_rows;
+  const hsize_t at_once = std::max(fewest_at_once, most_bytes_at_once / bytes_there);
+  hsize_t bytes = 0;
+  std::vector<std::string> texts;
+  for (hsize_t first = 0; first < n_rows;) {
+    const hsize_t rows = std::min(std::max<hsize_t>(at_once / row, 1), n_rows - first);
+    const hsize_t count = rows * row;
+    select_rows(space, shape, first, rows);
+    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    collect_texts(memory, count, texts, [&](hid_t type, char** pointers) {
+      return H5Dread(dataset, type, memory, space, transfer_properties(), pointers);
+    });
+    first += rows;
+    for (auto text = texts.end() - static_cast<std::ptrdiff_t>(count); text != texts.end(); ++text)
+      bytes += text->size();
+    if (bytes > bytes_there)
+      throw Hdf5Error(name + " has longer texts than the file has room for: not written by jostle");
+  }
+  return texts;
 }
 
 std::string read_text(hid_t parent, const std::string& name) {
@@ -132,8 +176,21 @@ std::string read_text(hid_t parent, const std::string& name) {
 std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name) {
   const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  return collect_texts(
-      space, [&](hid_t type, char** pointers) { return H5Aread(attribute, type, pointers); });
+  const std::size_t n = n_elements(shape_of_space(space));
+  if (n > most_texts_of_an_attribute) throw Hdf5Error("attribute " + name + " has too many texts");
+  std::vector<std::string> texts;
+  if (n > 0) {
+    collect_texts(space, n, texts,
+                  [&](hid_t type, char** pointers) { return H5Aread(attribute, type, pointers); });
+  }
+  return texts;
+}
+
+void require_alike(hid_t type, hid_t expected, const std::string& name) {
+  const H5T_class_t kind = H5Tget_class(expected);
+  const bool signs_agree = kind != H5T_INTEGER || H5Tget_sign(type) == H5Tget_sign(expected);
+  if (H5Tget_class(type) != kind || !signs_agree || H5Tget_size(type) != H5Tget_size(expected))
+    throw Hdf5Error(name + " is a number of another kind: not written by jostle");
 }
 
 std::string read_fixed_text_attribute(hid_t object, const std::string& name) {

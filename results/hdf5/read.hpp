@@ -50,11 +50,15 @@ std::vector<std::string> read_texts_attribute(hid_t object, const std::string& n
 std::string read_text_attribute(hid_t object, const std::string& name);
 /// Of a length that its type fixes, as HDF5's own attributes have.
 std::string read_fixed_text_attribute(hid_t object, const std::string& name);
+/// Throws Hdf5Error for another kind of number, or one with a sign where there is none: HDF5 would
+/// convert it in silence, -1 to 0.
+void require_alike(hid_t type, hid_t expected, const std::string& name);
 template <class Number>
 std::vector<Number> read_numbers_attribute(hid_t object, const std::string& name) {
   const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
   std::vector<Number> numbers(n_elements(shape_of_space(space)));
+  require_alike(Hdf5Handle(H5Aget_type(attribute), H5Tclose), Hdf5Number<Number>::file(), name);
   checked(H5Aread(attribute, Hdf5Number<Number>::memory(), numbers.data()));
   return numbers;
 }

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import unittest
+import zlib
 
 import h5py
 import numpy as np
@@ -118,6 +119,18 @@ def nested_scene(file):
     text(file, "scene/resolved", '{"a":' * 100_000 + "1" + "}" * 100_000)
 
 
+def shared_text(name, n, value):
+    """n texts that are references to one."""
+    def change(file):
+        del file[name]
+        dataset = file.create_dataset(name, (n,), h5py.string_dtype(), chunks=(n,), compression="gzip")
+        dataset[0] = value
+        file.flush()
+        mask, raw = dataset.id.read_direct_chunk((0,))
+        dataset.id.write_direct_chunk((0,), zlib.compress(zlib.decompress(raw)[:16] * n, 9), 0)
+    return change
+
+
 # Kinds of the first list crashed once, of the second hung, of the third are their kin.
 CRASHED = {
     "no sweep points": no_points,
@@ -169,6 +182,10 @@ KIN = {
     "an axis with a hole": lambda file: file.__delitem__(f"{SERIES}/tap"),
     "a point that keeps what it keeps itself": attribute(
         POINT, "keeps_what_point_keeps", np.uint32(0)),
+    "a point that keeps what point -1 keeps": attribute(
+        POINT, "keeps_what_point_keeps", np.int64(-1)),
+    "half a realization": attribute("scene", "realizations", np.float64(1.5)),
+    "20 GB of one text": shared_text("provenance/host", 200_000, "x" * 100_000),
     "4 billion spheres": attribute(POINT, "n_spheres", np.uint32(2**32 - 1)),
     "no spheres": attribute(POINT, "n_spheres", np.uint32(0)),
     "other spheres": attribute(POINT, "n_spheres", np.uint32(47)),

@@ -7,7 +7,7 @@ import xml.etree.ElementTree
 
 import h5py
 
-from support import BAD_INPUT, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, TINY, Case, changed
 
 N = TINY["spheres"]
 
@@ -128,6 +128,18 @@ class Export(Case):
         self.assertNotEqual((self.folder / "tiny_point0.pvd").read_text(), "mine")
         self.assertIn("would destroy it", self.jostle("export", "tiny.h5", "--format", "lammps", "-o",
                                                   "tiny.h5", "--force", expect=BAD_INPUT).stderr)
+
+    def test_links_at_names_made_up_here_are_not_followed(self):
+        victim = self.folder / "victim"
+        victim.write_text("mine")
+        for name in ("all_tap4.vtp", "all.pvd"):
+            with self.subTest(name=name):
+                (self.folder / name).symlink_to(victim)
+                err = self.jostle("export", "tiny.h5", "--format", "vtp", "--tap", "all", "-o",
+                                  "all.vtp", "--force", expect=BROKEN).stderr
+                self.assertIn(f"{name}: is a link that jostle did not make", err)
+                self.assertEqual(victim.read_text(), "mine")
+                (self.folder / name).unlink()
 
     def test_what_is_not_there_is_answered_with_what_is(self):
         for arguments, answer in (

@@ -1,9 +1,10 @@
 """jostle new: a scene of one's own, from one that is shipped."""
 
 import json
+import os
 import unittest
 
-from support import BAD_INPUT, SOURCE, STOPPED, Case
+from support import BAD_INPUT, BROKEN, SOURCE, STOPPED, Case
 
 SHIPPED = sorted(str(path.relative_to(SOURCE / "config/scenes").with_suffix(""))
                  for path in (SOURCE / "config/scenes").rglob("*.json"))
@@ -50,6 +51,21 @@ class New(Case):
         for name in SHIPPED:
             self.assertIn(f"\n  {name}\n", err + "\n")
         self.assertEqual(self.files(), [])
+
+    def test_links_and_pipes_are_not_written_to(self):
+        victim = self.folder / "victim"
+        victim.write_text("mine")
+        (self.folder / "scene.schema.json").symlink_to(victim)
+        err = self.jostle("new", "bed", "--force", expect=BROKEN).stderr
+        self.assertIn("scene.schema.json: is a link that jostle did not make", err)
+        self.assertEqual(victim.read_text(), "mine")
+        self.assertNotIn("bed.json", self.files())
+        (self.folder / "scene.schema.json").unlink()
+        for name in ("scene.schema.json", "bed.json"):
+            with self.subTest(name=name):
+                os.mkfifo(self.folder / name)
+                self.jostle("new", "bed", "--force", expect=BAD_INPUT)
+                (self.folder / name).unlink()
 
     def test_a_name_is_that_of_a_file(self):
         for name in ("my bed", "-bed", "a\"b", ".."):

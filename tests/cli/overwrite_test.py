@@ -4,7 +4,7 @@ import unittest
 
 import h5py
 
-from support import BAD_INPUT, FAILED, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, FAILED, TINY, Case, changed
 
 TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], snapshots={"taps": [0, 40]})
 del TAPPED["sweep"]
@@ -27,6 +27,18 @@ class Kept(Case):
         for force in ((), ("--force",)):
             with self.subTest(arguments=arguments, force=force):
                 self.refused(*arguments, *force, answer=answer)
+
+
+class Rings(Case):
+    def test_rings_of_links_and_long_names_are_said_plainly(self):
+        self.write(TAPPED)
+        (self.folder / "ring.h5").symlink_to("ring.h5")
+        for output, answer in (("ring.h5", "ring"), ("x" * 300, "File name too long")):
+            for options in ((), ("--resume",)):
+                with self.subTest(output=output[:9], options=options):
+                    err = self.jostle("run", "scene.json", "-o", output, *options, expect=BROKEN).stderr
+                    self.assertIn(answer, err)
+                    self.assertNotIn("filesystem error", err)
 
 
 class Text(Kept):

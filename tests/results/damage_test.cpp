@@ -146,7 +146,7 @@ TEST_CASE("parts without their file are not built upon") {
   const KilledRun run;
   std::filesystem::remove(run.path);
   CHECK_THROWS_WITH(RunStore::create(run.path, run.study, {}, provenance()),
-                    Contains(run.path + ".parts") && Contains("--force"));
+                    Contains(run.path + ".parts") && Contains("discard the parts"));
   CHECK(std::filesystem::exists(run.state));
   RunStore::create(run.path, run.study, {}, provenance(), true);
   CHECK_FALSE(std::filesystem::exists(run.state));

@@ -1,6 +1,7 @@
 #include "engine/monte_carlo/state.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "engine/monte_carlo/monte_carlo.hpp"
 #include "engine/starts/starts.hpp"
@@ -38,6 +39,23 @@ TEST_CASE("Bytes of another version, of another length or of no state are refuse
   auto no_flag = whole;
   no_flag[4] = std::byte{2};
   CHECK_THROWS_AS(monte_carlo_state(no_flag), StateError);
+}
+
+TEST_CASE("A state from which no trial can be made is refused") {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const double step : {none, -1.0, 1 / 0.0}) {
+    MonteCarloState state = some_state;
+    state.move.step = step;
+    CHECK_THROWS_AS(monte_carlo_state(bytes_of(state)), StateError);
+    state = some_state;
+    state.sampler.reference_step = step;
+    CHECK_THROWS_AS(monte_carlo_state(bytes_of(state)), StateError);
+  }
+  for (const HeightWindow window : {HeightWindow{2, 1}, HeightWindow{none, 1}}) {
+    MonteCarloState state = some_state;
+    state.stop_window = window;
+    CHECK_THROWS_AS(monte_carlo_state(bytes_of(state)), StateError);
+  }
 }
 
 TEST_CASE("At rest a state holds nothing of the relaxation that ended") {

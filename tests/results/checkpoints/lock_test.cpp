@@ -103,9 +103,20 @@ TEST_CASE("the lock of another host is taken over by force only") {
   write_lock(path, "elsewhere", 1234, 5);
   CHECK(lock_owner(path)->alive);
   CHECK_THROWS_WITH(RunLock(path, false),
-                    Contains("process 1234 on host elsewhere") && Contains("--force"));
+                    Contains("process 1234 on host elsewhere") && Contains("take the file over"));
   const RunLock lock(path, true);
   CHECK(lock_owner(path)->host == this_host());
+}
+
+TEST_CASE("a file that somebody put in the place of the lock stays there") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  {
+    const RunLock lock(path, false);
+    std::filesystem::remove(path + ".lock");
+    std::ofstream(path + ".lock") << "notes";
+  }
+  CHECK(std::filesystem::file_size(path + ".lock") == 5);
 }
 
 TEST_CASE("an empty lock file, left between its creation and its writing, is taken over") {
