@@ -36,12 +36,11 @@ class Digest {
   void add_attributes(hid_t object, const std::string& path);
   void add_attribute(hid_t object, const std::string& name, const std::string& path);
   void add_axes(hid_t dataset, const std::string& path, const Paths& paths);
-  template <class Read>
-  void add_values(const std::string& what, hid_t type, hid_t space, Read&& read);
+  template <class Read, class Texts>
+  void add_values(const std::string& what, hid_t type, hid_t space, Read&& read, Texts&& texts);
   template <class Number, class Read>
   void add_numbers(hid_t memory_type, const Shape& shape, Read&& read);
-  template <class Read>
-  void add_texts(hid_t space, std::size_t n, Read&& read);
+  void add_texts(std::span<const std::string> texts);
 
   Sha256 sum_;
   Walk walk_;
@@ -120,12 +119,13 @@ void Digest::add_object(hid_t parent, const Member& member, const std::string& p
 void Digest::add_dataset(hid_t dataset, const std::string& path) {
   const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  add_values(path + " dataset", type, space, [&](hid_t memory_type, void* values, Piece piece) {
+  const auto read = [&](hid_t memory_type, void* values, const Piece& piece) {
     if (piece.shape.empty())
       return H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values);
     read_rows(dataset, memory_type, piece.shape, piece.first, values);
     return herr_t{0};
-  });
+  };
+  add_values(path + " dataset", type, space, read, [&] { return texts_of_dataset(dataset, path); });
 }
 
 void Digest::add_attributes(hid_t object, const std::string& path) {
@@ -140,12 +140,14 @@ void Digest::add_attribute(hid_t object, const std::string& name, const std::str
   const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  add_values(path + " attribute " + name, type, space,
-             [&](hid_t memory_type, void* values, const Piece& piece) {
-               if (!piece.shape.empty())
-                 throw Hdf5Error("an attribute of millions of numbers: not written by jostle");
-               return H5Aread(attribute, memory_type, values);
-             });
+  add_values(
+      path + " attribute " + name, type, space,
+      [&](hid_t memory_type, void* values, const Piece& piece) {
+        if (!piece.shape.empty())
+          throw Hdf5Error("an attribute of millions of numbers: not written by jostle");
+        return H5Aread(attribute, memory_type, values);
+      },
+      [&] { return texts_of_attribute(attribute, name); });
 }
 
 /// Axes lie in the group of what stands along them, and a reference to one is its address there:
@@ -162,8 +164,9 @@ void Digest::add_axes(hid_t dataset, const std::string& path, const Paths& paths
   }
 }
 
-template <class Read>
-void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read) {
+template <class Read, class Texts>
+void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read,
+                        Texts&& texts) {
   const Shape shape = shape_of_space(space);
   const std::size_t n = n_elements(shape);
   const std::size_t size = H5Tget_size(type);
@@ -179,7 +182,7 @@ void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&&
                                         read);
     case H5T_STRING:
       sum_.add(what + " text" + shape_text(space) + "\n");
-      if (H5Tis_variable_str(type) > 0) return add_texts(space, n, read);
+      if (H5Tis_variable_str(type) > 0) return add_texts(texts());
       {
         std::vector<std::byte> raw(n * size);
         checked(read(type, raw.data(), Piece{}));
@@ -211,18 +214,11 @@ void Digest::add_numbers(hid_t memory_type, const Shape& shape, Read&& read) {
   }
 }
 
-template <class Read>
-void Digest::add_texts(hid_t space, std::size_t n, Read&& read) {
-  if (n == 0) return;
-  const Hdf5Handle type = text_type();
-  std::vector<char*> texts(n, nullptr);
-  checked(read(type, texts.data(), Piece{}));
-  for (const char* text : texts) {
-    const std::string_view view = text ? text : "";
-    sum_.add(std::to_string(view.size()) + ":");
-    sum_.add(view);
+void Digest::add_texts(std::span<const std::string> texts) {
+  for (const std::string& text : texts) {
+    sum_.add(std::to_string(text.size()) + ":");
+    sum_.add(text);
   }
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
 }
 
 }  // namespace

@@ -29,18 +29,24 @@ hsize_t size_of_file(hid_t object) {
   return bytes;
 }
 
-/// Rows of a dataset: a single value is one.
-hsize_t shape_rows(const Shape& shape) {
-  return shape.empty() ? 1 : shape[0];
-}
-
-void select_rows(hid_t space, const Shape& shape, hsize_t first, hsize_t rows) {
-  if (shape.empty()) return;
+/// Selects up to `most` values from the one with number `first` on, whole rows where they fit, else
+/// a piece of a row of a table; how many they are.
+hsize_t select_from(hid_t space, const Shape& shape, std::size_t first, hsize_t most) {
+  if (shape.empty()) return 1;
+  const hsize_t row = n_elements(shape) / shape[0];
   Shape offset(shape.size(), 0), count = shape;
-  offset[0] = first;
-  count[0] = rows;
+  offset[0] = first / row;
+  if (first % row == 0 && row <= most) {
+    count[0] = std::min(most / row, shape[0] - offset[0]);
+  } else if (shape.size() == 2) {
+    offset[1] = first % row;
+    count = {1, std::min(most, row - offset[1])};
+  } else {
+    throw Hdf5Error("texts in more than two dimensions: not written by jostle");
+  }
   checked(
       H5Sselect_hyperslab(space, H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr));
+  return n_elements(count);
 }
 
 std::string only(const std::string& name, const std::vector<std::string>& texts) {
@@ -140,7 +146,10 @@ std::vector<double> read_block(hid_t parent, const std::string& name, const Shap
 }
 
 std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
-  const Hdf5Handle dataset = open_dataset(parent, name);
+  return texts_of_dataset(open_dataset(parent, name), name);
+}
+
+std::vector<std::string> texts_of_dataset(hid_t dataset, const std::string& name) {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   const Shape shape = shape_of_space(space);
   const std::size_t n = n_elements(shape);
@@ -148,19 +157,16 @@ std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
   // Each text lies in the file by itself. References to one and the same make more of it than there
   // is: so many are read at once as cannot take all memory, and counted.
   constexpr hsize_t most_bytes_at_once = 256u << 20, fewest_at_once = 16;
-  const hsize_t bytes_there = size_of_file(dataset), n_rows = shape_rows(shape), row = n / n_rows;
+  const hsize_t bytes_there = size_of_file(dataset);
   const hsize_t at_once = std::max(fewest_at_once, most_bytes_at_once / bytes_there);
   hsize_t bytes = 0;
   std::vector<std::string> texts;
-  for (hsize_t first = 0; first < n_rows;) {
-    const hsize_t rows = std::min(std::max<hsize_t>(at_once / row, 1), n_rows - first);
-    const hsize_t count = rows * row;
-    select_rows(space, shape, first, rows);
+  while (texts.size() < n) {
+    const hsize_t count = select_from(space, shape, texts.size(), at_once);
     const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
     collect_texts(memory, count, texts, [&](hid_t type, char** pointers) {
       return H5Dread(dataset, type, memory, space, transfer_properties(), pointers);
     });
-    first += rows;
     for (auto text = texts.end() - static_cast<std::ptrdiff_t>(count); text != texts.end(); ++text)
       bytes += text->size();
     if (bytes > bytes_there)
@@ -174,7 +180,10 @@ std::string read_text(hid_t parent, const std::string& name) {
 }
 
 std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name) {
-  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  return texts_of_attribute(Hdf5Handle(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose), name);
+}
+
+std::vector<std::string> texts_of_attribute(hid_t attribute, const std::string& name) {
   const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
   const std::size_t n = n_elements(shape_of_space(space));
   if (n > most_texts_of_an_attribute) throw Hdf5Error("attribute " + name + " has too many texts");

@@ -43,10 +43,14 @@ void read_rows(hid_t dataset, hid_t memory_type, const Shape& shape, hsize_t fir
 std::vector<double> read_block(hid_t parent, const std::string& name, const Shape& offset,
                                const Shape& shape);
 
+/// Texts of any length, those of a table row by row. Throws Hdf5Error where they would take more
+/// memory than the file has bytes.
 std::vector<std::string> read_texts(hid_t parent, const std::string& name);
+std::vector<std::string> texts_of_dataset(hid_t dataset, const std::string& name);
 std::string read_text(hid_t parent, const std::string& name);
 
 std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name);
+std::vector<std::string> texts_of_attribute(hid_t attribute, const std::string& name);
 std::string read_text_attribute(hid_t object, const std::string& name);
 /// Of a length that its type fixes, as HDF5's own attributes have.
 std::string read_fixed_text_attribute(hid_t object, const std::string& name);

@@ -119,16 +119,25 @@ def nested_scene(file):
     text(file, "scene/resolved", '{"a":' * 100_000 + "1" + "}" * 100_000)
 
 
-def shared_text(name, n, value):
-    """n texts that are references to one."""
+def shared_text(name, shape, value):
+    """Texts that are references to one."""
     def change(file):
-        del file[name]
-        dataset = file.create_dataset(name, (n,), h5py.string_dtype(), chunks=(n,), compression="gzip")
-        dataset[0] = value
+        if name in file:
+            del file[name]
+        dataset = file.create_dataset(name, shape, h5py.string_dtype(), chunks=shape,
+                                      compression="gzip")
+        first = (0,) * len(shape)
+        dataset[first] = value
         file.flush()
-        mask, raw = dataset.id.read_direct_chunk((0,))
-        dataset.id.write_direct_chunk((0,), zlib.compress(zlib.decompress(raw)[:16] * n, 9), 0)
+        mask, raw = dataset.id.read_direct_chunk(first)
+        forged = zlib.decompress(raw)[:16] * int(np.prod(shape))
+        dataset.id.write_direct_chunk(first, zlib.compress(forged, 9), 0)
     return change
+
+
+def shared_values(file):
+    file.create_dataset("sweep/pointer", data=["/seed"] * 200_000, dtype=h5py.string_dtype())
+    shared_text("sweep/value", (1, 200_000), "1" * 100_000)(file)
 
 
 # Kinds of the first list crashed once, of the second hung, of the third are their kin.
@@ -185,7 +194,8 @@ KIN = {
     "a point that keeps what point -1 keeps": attribute(
         POINT, "keeps_what_point_keeps", np.int64(-1)),
     "half a realization": attribute("scene", "realizations", np.float64(1.5)),
-    "20 GB of one text": shared_text("provenance/host", 200_000, "x" * 100_000),
+    "20 GB of one text": shared_text("provenance/host", (200_000,), "x" * 100_000),
+    "20 GB of one value": shared_values,
     "4 billion spheres": attribute(POINT, "n_spheres", np.uint32(2**32 - 1)),
     "no spheres": attribute(POINT, "n_spheres", np.uint32(0)),
     "other spheres": attribute(POINT, "n_spheres", np.uint32(47)),
