@@ -13,7 +13,7 @@ SpreadFound error_of(double value) {
 
 }  // namespace
 
-TEST_CASE("Enough realizations are enough") {
+TEST_CASE("Where the spread is small, no more realizations are asked for") {
   CHECK(next_realizations(8, std::vector{error_of(0.001), error_of(0.0001)}, 100) == 8);
 }
 
