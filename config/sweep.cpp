@@ -124,6 +124,9 @@ class SweepCheck {
         std::max<std::uint64_t>(scene_.realizations, grows ? scene_.until.at_most : 0);
     check("/realizations", "realizations", realizations, most_realizations_in_all);
     check("/observe", "observables", scene_.observables.size(), most_observables_in_all);
+    std::size_t pointers = 0;
+    for (const SweepAxis& axis : scene_.sweep) pointers += axis.columns.size();
+    check("/sweep", "values", pointers, most_swept_values_in_all);
     check("/snapshots/taps", "taps with snapshots", chosen_taps(scene_.snapshots.taps).size(),
           most_snapshots_in_all);
   }

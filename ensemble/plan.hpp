@@ -18,9 +18,11 @@ namespace jostle::inline ensemble {
 /// Realizations of a plan, at most.
 inline constexpr std::uint32_t most_realizations = 1'000'000;
 
-/// Of all sweep points together, at most: realizations, observables, taps with snapshots.
+/// Of all sweep points together, at most: realizations, observables, values of the sweep, taps with
+/// snapshots.
 inline constexpr std::uint64_t most_realizations_in_all = 10'000'000;
 inline constexpr std::uint64_t most_observables_in_all = 2'000'000;
+inline constexpr std::uint64_t most_swept_values_in_all = 2'000'000;
 inline constexpr std::uint64_t most_snapshots_in_all = 50'000'000;
 
 /// `count` taps of the same kind and strength.

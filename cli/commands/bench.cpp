@@ -33,11 +33,11 @@ std::vector<std::string> state_names() {
 }
 
 /// The median of three turns of about a tenth of a second, after ten sweeps to warm up.
-bench::Rate rate_of(const bench::Case& measured) {
+bench::Rate rate_of(const bench::Case& bed) {
   const StreamKey key = stream_key(20010222, 0, 1, Purpose::trials);
-  const auto loop = make_trial_loop(measured.packing.container, measured.move, key);
-  loop->load(measured.packing);
-  loop->run(10 * measured.packing.centres.size());
+  const auto loop = make_trial_loop(bed.packing.container, bed.move, key);
+  loop->load(bed.packing);
+  loop->run(10 * bed.packing.centres.size());
   std::array<bench::Rate, 3> rates;
   for (auto& rate : rates) rate = bench::measure_rate(*loop, 4'000'000);
   std::ranges::sort(rates, {}, &bench::Rate::trials_per_second);
@@ -68,9 +68,9 @@ void run_bench(const BenchArguments& arguments) {
   Json cases = Json::array();
   for (const bench::StandardState state : bench::all_standard_states) {
     if (!wanted(arguments, bench::name(state))) continue;
-    const bench::Case measured = bench::standard_state(state);
-    const bench::Rate rate = rate_of(measured);
-    const std::size_t n_spheres = measured.packing.centres.size();
+    const bench::Case bed = bench::standard_state(state);
+    const bench::Rate rate = rate_of(bed);
+    const std::size_t n_spheres = bed.packing.centres.size();
     if (arguments.json) {
       cases.push_back(as_json(bench::name(state), n_spheres, rate));
     } else {

@@ -92,7 +92,7 @@ int export_packings(const ExportArguments& arguments) {
   // Nothing is written where one of the files may not be.
   for (const ExportedFile& file : files) {
     require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
-    if (file.path != output) require_no_link(file.path);
+    if (file.path != arguments.output) require_no_link(file.path);
     require_text_output("-o", file.path, std::span(&arguments.input, 1), arguments.force);
   }
   std::vector<std::uint64_t> taps;

@@ -50,9 +50,15 @@ std::string with_string(std::string text, const std::string& key, const std::str
   return text.replace(begin, text.find('"', begin) - begin, value);
 }
 
+void require_no_stream(const fs::path& path) {
+  if (is_stream(path.string()))
+    throw BadInput(fmt::format(
+        "{} is a pipe or a device: remove it, or take another name or folder", path.string()));
+}
+
 /// The schema beside the scene, which editors complete its keys by.
 void write_schema(const fs::path& path, bool force) {
-  require_replaceable(path.string(), "scene.json");
+  require_no_stream(path);
   require_no_link(path.string());
   if (fs::exists(path) && !force) {
     if (read_text_file(path.string()) == scene_schema()) return;
@@ -74,7 +80,7 @@ int write_new_scene(const NewArguments& arguments) {
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
     throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));
-  require_replaceable(path.string(), "scene.json");
+  require_no_stream(path);
   if (fs::exists(path) && !arguments.force) {
     throw BadInput(
         fmt::format("{} exists and is kept: take another name, or replace it with "

@@ -111,15 +111,17 @@ class KeptInAll {
  public:
   /// Throws Hdf5Error beyond what memory is for.
   void add(const StudyPoint& point) {
-    columns_ += point.n_columns() + point.sweep_values.size();
+    observables_ += point.observables.size();
+    diagnostics_ += point.diagnostics.size();
+    values_ += point.sweep_values.size();
     taps_ += point.snapshots.taps.size();
-    constexpr std::uint64_t other_columns = 2 * most_observables_in_all;  // diagnostics, values
-    if (columns_ > most_observables_in_all + other_columns || taps_ > most_snapshots_in_all)
+    if (observables_ > most_observables_in_all || diagnostics_ > most_observables_in_all ||
+        values_ > most_swept_values_in_all || taps_ > most_snapshots_in_all)
       throw Hdf5Error("the sweep points keep more columns or snapshots than jostle writes");
   }
 
  private:
-  std::uint64_t columns_ = 0, taps_ = 0;
+  std::uint64_t observables_ = 0, diagnostics_ = 0, values_ = 0, taps_ = 0;
 };
 
 /// `earlier`: the points before this one.

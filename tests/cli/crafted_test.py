@@ -297,6 +297,25 @@ class Crafted(Case):
             with self.subTest(command=command):
                 self.use(command)
 
+    def test_few_bytes_do_not_become_gigabytes_of_text(self):
+        shared = shared_text("scene/extra", (200_000,), "x" * 100_000)  # only a digest reads it
+        for change, command in ((KIN["20 GB of one text"], ["info", "file.h5"]),
+                                (shared_values, ["info", "file.h5"]),
+                                (shared, ["info", "file.h5", "--digest"])):
+            with self.subTest(command=command):
+                self.craft(change)
+                refused = self.use(command)
+                self.assertEqual(refused.returncode, BROKEN)
+                self.assertIn("has longer texts than the file has room for", refused.stderr)
+
+    def test_a_file_that_no_command_uses_has_no_digest(self):
+        for kind in ("a point that keeps what it keeps itself", "a point that keeps what point -1 keeps",
+                     "half a realization"):
+            with self.subTest(kind=kind):
+                self.craft(KIN[kind])
+                for command in (["info", "file.h5"], ["info", "file.h5", "--digest"]):
+                    self.assertEqual(self.use(command).returncode, BROKEN)
+
     def test_no_number_comes_from_an_unsealed_file(self):
         for kind in ("observables in an unsealed file", "a point in an unsealed file",
                      "a column in an unsealed file", "raw values in an unsealed file",

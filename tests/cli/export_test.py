@@ -140,6 +140,11 @@ class Export(Case):
                 self.assertIn(f"{name}: is a link that jostle did not make", err)
                 self.assertEqual(victim.read_text(), "mine")
                 (self.folder / name).unlink()
+        (self.folder / "tiny_point0.dump").symlink_to(victim)
+        self.jostle("export", "tiny.h5", "--format", "lammps", "--force", expect=BROKEN)
+        self.assertEqual(victim.read_text(), "mine")
+        self.jostle("export", "tiny.h5", "--format", "lammps", "-o", "tiny_point0.dump", "--force")
+        self.assertNotEqual(victim.read_text(), "mine")  # named: followed
 
     def test_what_is_not_there_is_answered_with_what_is(self):
         for arguments, answer in (

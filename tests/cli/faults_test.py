@@ -226,6 +226,27 @@ class Limits(Faults):
         self.resume_by(err)
         self.assertEqual(self.digest("tiny.h5"), straight)
 
+    def test_force_takes_nothing_away_before_its_file_is_written(self):
+        self.run_scene("-o", "straight.h5")
+        straight = self.digest("straight.h5")
+        process = self.paused()
+        process.kill()
+        process.wait()
+        parts = sorted(path.name for path in (self.folder / "tiny.h5.parts").iterdir())
+        self.assertTrue(parts)
+        limit = "ulimit -f 4; "  # 4 kB: less than the file of a run that begins
+        for command in (f"{limit} exec {JOSTLE} run scene.json --force --quiet",
+                        f"{limit} exec {JOSTLE} merge straight.h5 -o tiny.h5 --force"):
+            with self.subTest(command=command):
+                ended = subprocess.run(["bash", "-c", command], cwd=self.folder, env=PLAIN, text=True,
+                                       capture_output=True)
+                self.assertEqual(ended.returncode, BROKEN, ended.stderr)
+                self.assertIn("File too large", ended.stderr)
+                self.assertEqual(parts, sorted(
+                    path.name for path in (self.folder / "tiny.h5.parts").iterdir()))
+        self.jostle("run", "scene.json", "--resume", "--quiet")
+        self.assertEqual(self.digest("tiny.h5"), straight)
+
     def run_within(self, room):
         """A run that may take `room` bytes of addresses more than it has when it is paused."""
         process = self.paused("--force", "--quiet")

@@ -64,7 +64,8 @@ class New(Case):
         for name in ("scene.schema.json", "bed.json"):
             with self.subTest(name=name):
                 os.mkfifo(self.folder / name)
-                self.jostle("new", "bed", "--force", expect=BAD_INPUT)
+                err = self.jostle("new", "bed", "--force", expect=BAD_INPUT).stderr
+                self.assertIn(f"{name} is a pipe or a device: remove it", err)
                 (self.folder / name).unlink()
 
     def test_a_name_is_that_of_a_file(self):

@@ -43,7 +43,7 @@ TEST_CASE("Bytes of another version, of another length or of no state are refuse
 
 TEST_CASE("A state from which no trial can be made is refused") {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (const double step : {none, -1.0, 1 / 0.0}) {
+  for (const double step : {none, -1.0, std::numeric_limits<double>::infinity()}) {
     MonteCarloState state = some_state;
     state.move.step = step;
     CHECK_THROWS_AS(monte_carlo_state(bytes_of(state)), StateError);

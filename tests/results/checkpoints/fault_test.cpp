@@ -148,11 +148,16 @@ TEST_CASE("whatever is published is on disk before it has its name, and its name
     ++renames;
     CAPTURE(path);
     REQUIRE(i + 1 < calls.size());
-    std::size_t last = i;  // that touched a temporary file; what it replaces may go in between
-    do REQUIRE(last > 0);
-    while (!calls[--last].second.ends_with(".tmp"));
+    REQUIRE(i > 0);
+    std::size_t last = i - 1;  // that touched a temporary file
+    while (last > 0 && !calls[last].second.ends_with(".tmp")) --last;
     CHECK(calls[last].first == "fsync");
     CHECK(calls[last].second.starts_with(path + "."));
+    for (std::size_t between = last + 1; between < i; ++between) {  // parts that --force discards
+      CAPTURE(calls[between].first, calls[between].second);
+      CHECK(calls[between].first != "rename");
+      CHECK(calls[between].first.find("write") == std::string::npos);
+    }
     const std::string folder = std::filesystem::path(path).parent_path();
     CHECK(calls[i + 1] == std::pair<std::string, std::string>("fsync", folder));
   }
