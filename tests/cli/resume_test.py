@@ -50,6 +50,20 @@ class Stops(Case):
                 self.assertEqual(self.digest("tiny.h5"), straight)
                 (self.folder / "tiny.h5").unlink()
 
+    def test_a_stop_while_the_start_comes_to_rest_is_resumable(self):
+        self.write(changed(SLOW, realizations=1, start={"random_settle": {}}, protocol=[],
+                           snapshots={"taps": [0]}))
+        self.run_scene("-o", "straight.h5")
+        process = self.popen("run", "scene.json", "--force")
+        self.wait_for_file(process)
+        time.sleep(0.1)
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, STOPPED, err)
+        self.assertEqual(self.info("tiny.h5")["realizations"][0]["taps_recorded"], 0)
+        self.resume_by_the_printed_command(err)
+        self.assertEqual(self.digest("tiny.h5"), self.digest("straight.h5"))
+
     def test_a_chain_of_time_limits_reaches_the_end_with_the_same_digest(self):
         self.chain_of_time_limits()
 

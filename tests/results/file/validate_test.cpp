@@ -22,6 +22,15 @@ TEST_CASE("A restart state is used only where a realization could have stopped s
     forged.observable_windows.back() = window;
     CHECK_THROWS_AS(validate(forged, point), Hdf5Error);
   }
+  // While the start comes to rest nothing is measured yet.
+  RealizationState starting = state;
+  starting.rows = 0;
+  starting.relaxing = true;
+  CHECK_THROWS_AS(validate(starting, point), Hdf5Error);
+  starting.observable_windows.clear();
+  CHECK_NOTHROW(validate(starting, point));
+  starting.rows = 1;
+  CHECK_THROWS_AS(validate(starting, point), Hdf5Error);
   state.centres.back().z = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(validate(state, point), Hdf5Error);
 }
