@@ -12,8 +12,10 @@ set(JOSTLE_PUBLIC_HEADERS
     engine/bed/vec3.hpp
     engine/bed/window.hpp
     engine/column.hpp
+    engine/discrete_element/discrete_element.hpp
     engine/dynamics.hpp
     engine/engines.hpp
+    engine/instruction_set.hpp
     engine/monte_carlo/monte_carlo.hpp
     engine/monte_carlo/moves.hpp
     engine/monte_carlo/relaxation.hpp

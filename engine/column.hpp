@@ -10,6 +10,7 @@ enum class Shown {
   mean,    // the mean alone, a line a tap
   count,   // 1 where something happened, else 0: in one sentence, how often it did
   share,   // a fraction: in one sentence, its mean over the taps that have any
+  stored,  // in the file alone
 };
 
 /// A number that is recorded at every tap: how it is stored, and how a report shows it.

@@ -1,20 +1,32 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "engine/column.hpp"
+#include "engine/discrete_element/discrete_element.hpp"
 #include "engine/dynamics.hpp"
 #include "engine/monte_carlo/monte_carlo.hpp"
 
 // The engines there are. Who runs ensembles knows no engine but through this file.
 namespace jostle::inline engine {
 
-using EngineSettings = std::variant<MonteCarlo>;
+using EngineSettings = std::variant<MonteCarlo, DiscreteElement>;
 
 /// What the engine records at every tap besides the observables, in order.
 std::vector<Column> columns(const EngineSettings& settings);
+
+/// Why the engine cannot make this tap; nothing if it can. Only discrete elements follow a floor
+/// that moves; a displacement both can make.
+std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap);
+
+/// What reports call a unit of the engine, and as many units as there are spheres: "trials" and
+/// "sweeps", "sphere steps" and "time steps".
+const char* unit_name(const EngineSettings& settings);
+const char* round_name(const EngineSettings& settings);
 
 /// The mechanics of one realization, before anything is loaded.
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,

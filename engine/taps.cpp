@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,10 @@ struct Excite {
     for (Vec3& centre : packing.centres) centre.z = centre.z * (1 + tap.lambda);
     return {LateralOffsets(packing, tap)(random)};
   }
+  template <class FloorTap>
+  TapReport operator()(const FloorTap&) const {
+    throw std::invalid_argument("only discrete elements follow a floor that moves");
+  }
 };
 
 struct StrengthOf {
@@ -108,6 +113,8 @@ struct StrengthOf {
   double& operator()(DilateFloorHeld& tap) const { return tap.delta; }
   double& operator()(Lift& tap) const { return tap.gamma; }
   double& operator()(Shake& tap) const { return tap.lambda; }
+  double& operator()(HalfSine& tap) const { return tap.amplitude; }
+  double& operator()(Vibration& tap) const { return tap.amplitude; }
 };
 
 struct ControlOf {
@@ -119,6 +126,10 @@ struct ControlOf {
   }
   Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
   Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
+  Control operator()(const HalfSine& tap) const { return {"amplitude", "diameter", tap.amplitude}; }
+  Control operator()(const Vibration& tap) const {
+    return {"amplitude", "diameter", tap.amplitude};
+  }
 };
 
 }  // namespace
@@ -135,6 +146,10 @@ std::optional<std::string> tap_fault(const Tap& tap, const Container& container)
   const bool idle = tap == Tap{Dilate{0}} || tap == Tap{Lift{0}};
   if (has_gravity(container) || idle) return std::nullopt;
   return "a tap has no meaning without gravity (fully_periodic): a dilate of 0 only relaxes";
+}
+
+bool moves_floor(const Tap& tap) {
+  return std::holds_alternative<HalfSine>(tap) || std::holds_alternative<Vibration>(tap);
 }
 
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {

@@ -39,16 +39,33 @@ struct Shake {
   bool operator==(const Shake&) const = default;
 };
 
-using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake>;
+/// The floor rises and falls as a sin(2 pi f t) for half a period, then rests: Rosato et al. 2010,
+/// sec. III. Discrete elements only.
+struct HalfSine {
+  double amplitude = 0.4413;  // a, diameters
+  double frequency = 7.5;     // f, Hz
+  bool operator==(const HalfSine&) const = default;
+};
+
+/// The floor vibrates as a sin(2 pi f t) for whole periods: Rosato et al. 2010, fig. 15. Discrete
+/// elements only.
+struct Vibration {
+  double amplitude = 0.1;  // a, diameters
+  double frequency = 30;   // f, Hz
+  std::uint64_t cycles = 10;
+  bool operator==(const Vibration&) const = default;
+};
+
+using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake, HalfSine, Vibration>;
 
 /// Taps of a protocol, at most.
 inline constexpr std::uint64_t most_taps = 1'000'000'000;
 
-/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda.
+/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda, a.
 double& strength(Tap& tap);
 
 /// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
-/// of a lift (Rosato et al. 2010), lambda of a shake.
+/// of a lift (Rosato et al. 2010), lambda of a shake, a of a floor that moves.
 struct Control {
   std::string name;  // "sqrt_epsilon"
   std::string units;
@@ -60,12 +77,16 @@ Control control(const Tap& tap);
 /// relaxes: a dilation or a lift of strength zero.
 std::optional<std::string> tap_fault(const Tap& tap, const Container& container);
 
+/// Whether the tap moves the floor, not the spheres: what excite() cannot do.
+bool moves_floor(const Tap& tap);
+
 /// What a tap did beyond moving the spheres.
 struct TapReport {
   std::uint64_t lateral_offsets_dropped = 0;  // of n_spheres; only a shake drops any
 };
 
-/// Applies the tap to every centre. Only Shake draws from `random`.
+/// Applies the tap to every centre. Only Shake draws from `random`. Throws std::invalid_argument
+/// for a tap that moves the floor.
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random);
 
 }  // namespace jostle::inline engine

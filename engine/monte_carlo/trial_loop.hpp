@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/bed/window.hpp"
+#include "engine/instruction_set.hpp"
 #include "engine/monte_carlo/moves.hpp"
 
 namespace jostle::inline engine {
@@ -50,13 +50,6 @@ struct TrialTally {
   std::uint64_t candidates = 0;     // rejection-free: trials looked at while active
   std::uint64_t bound_rows = 0;     // rejection-free: makings of a sphere's bounds
 };
-
-enum class InstructionSet { baseline, avx2, avx512 };
-
-std::string_view name(InstructionSet set);
-/// The widest instruction set of this machine, or what the environment variable
-/// JOSTLE_INSTRUCTION_SET (baseline, avx2, avx512) asks for. All give the same bits.
-InstructionSet best_instruction_set();
 
 /// Trial moves of hard spheres: proposes, tests for overlap, accepts or rejects. The container and
 /// the move are chosen once, here; the loop inside is compiled for that pair.

@@ -1,0 +1,351 @@
+#include "engine/discrete_element/contact_lists.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "engine/bed/sphere_cells.hpp"
+
+namespace jostle::inline engine {
+
+namespace {
+
+constexpr std::uint32_t none = 0xffffffff;
+
+Vec3 centre_of(const Row& row) {
+  return {row.of[0], row.of[1], row.of[2]};
+}
+
+std::int32_t turns_of(double x, double period) {
+  return period > 0 ? static_cast<std::int32_t>(std::floor(x / period)) : 0;
+}
+
+auto order(const KeptPair& pair) {
+  return std::tuple(pair.first, pair.second, pair.turns);
+}
+auto order(const KeptSide& side) {
+  return std::tuple(side.sphere, side.side);
+}
+
+}  // namespace
+
+ContactLists::ContactLists(const Container& container, int n_history)
+    : boundary_(container), container_(container), n_history_(n_history) {}
+
+void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers) {
+  if (n_spheres_ > 0) {  // else what is to be kept waits already
+    waiting_pairs_ = kept_pairs();
+    waiting_sides_ = kept_sides();
+  }
+  n_spheres_ = static_cast<std::uint32_t>(numbers.size());
+  numbers_.assign(numbers.begin(), numbers.end());
+  near_ = {};
+  floor_ = {};
+  sides_ = {};
+  near_of_.clear();
+
+  const Vec3 periods = boundary_.periods();
+  double top = 1;
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) top = std::max(top, rows[i].of[2]);
+  SphereCells cells(container_, n_spheres_, top + 1);
+  std::vector<std::array<std::int32_t, 2>> home(n_spheres_);
+  std::vector<Vec3> inside(n_spheres_);
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
+    Vec3 r = centre_of(rows[i]);
+    home[i] = {turns_of(r.x, periods.x), turns_of(r.y, periods.y)};
+    r.x -= home[i][0] * periods.x;
+    r.y -= home[i][1] * periods.y;
+    // Rounding may leave a coordinate at the far end of the box.
+    inside[i] = wrapped(boundary_, {r.x, r.y, std::max(r.z, 0.0)});
+    cells.insert(inside[i]);
+  }
+  far_.clear();
+  constexpr double reach = 1 + far_skin;
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
+    cells.any_near(inside[i], reach, [&](std::uint32_t j, Vec3 image) {
+      const bool is_once = j > i;  // each pair, and each of its images, from its first place
+      if (!is_once || norm_squared(inside[i] - image) >= reach * reach) return false;
+      const auto turn = [&](int axis, double length, double at, double own) {
+        if (length == 0) return 0;
+        const auto images = static_cast<std::int32_t>(std::lround((at - own) / length));
+        return home[i][axis] - home[j][axis] + images;
+      };
+      std::array<std::int32_t, 2> turns = {turn(0, periods.x, image.x, inside[j].x),
+                                           turn(1, periods.y, image.y, inside[j].y)};
+      if (numbers[i] < numbers[j]) {
+        far_.push_back({i, j, turns});
+      } else {
+        far_.push_back({j, i, {-turns[0], -turns[1]}});
+      }
+      return false;
+    });
+  }
+
+  far_begin_.assign(n_spheres_ + 1, 0);
+  for (const FarPair& pair : far_) {
+    ++far_begin_[pair.first + 1];
+    ++far_begin_[pair.second + 1];
+  }
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) far_begin_[i + 1] += far_begin_[i];
+  far_slots_.resize(2 * far_.size());
+  std::vector<std::uint32_t> next(far_begin_.begin(), far_begin_.end() - 1);
+  for (std::uint32_t p = 0; p < far_.size(); ++p) {
+    far_slots_[next[far_[p].first]++] = {p, 0};
+    far_slots_[next[far_[p].second]++] = {p, 1};
+  }
+  const auto other = [&](const FarSlot& slot) {
+    const FarPair& pair = far_[slot.pair];
+    return std::tuple(numbers_[slot.second ? pair.first : pair.second], pair.turns);
+  };
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
+    std::sort(far_slots_.begin() + far_begin_[i], far_slots_.begin() + far_begin_[i + 1],
+              [&](const FarSlot& a, const FarSlot& b) { return other(a) < other(b); });
+  }
+}
+
+void ContactLists::find_near(std::span<const Row> rows, double floor_height) {
+  find_pairs(rows);
+  find_sides(rows, floor_height);
+  make_slots();
+}
+
+void ContactLists::fill(Near& near, std::size_t n) const {
+  near.n = n;
+  const std::size_t padded = (n + block_size - 1) / block_size * block_size;
+  near.first.resize(padded, n_spheres_);
+  near.second.resize(padded, n_spheres_ + 1);
+  near.source.resize(padded, none);
+  for (auto& values : near.shift) values.resize(padded, 0.0);
+  for (auto& values : near.side) values.resize(padded, 1.0);
+  for (int k = 0; k < n_history_; ++k) near.history[k].resize(padded, 0.0);
+}
+
+void ContactLists::find_pairs(std::span<const Row> rows) {
+  const Near old = std::exchange(near_, {});
+  const std::vector<std::uint32_t> old_near_of = std::exchange(near_of_, {});
+  near_of_.assign(far_.size(), none);
+  constexpr double reach2 = (1 + near_skin) * (1 + near_skin);
+  const Vec3 periods = boundary_.periods();
+  for (std::uint32_t p = 0; p < far_.size(); ++p) {
+    const FarPair& pair = far_[p];
+    const double sx = pair.turns[0] * periods.x, sy = pair.turns[1] * periods.y;
+    const double* a = rows[pair.first].of;
+    const double* b = rows[pair.second].of;
+    const double x = a[0] - b[0] - sx, y = a[1] - b[1] - sy, z = a[2] - b[2];
+    if (x * x + y * y + z * z >= reach2) continue;
+    near_of_[p] = static_cast<std::uint32_t>(near_.first.size());
+    near_.first.push_back(pair.first);
+    near_.second.push_back(pair.second);
+    near_.source.push_back(p);
+    near_.shift[0].push_back(sx);
+    near_.shift[1].push_back(sy);
+  }
+  fill(near_, near_.first.size());
+  if (!old_near_of.empty()) {
+    for (std::size_t at = 0; at < near_.n; ++at) {
+      const std::uint32_t before = old_near_of[near_.source[at]];
+      if (before == none) continue;
+      for (int k = 0; k < n_history_; ++k) near_.history[k][at] = old.history[k][before];
+    }
+    return;
+  }
+  std::ranges::sort(waiting_pairs_, {}, [](const KeptPair& pair) { return order(pair); });
+  for (std::size_t at = 0; at < near_.n && !waiting_pairs_.empty(); ++at) {
+    const FarPair& pair = far_[near_.source[at]];
+    const auto key = std::tuple(numbers_[pair.first], numbers_[pair.second], pair.turns);
+    const auto found = std::ranges::lower_bound(waiting_pairs_, key, {},
+                                                [](const KeptPair& one) { return order(one); });
+    if (found == waiting_pairs_.end() || order(*found) != key) continue;
+    for (int k = 0; k < n_history_; ++k) near_.history[k][at] = found->history[k];
+  }
+  waiting_pairs_.clear();
+}
+
+void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
+  std::vector<KeptSide> kept = kept_sides();
+  waiting_sides_.clear();
+  floor_ = {};
+  sides_ = {};
+  constexpr double reach = sphere_radius + side_skin;
+  const auto add = [](Near& near, std::uint32_t place, std::uint32_t side) {
+    near.first.push_back(place);
+    near.source.push_back(side);
+  };
+  std::vector<std::uint32_t> by_number(n_spheres_);
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) by_number[numbers_[i]] = i;
+  for (const std::uint32_t i : by_number) {
+    const Vec3 r = centre_of(rows[i]);
+    if (boundary_.floor && r.z - floor_height < reach) add(floor_, i, 0);
+    if (boundary_.sides == Sides::walls) {
+      if (r.x < reach) add(sides_, i, 1);
+      if (boundary_.width_x - r.x < reach) add(sides_, i, 2);
+      if (r.y < reach) add(sides_, i, 3);
+      if (boundary_.width_y - r.y < reach) add(sides_, i, 4);
+    } else if (boundary_.sides == Sides::cylinder) {
+      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
+      if (boundary_.axis() - std::sqrt(x * x + y * y) < reach) add(sides_, i, 1);
+    }
+  }
+  fill(floor_, floor_.first.size());
+  fill(sides_, sides_.first.size());
+  carry_sides(floor_, kept);
+  carry_sides(sides_, kept);
+}
+
+void ContactLists::carry_sides(Near& sides, const std::vector<KeptSide>& kept) const {
+  for (std::size_t at = 0; at < sides.n && !kept.empty(); ++at) {
+    const auto key = std::tuple(numbers_[sides.first[at]], sides.source[at]);
+    const auto found =
+        std::ranges::lower_bound(kept, key, {}, [](const KeptSide& one) { return order(one); });
+    if (found == kept.end() || order(*found) != key) continue;
+    for (int k = 0; k < n_history_; ++k) sides.history[k][at] = found->history[k];
+  }
+}
+
+void ContactLists::add_sides(const Near& near, std::vector<KeptSide>& out) const {
+  for (std::size_t at = 0; at < near.n; ++at) {
+    KeptSide one{numbers_[near.first[at]], near.source[at], {}};
+    for (int k = 0; k < n_history_; ++k) one.history[k] = near.history[k][at];
+    out.push_back(one);
+  }
+}
+
+void ContactLists::keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides) {
+  n_spheres_ = 0;
+  near_ = {};
+  floor_ = {};
+  sides_ = {};
+  waiting_pairs_ = std::move(pairs);
+  waiting_sides_ = std::move(sides);
+}
+
+std::vector<KeptPair> ContactLists::near_pairs() const {
+  std::vector<KeptPair> out = waiting_pairs_;
+  for (std::size_t at = 0; at < near_.n; ++at) {
+    const FarPair& pair = far_[near_.source[at]];
+    KeptPair one{numbers_[pair.first], numbers_[pair.second], pair.turns, {}};
+    for (int k = 0; k < n_history_; ++k) one.history[k] = near_.history[k][at];
+    out.push_back(one);
+  }
+  std::ranges::sort(out, {}, [](const KeptPair& one) { return order(one); });
+  return out;
+}
+
+std::vector<KeptSide> ContactLists::near_sides() const {
+  std::vector<KeptSide> out = waiting_sides_;
+  add_sides(floor_, out);
+  add_sides(sides_, out);
+  std::ranges::sort(out, {}, [](const KeptSide& one) { return order(one); });
+  return out;
+}
+
+std::vector<KeptPair> ContactLists::kept_pairs() const {
+  std::vector<KeptPair> kept = near_pairs();
+  std::erase_if(kept, [](const KeptPair& one) { return one.history == ContactHistory{}; });
+  return kept;
+}
+
+std::vector<KeptSide> ContactLists::kept_sides() const {
+  std::vector<KeptSide> kept = near_sides();
+  std::erase_if(kept, [](const KeptSide& one) { return one.history == ContactHistory{}; });
+  return kept;
+}
+
+// Of every sphere: its pairs by the other's number, then the floor, then the sides.
+void ContactLists::make_slots() {
+  const auto padded = [](const Near& near) {
+    return static_cast<std::uint32_t>(near.first.size());
+  };
+  const std::uint32_t floor_at = padded(near_), sides_at = floor_at + padded(floor_);
+  action_.resize(sides_at + padded(sides_));
+  // [sphere][0]: floor; the others: up to two planes are near at once, four in a narrow box.
+  std::vector<std::array<std::uint32_t, 5>> of_sides(n_spheres_, {none, none, none, none, none});
+  for (std::uint32_t k = 0; k < floor_.n; ++k) of_sides[floor_.first[k]][0] = floor_at + k;
+  for (std::uint32_t k = 0; k < sides_.n; ++k)
+    of_sides[sides_.first[k]][sides_.source[k]] = sides_at + k;
+  begin_.resize(n_spheres_ + 1);
+  slots_.clear();
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
+    begin_[i] = static_cast<std::uint32_t>(slots_.size());
+    for (std::uint32_t s = far_begin_[i]; s < far_begin_[i + 1]; ++s) {
+      const std::uint32_t contact = near_of_[far_slots_[s].pair];
+      if (contact != none) slots_.push_back(2 * contact + far_slots_[s].second);
+    }
+    for (const std::uint32_t contact : of_sides[i])
+      if (contact != none) slots_.push_back(2 * contact);
+  }
+  begin_[n_spheres_] = static_cast<std::uint32_t>(slots_.size());
+}
+
+ContactArrays ContactLists::arrays(Near& near, std::size_t action_at) {
+  ContactArrays out;
+  out.n = near.first.size();
+  out.first = near.first.data();
+  out.second = near.second.data();
+  for (int k = 0; k < 2; ++k) out.shift[k] = near.shift[k].data();
+  for (int k = 0; k < 4; ++k) out.side[k] = near.side[k].data();
+  for (int k = 0; k < n_history_; ++k) out.history[k] = near.history[k].data();
+  out.action = action_.data() + action_at;
+  out.deepest = &deepest_;
+  return out;
+}
+
+ContactArrays ContactLists::pairs() {
+  return arrays(near_, 0);
+}
+ContactArrays ContactLists::floor() {
+  return arrays(floor_, near_.first.size());
+}
+ContactArrays ContactLists::sides() {
+  return arrays(sides_, near_.first.size() + floor_.first.size());
+}
+
+void ContactLists::measure_sides(std::span<const Row> rows, double floor_height) {
+  const auto set = [](Near& near, std::size_t at, Vec3 normal, double distance) {
+    near.side[0][at] = normal.x;
+    near.side[1][at] = normal.y;
+    near.side[2][at] = normal.z;
+    near.side[3][at] = distance;
+  };
+  for (std::size_t at = 0; at < floor_.n; ++at)
+    set(floor_, at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
+  for (std::size_t at = 0; at < sides_.n; ++at) {
+    const Vec3 r = centre_of(rows[sides_.first[at]]);
+    if (boundary_.sides == Sides::cylinder) {
+      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
+      const double distance = std::sqrt(x * x + y * y);
+      const double inverse = distance > 0 ? 1 / distance : 0;
+      set(sides_, at, {-x * inverse, -y * inverse, 0}, boundary_.axis() - distance);
+      continue;
+    }
+    switch (sides_.source[at]) {
+      case 1:
+        set(sides_, at, {1, 0, 0}, r.x);
+        break;
+      case 2:
+        set(sides_, at, {-1, 0, 0}, boundary_.width_x - r.x);
+        break;
+      case 3:
+        set(sides_, at, {0, 1, 0}, r.y);
+        break;
+      default:
+        set(sides_, at, {0, -1, 0}, boundary_.width_y - r.y);
+        break;
+    }
+  }
+}
+
+double ContactLists::floor_force() const {
+  double sum = 0;
+  for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].of[2];
+  return sum;
+}
+
+std::size_t ContactLists::bytes() const {
+  return far_.capacity() * sizeof(FarPair) + far_slots_.capacity() * sizeof(FarSlot) +
+         near_of_.capacity() * sizeof(std::uint32_t) + action_.capacity() * sizeof(Row) +
+         near_.first.capacity() * (3 * sizeof(std::uint32_t) + (2 + most_history) * sizeof(double));
+}
+
+}  // namespace jostle::inline engine

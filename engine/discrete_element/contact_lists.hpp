@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/bed/boundary.hpp"
+#include "engine/discrete_element/kernel/grain_rows.hpp"
+
+namespace jostle::inline engine {
+
+/// What a law remembers of a contact.
+using ContactHistory = std::array<double, most_history>;
+
+/// Two spheres that touch, by their numbers, the lower first; `turns`: periods in x and y from the
+/// first to the second as it is met.
+struct KeptPair {
+  std::uint32_t first = 0, second = 0;
+  std::array<std::int32_t, 2> turns{};
+  ContactHistory history{};
+};
+
+/// A sphere that touches a side: 0 the floor, 1 to 4 the planes x = 0, x = width, y = 0, y = width,
+/// 1 the tube.
+struct KeptSide {
+  std::uint32_t sphere = 0, side = 0;
+  ContactHistory history{};
+};
+
+/// Which spheres may touch, and what they remember. Far pairs, of all that come within `far_skin`,
+/// are found now and then; near ones, of them, whenever spheres have moved by half of `near_skin`
+/// against each other. A sphere sums its contacts in the order of their numbers, so that no result
+/// depends on when lists are made or on how spheres are sorted.
+class ContactLists {
+ public:
+  static constexpr double far_skin = 0.25, near_skin = 0.01, side_skin = 0.1;
+
+  ContactLists(const Container& container, int n_history);
+
+  /// Everything anew, of the spheres at `rows` with these numbers. Histories stay.
+  void find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers);
+  /// Near pairs and sides, of the spheres at `rows`; the floor at `floor_height`.
+  void find_near(std::span<const Row> rows, double floor_height);
+
+  /// Replaces all that is remembered, before anything is found.
+  void keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides);
+  /// What is remembered, in the order of the spheres.
+  std::vector<KeptPair> kept_pairs() const;
+  std::vector<KeptSide> kept_sides() const;
+  /// All that are near, remembered or not.
+  std::vector<KeptPair> near_pairs() const;
+  std::vector<KeptSide> near_sides() const;
+
+  ContactArrays pairs();
+  /// Those with the floor, and with the sides.
+  ContactArrays floor();
+  ContactArrays sides();
+  /// Writes normals and distances of the sides.
+  void measure_sides(std::span<const Row> rows, double floor_height);
+
+  std::span<const std::uint32_t> begin() const { return begin_; }
+  std::span<const std::uint32_t> slots() const { return slots_; }
+  const Row* action() const { return action_.data(); }
+  /// Of the contacts with the floor, the forces upwards, summed in the order of the spheres.
+  double floor_force() const;
+  std::size_t n_near() const { return near_.n; }
+  std::size_t bytes() const;
+  /// The greatest overlap since it was last set.
+  double deepest() const { return deepest_; }
+  void set_deepest(double overlap) { deepest_ = overlap; }
+
+ private:
+  struct FarPair {
+    std::uint32_t first, second;  // places; the one with the lower number first
+    std::array<std::int32_t, 2> turns;
+  };
+  struct FarSlot {
+    std::uint32_t pair, second;  // second: 1 where the sphere is the pair's second
+  };
+  /// Contacts that may be, in whole blocks.
+  struct Near {
+    std::size_t n = 0;  // without those that fill the last block
+    std::vector<std::uint32_t> first, second,
+        source;  // source: of pairs the far pair, else the side
+    std::array<CacheLines<double>, 2> shift;
+    std::array<CacheLines<double>, 4> side;
+    std::array<CacheLines<double>, most_history> history;
+  };
+
+  void find_pairs(std::span<const Row> rows);
+  void find_sides(std::span<const Row> rows, double floor_height);
+  void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;
+  void make_slots();
+  void add_sides(const Near& near, std::vector<KeptSide>& out) const;
+  ContactArrays arrays(Near& near, std::size_t action_at);
+  void fill(Near& near, std::size_t n) const;
+
+  Boundary boundary_;
+  Container container_;
+  int n_history_;
+  std::uint32_t n_spheres_ = 0;
+  std::vector<std::uint32_t> numbers_;  // of the spheres at each place
+  std::vector<FarPair> far_;
+  std::vector<std::uint32_t> far_begin_;  // [n_spheres + 1], of far_slots_
+  std::vector<FarSlot> far_slots_;        // of a sphere, in the order of their numbers
+  std::vector<std::uint32_t> near_of_;    // [far pairs], or none
+  Near near_, floor_, sides_;
+  std::vector<KeptPair> waiting_pairs_;  // to be found among the next far pairs
+  std::vector<KeptSide> waiting_sides_;
+  std::vector<std::uint32_t> begin_, slots_;
+  std::vector<Row> action_;
+  double deepest_ = 0;
+};
+
+}  // namespace jostle::inline engine

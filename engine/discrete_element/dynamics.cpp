@@ -1,0 +1,188 @@
+#include "engine/dynamics.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/discrete_element/discrete_element.hpp"
+#include "engine/discrete_element/reduced.hpp"
+#include "engine/discrete_element/state.hpp"
+
+namespace jostle::inline engine {
+
+namespace {
+
+/// How the floor moves in a tap; not at all in one that displaces the spheres.
+struct MotionOf {
+  double seconds;  // of the unit of time
+
+  FloorMotion operator()(const HalfSine& tap) const {
+    return {tap.amplitude, tap.frequency * seconds, 1};
+  }
+  FloorMotion operator()(const Vibration& tap) const {
+    return {tap.amplitude, tap.frequency * seconds, 2 * tap.cycles};
+  }
+  template <class Displacement>
+  FloorMotion operator()(const Displacement&) const {
+    return {};
+  }
+};
+
+class GrainDynamics final : public Dynamics {
+ public:
+  explicit GrainDynamics(const DiscreteElement& settings)
+      : settings_(settings), units_(reduced(settings)) {}
+
+  void load(const Packing& bed) override {
+    packing_ = bed;
+    loop_.emplace(bed.container, units_);
+    loop_->load(bed);
+    state_ = {};
+  }
+
+  void settle(const Start&) override { begin({}); }
+
+  void tap(const Tap& tap, RandomStream& random) override {
+    const FloorMotion motion = std::visit(MotionOf{units_.seconds}, tap);
+    if (motion.half_periods > 0) {
+      begin(motion);
+      return;
+    }
+    const double held = loop_->energies().held();
+    Packing bed;
+    loop_->store(bed);
+    excite(bed, tap, random);
+    loop_->displace(bed);
+    begin({});
+    state_.input = state_.before.held() - held;
+  }
+
+  DynamicsStatus advance(std::uint64_t units) override {
+    if (state_.status != DynamicsStatus::running) return state_.status;
+    const std::uint64_t n = std::max<std::uint64_t>(1, loop_->n_spheres());
+    const std::uint64_t slice = std::max<std::uint64_t>(1, units / n);
+    for (std::uint64_t done = 0; done < slice && state_.status == DynamicsStatus::running;) {
+      const std::uint64_t steps = steps_to_next_check();
+      const std::uint64_t now = std::min(steps, slice - done);
+      loop_->run(now);
+      effort_.units += now * n;
+      done += now;
+      if (now == steps) check();
+    }
+    effort_.pair_tests = loop_->pair_tests();
+    return state_.status;
+  }
+
+  void store(Packing& bed) const override { loop_->store(bed); }
+
+  std::vector<double> diagnostics() const override {
+    GrainLoop& loop = *loop_;
+    const Energies now = loop.energies();
+    const ContactCensus census = loop.census();
+    const auto n = static_cast<double>(loop.n_spheres());
+    const double floor_work = now.floor_work - state_.before.floor_work;
+    const double latched = now.latched - state_.before.latched;
+    const double friction = now.friction - state_.before.friction;
+    // What came in and was held before is held now or was dissipated.
+    const double came = floor_work + state_.before.held();
+    const double missing = came - now.held() - latched - friction;
+    const double turnover = latched + friction + now.kinetic;
+    return {loop.time() * units_.seconds,
+            now.kinetic / n,
+            now.elastic / n,
+            (state_.input + floor_work) / n,
+            latched / n,
+            friction / n,
+            turnover > 0 ? missing / turnover : 0,
+            loop.greatest_overlap(),
+            census.mean_overlap,
+            census.contacts,
+            census.sliding,
+            state_.status == DynamicsStatus::capped ? 1.0 : 0.0};
+  }
+
+  Effort effort() const override { return effort_; }
+  std::uint64_t units_per_slice() const override { return 1'000'000; }
+  std::size_t bytes() const override {
+    return packing_.centres.size() * sizeof(Vec3) + (loop_ ? loop_->bytes() : 0);
+  }
+
+  std::vector<std::byte> save() const override {
+    GrainDynamicsState state = state_;
+    state.loaded = true;
+    state.loop = loop_->state();
+    return bytes_of(state);
+  }
+
+  void restore(std::span<const std::byte> bytes) override {
+    state_ = grain_state(bytes);
+    if (state_.loop.grains.size() != packing_.centres.size())
+      throw StateError("the state it goes on from is of another number of spheres");
+    loop_->restore(state_.loop);
+    state_.loop = {};
+  }
+
+ private:
+  void begin(const FloorMotion& motion) {
+    loop_->begin_motion(motion);
+    loop_->forget_greatest_overlap();
+    state_ = {};
+    state_.status = DynamicsStatus::running;
+    state_.before = loop_->energies();
+  }
+
+  // Whether the bed is at rest is looked at every fiftieth of the unit of time.
+  std::uint64_t check_interval() const {
+    return static_cast<std::uint64_t>(std::ceil(0.02 / units_.time_step));
+  }
+  std::uint64_t steps_to_next_check() const {
+    const std::uint64_t every = check_interval();
+    return every - loop_->steps() % every;
+  }
+
+  void check() {
+    if (!loop_->is_sound())
+      throw std::runtime_error(
+          "a sphere left the container, or lies deeper in another than a fifth of its diameter, "
+          "after " +
+          std::to_string(loop_->time() * units_.seconds) +
+          " s of a tap: the contacts are too soft for the speeds (raise the stiffness), the time "
+          "step is too long (raise steps_per_contact), or the start has such overlaps");
+    if (loop_->floor_moves()) return;
+    const double now = loop_->time() * units_.seconds;
+    if (is_at_rest(now)) {
+      state_.status = DynamicsStatus::settled;
+    } else if (now - motion_seconds() >= settings_.most_seconds) {
+      state_.status = DynamicsStatus::capped;
+    }
+  }
+
+  double motion_seconds() const { return loop_->motion().duration() * units_.seconds; }
+
+  bool is_at_rest(double now) {
+    if (const auto* timed = std::get_if<TimedRest>(&settings_.rest))
+      return now - motion_seconds() >= timed->seconds;
+    const QuietRest& quiet = std::get<QuietRest>(settings_.rest);
+    const double a_sphere = loop_->kinetic_energy() / static_cast<double>(loop_->n_spheres());
+    if (a_sphere >= quiet.kinetic_energy) {
+      state_.quiet_since = -1;
+    } else if (state_.quiet_since < 0) {
+      state_.quiet_since = now;
+    }
+    return state_.quiet_since >= 0 && now - state_.quiet_since >= quiet.seconds;
+  }
+
+  DiscreteElement settings_;
+  ReducedSettings units_;
+  Packing packing_;  // as loaded
+  GrainDynamicsState state_;
+  mutable std::optional<GrainLoop> loop_;  // looking at energies may renew its lists
+  Effort effort_;
+};
+
+}  // namespace
+
+std::unique_ptr<Dynamics> make_dynamics(const DiscreteElement& settings, const DynamicsStreams&) {
+  return std::make_unique<GrainDynamics>(settings);
+}
+
+}  // namespace jostle::inline engine

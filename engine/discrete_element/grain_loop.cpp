@@ -1,0 +1,302 @@
+#include "engine/discrete_element/grain_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "engine/bed/boundary.hpp"
+
+namespace jostle::inline engine {
+
+namespace {
+
+constexpr double deepest_possible = 0.2;  // of spheres that press on each other
+constexpr double inertia = 0.1;           // of a sphere of diameter and mass 1
+
+GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return avx512::grain_kernels(law);
+    case InstructionSet::avx2:
+      return avx2::grain_kernels(law);
+    case InstructionSet::baseline:
+      break;
+  }
+  return baseline::grain_kernels(law);
+}
+
+Vec3 centre_of(const Row& row) {
+  return {row.of[0], row.of[1], row.of[2]};
+}
+Vec3 velocity_of(const Row& row) {
+  return {row.of[3], row.of[4], row.of[5]};
+}
+
+// Places in the order of cells as wide as two spheres, so that neighbours lie near in memory.
+std::vector<std::uint32_t> sorted_numbers(const Boundary& boundary,
+                                          const std::vector<GrainState>& grains) {
+  const auto cell = [&](std::uint32_t i) {
+    const Vec3 r = grains[i].centre;
+    const auto along = [](double x, double period) {
+      if (period > 0) x -= period * std::floor(x / period);
+      return static_cast<std::int64_t>(std::floor(0.5 * x));
+    };
+    const Vec3 periods = boundary.periods();
+    return std::tuple(along(r.z, 0), along(r.y, periods.y), along(r.x, periods.x), i);
+  };
+  std::vector<std::uint32_t> numbers(grains.size());
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  std::ranges::sort(numbers, {}, cell);
+  return numbers;
+}
+
+}  // namespace
+
+GrainLoop::GrainLoop(const Container& container, const ReducedSettings& settings,
+                     InstructionSet set)
+    : container_(container),
+      boundary_(container),
+      settings_(settings),
+      kernels_(kernels_of(settings.law, set)),
+      lists_(container, kernels_.n_history) {}
+
+void GrainLoop::load(const Packing& bed) {
+  std::vector<GrainState> grains(bed.centres.size());
+  for (std::size_t i = 0; i < grains.size(); ++i) grains[i].centre = bed.centres[i];
+  lists_.keep({}, {});
+  place(grains);
+  motion_ = {};
+  steps_ = 0;
+  time_ = 0;
+  floor_ = {};
+  floor_work_ = floor_force_ = 0;
+}
+
+void GrainLoop::place(const std::vector<GrainState>& grains) {
+  const std::size_t n = grains.size();
+  numbers_ = sorted_numbers(boundary_, grains);
+  place_of_.resize(n);
+  rows_.assign(n + 2, {});
+  spin_z_.assign(n + 2, 0);
+  half_rows_.assign(kernels_.sees_full_step ? n + 2 : 0, {});
+  half_spin_z_.assign(kernels_.sees_full_step ? n + 2 : 0, 0);
+  dissipated_.resize(2 * n);
+  const auto put = [](Row& row, double& spin_z, Vec3 centre, Vec3 velocity, Vec3 spin) {
+    row = {{centre.x, centre.y, centre.z, velocity.x, velocity.y, velocity.z, spin.x, spin.y}};
+    spin_z = spin.z;
+  };
+  for (std::uint32_t at = 0; at < n; ++at) {
+    const GrainState& grain = grains[numbers_[at]];
+    place_of_[numbers_[at]] = at;
+    dissipated_[2 * at] = grain.friction;
+    dissipated_[2 * at + 1] = grain.latched;
+    if (kernels_.sees_full_step) {
+      put(rows_[at], spin_z_[at], grain.centre, grain.seen_velocity, grain.seen_spin);
+      put(half_rows_[at], half_spin_z_[at], {}, grain.velocity, grain.spin);
+    } else {
+      put(rows_[at], spin_z_[at], grain.centre, grain.velocity, grain.spin);
+    }
+  }
+  rows_[n].of[2] = -1e3;  // what fills blocks touches nothing
+  rows_[n + 1].of[2] = -2e3;
+  have_lists_ = false;
+}
+
+std::vector<GrainState> GrainLoop::grains() const {
+  std::vector<GrainState> grains(numbers_.size());
+  for (std::uint32_t at = 0; at < numbers_.size(); ++at) {
+    GrainState& grain = grains[numbers_[at]];
+    const Row& seen = rows_[at];
+    const bool apart = kernels_.sees_full_step;
+    const Row& moving = apart ? half_rows_[at] : seen;
+    grain.centre = centre_of(seen);
+    grain.velocity = velocity_of(moving);
+    grain.spin = {moving.of[6], moving.of[7], apart ? half_spin_z_[at] : spin_z_[at]};
+    grain.seen_velocity = velocity_of(seen);
+    grain.seen_spin = {seen.of[6], seen.of[7], spin_z_[at]};
+    grain.friction = dissipated_[2 * at];
+    grain.latched = dissipated_[2 * at + 1];
+  }
+  return grains;
+}
+
+void GrainLoop::store(Packing& bed) const {
+  bed.container = container_;
+  bed.centres.resize(numbers_.size());
+  const Vec3 periods = boundary_.periods();
+  const auto into = [](double x, double period) {
+    return period > 0 ? x - period * std::floor(x / period) : x;
+  };
+  for (std::uint32_t at = 0; at < numbers_.size(); ++at) {
+    const Vec3 r = centre_of(rows_[at]);
+    bed.centres[numbers_[at]] =
+        wrapped(boundary_, {into(r.x, periods.x), into(r.y, periods.y), r.z});
+  }
+}
+
+void GrainLoop::displace(const Packing& to) {
+  Packing from;
+  store(from);
+  for (std::uint32_t i = 0; i < numbers_.size(); ++i) {
+    const Vec3 by = separation(boundary_, to.centres[i], from.centres[i]);
+    double* r = rows_[place_of_[i]].of;
+    r[0] += by.x;
+    r[1] += by.y;
+    r[2] += by.z;
+  }
+  have_lists_ = false;
+}
+
+void GrainLoop::begin_motion(const FloorMotion& motion) {
+  motion_ = motion;
+  steps_ = 0;
+  time_ = 0;
+}
+
+SphereArrays GrainLoop::spheres() {
+  return {.n = numbers_.size(),
+          .rows = rows_.data(),
+          .spin_z = spin_z_.data(),
+          .half_rows = half_rows_.data(),
+          .half_spin_z = half_spin_z_.data(),
+          .dissipated = dissipated_.data(),
+          .begin = lists_.begin().data(),
+          .slot = lists_.slots().data(),
+          .action = lists_.action()};
+}
+
+void GrainLoop::run(std::uint64_t steps) {
+  for (std::uint64_t k = 0; k < steps; ++k) step();
+}
+
+void GrainLoop::step() {
+  const FloorMotion::Place before = floor_;
+  floor_ = motion_.at(time_);
+  side_path_ += std::abs(floor_.height - before.height);
+  if (!near_lists_hold()) renew_lists();
+  const std::span<const Row> rows(rows_.data(), numbers_.size());
+  lists_.measure_sides(rows, floor_.height);
+  const SphereArrays grains = spheres();
+  ContactArrays floor = lists_.floor();
+  floor.side_velocity = floor_.velocity;
+  kernels_.pairs(lists_.pairs(), grains, settings_.spheres);
+  kernels_.sides(floor, grains, settings_.floor);
+  kernels_.sides(lists_.sides(), grains, settings_.sides);
+  pair_tests_ += lists_.n_near();
+  if (floor_moves() || floor_.height != before.height) {
+    const double force = lists_.floor_force();
+    floor_work_ += 0.5 * (floor_force_ + force) * (floor_.height - before.height);
+    floor_force_ = force;
+  } else {
+    floor_force_ = 0;
+  }
+  Advance advance{.time_step = settings_.time_step,
+                  .gravity = settings_.gravity,
+                  .drift = {drift_.x, drift_.y, drift_.z}};
+  kernels_.advance(grains, advance);
+  const double path = settings_.time_step * std::sqrt(advance.fastest_squared);
+  pair_path_ += 2 * path;
+  side_path_ += path + settings_.time_step * std::sqrt(norm_squared(drift_));
+  near_drift_ = near_drift_ + settings_.time_step * drift_;
+  far_drift_ = far_drift_ + settings_.time_step * drift_;
+  ++steps_;
+  time_ = static_cast<double>(steps_) * settings_.time_step;
+}
+
+double GrainLoop::farthest_since(const std::vector<Vec3>& reference, const Vec3& drift) const {
+  double farthest = 0;
+  for (std::size_t at = 0; at < reference.size(); ++at)
+    farthest = std::max(farthest, norm_squared(centre_of(rows_[at]) - reference[at] - drift));
+  return std::sqrt(farthest);
+}
+
+// The paths bound how far spheres have come; where the bound is reached, the distance itself tells.
+bool GrainLoop::near_lists_hold() {
+  constexpr double skin = ContactLists::near_skin;
+  if (!have_lists_ || !(side_path_ < ContactLists::side_skin)) return false;
+  if (pair_path_ < skin) return true;
+  pair_path_ = 2 * farthest_since(near_reference_, near_drift_);
+  return pair_path_ < 0.6 * skin;
+}
+
+void GrainLoop::renew_lists() {
+  constexpr double room = ContactLists::far_skin - ContactLists::near_skin;
+  const bool far_holds = have_lists_ && 2 * farthest_since(far_reference_, far_drift_) < room;
+  const std::size_t n = numbers_.size();
+  if (!far_holds) {
+    if (have_lists_) {
+      lists_.keep(lists_.kept_pairs(), lists_.kept_sides());
+      place(grains());
+    }
+    lists_.find_far({rows_.data(), n}, numbers_);
+    far_reference_.resize(n);
+    for (std::size_t at = 0; at < n; ++at) far_reference_[at] = centre_of(rows_[at]);
+    far_drift_ = {};
+  }
+  lists_.find_near({rows_.data(), n}, floor_.height);
+  near_reference_.resize(n);
+  drift_ = {};
+  for (std::size_t at = 0; at < n; ++at) {
+    near_reference_[at] = centre_of(rows_[at]);
+    drift_ = drift_ + velocity_of(rows_[at]);
+  }
+  drift_ = (1.0 / static_cast<double>(n)) * drift_;
+  near_drift_ = {};
+  pair_path_ = side_path_ = 0;
+  have_lists_ = true;
+}
+
+double GrainLoop::kinetic_energy() const {
+  double sum = 0;
+  const bool apart = kernels_.sees_full_step;
+  for (const std::uint32_t at : place_of_) {
+    const Row& row = apart ? half_rows_[at] : rows_[at];
+    const double spin_z = apart ? half_spin_z_[at] : spin_z_[at];
+    sum += norm_squared(velocity_of(row)) +
+           inertia * (row.of[6] * row.of[6] + row.of[7] * row.of[7] + spin_z * spin_z);
+  }
+  return 0.5 * sum;
+}
+
+bool GrainLoop::is_sound() const {
+  if (!(lists_.deepest() < deepest_possible)) return false;
+  for (std::size_t at = 0; at < numbers_.size(); ++at) {
+    const Vec3 r = centre_of(rows_[at]);
+    const bool inside = r.z > -1 && r.z < widest_container &&
+                        (!boundary_.has_walls() || (r.x > -1 && r.x < boundary_.width_x + 1 &&
+                                                    r.y > -1 && r.y < boundary_.width_y + 1));
+    if (!inside || !std::isfinite(r.x + r.y)) return false;
+  }
+  return true;
+}
+
+std::size_t GrainLoop::bytes() const {
+  return lists_.bytes() + (rows_.capacity() + half_rows_.capacity()) * sizeof(Row);
+}
+
+GrainLoop::State GrainLoop::state() const {
+  return {.grains = grains(),
+          .pairs = lists_.kept_pairs(),
+          .sides = lists_.kept_sides(),
+          .motion = motion_,
+          .steps = steps_,
+          .floor_work = floor_work_,
+          .floor_force = floor_force_,
+          .greatest_overlap = lists_.deepest()};
+}
+
+void GrainLoop::restore(const State& state) {
+  lists_.keep(state.pairs, state.sides);
+  place(state.grains);
+  motion_ = state.motion;
+  steps_ = state.steps;
+  time_ = static_cast<double>(steps_) * settings_.time_step;
+  floor_ = steps_ > 0 ? motion_.at(static_cast<double>(steps_ - 1) * settings_.time_step)
+                      : FloorMotion::Place{};
+  floor_work_ = state.floor_work;
+  floor_force_ = state.floor_force;
+  lists_.set_deepest(state.greatest_overlap);
+}
+
+}  // namespace jostle::inline engine

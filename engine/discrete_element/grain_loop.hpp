@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+#include "engine/discrete_element/contact_lists.hpp"
+#include "engine/discrete_element/floor_motion.hpp"
+#include "engine/discrete_element/reduced.hpp"
+#include "engine/instruction_set.hpp"
+
+namespace jostle::inline engine {
+
+/// A bed's energies, in m g d of the whole bed. What came in less what was dissipated is what the
+/// bed holds: the ledger closes as far as the integration is right.
+struct Energies {
+  double kinetic = 0;     // of velocities half a step before the positions
+  double potential = 0;   // of gravity, from z = 0
+  double elastic = 0;     // stored in contacts
+  double latched = 0;     // lost in Walton & Braun's springs, or in normal dashpots
+  double friction = 0;    // lost by sliding, or in tangential dashpots
+  double floor_work = 0;  // by the floor on the spheres
+
+  double held() const { return kinetic + potential + elastic; }
+  double dissipated() const { return latched + friction; }
+};
+
+/// Contacts as they are.
+struct ContactCensus {
+  double contacts = 0;      // a sphere, with force; those with floor and sides count once
+  double sliding = 0;       // of those between spheres with friction, the share at mu N
+  double mean_overlap = 0;  // of those between spheres, diameters
+};
+
+/// A sphere as it goes on from step to step.
+struct GrainState {
+  Vec3 centre;                       // not brought into the box
+  Vec3 velocity, spin;               // half a step before
+  Vec3 seen_velocity, seen_spin;     // as the contact law sees them
+  double friction = 0, latched = 0;  // dissipated since the loop was loaded
+};
+
+/// Spheres that move by Newton's equations, in steps of one length. All results are the same on
+/// every instruction set, and however spheres are sorted and lists are made.
+class GrainLoop {
+ public:
+  GrainLoop(const Container& container, const ReducedSettings& settings,
+            InstructionSet set = best_instruction_set());
+
+  /// Takes over a bed at rest.
+  void load(const Packing& bed);
+  /// [n_spheres] centres, brought into the box, in the order of load().
+  void store(Packing& bed) const;
+  /// Moves every centre, as a tap that is a displacement does; velocities stay.
+  void displace(const Packing& to);
+
+  /// The floor moves from the next step on.
+  void begin_motion(const FloorMotion& motion);
+  bool floor_moves() const { return time_ < motion_.duration(); }
+  const FloorMotion& motion() const { return motion_; }
+  std::uint64_t steps() const { return steps_; }
+  /// Since the last begin_motion.
+  double time() const { return time_; }
+  void run(std::uint64_t steps);
+
+  Energies energies();
+  ContactCensus census();
+  double kinetic_energy() const;  // summed in the order of load()
+  double greatest_overlap() const { return lists_.deepest(); }
+  void forget_greatest_overlap() { lists_.set_deepest(0); }
+  /// Whether all spheres are where spheres can be.
+  bool is_sound() const;
+  std::size_t n_spheres() const { return numbers_.size(); }
+  std::uint64_t pair_tests() const { return pair_tests_; }
+  std::size_t bytes() const;
+
+  /// All that the next step depends on.
+  struct State {
+    std::vector<GrainState> grains;  // in the order of load()
+    std::vector<KeptPair> pairs;
+    std::vector<KeptSide> sides;
+    FloorMotion motion;
+    std::uint64_t steps = 0;  // since motion began
+    double floor_work = 0, floor_force = 0, greatest_overlap = 0;
+  };
+  State state() const;
+  void restore(const State& state);
+
+ private:
+  void place(const std::vector<GrainState>& grains);
+  std::vector<GrainState> grains() const;
+  void step();
+  void renew_lists();
+  bool near_lists_hold();
+  double overlap_of(const KeptPair& pair) const;
+  double overlap_of(const KeptSide& side) const;
+  double farthest_since(const std::vector<Vec3>& reference, const Vec3& drift) const;
+  SphereArrays spheres();
+
+  Container container_;
+  Boundary boundary_;
+  ReducedSettings settings_;
+  GrainKernels kernels_;
+  ContactLists lists_;
+
+  std::vector<std::uint32_t> numbers_;   // of the sphere at each place
+  std::vector<std::uint32_t> place_of_;  // of each sphere
+  std::vector<Row> rows_, half_rows_;    // [n_spheres + 2]
+  std::vector<double> spin_z_, half_spin_z_, dissipated_;
+
+  FloorMotion motion_;
+  std::uint64_t steps_ = 0;
+  double time_ = 0;
+  FloorMotion::Place floor_;
+  double floor_work_ = 0, floor_force_ = 0;
+
+  // How far spheres may have come since the lists were made, against what drifts with the bed.
+  bool have_lists_ = false;
+  double side_path_ = 0, pair_path_ = 0;
+  Vec3 drift_;                   // velocity
+  Vec3 near_drift_, far_drift_;  // displacements
+  std::vector<Vec3> near_reference_, far_reference_;
+  std::uint64_t pair_tests_ = 0;
+};
+
+}  // namespace jostle::inline engine

@@ -1,0 +1,238 @@
+// Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
+// It must instantiate nothing that another translation unit could pick up.
+#include "engine/discrete_element/kernel/contact_law.hpp"
+#include "engine/discrete_element/kernel/grain_rows.hpp"
+#include "engine/discrete_element/kernel/lanes.hpp"
+
+namespace jostle::inline engine::JOSTLE_KERNELS {
+
+namespace {
+
+using Row8 = double __attribute__((vector_size(64)));
+using Row8Index = std::int64_t __attribute__((vector_size(64)));
+
+[[gnu::always_inline]] inline const Row8& row8(const Row& row) {
+  return *reinterpret_cast<const Row8*>(row.of);
+}
+[[gnu::always_inline]] inline Row8& row8(Row& row) {
+  return *reinterpret_cast<Row8*>(row.of);
+}
+
+// Loads numbers of a law's history, and stores them.
+template <class Law>
+[[gnu::always_inline]] inline void read_history(Law& law, const ContactArrays& contacts,
+                                                std::size_t at) {
+  law.each_of_history([&](int k, Wide& value)
+                          [[gnu::always_inline]] { value = Wide::at(contacts.history[k] + at); });
+}
+template <class Law>
+[[gnu::always_inline]] inline void write_history(Law& law, const ContactArrays& contacts,
+                                                 std::size_t at) {
+  law.each_of_history([&](int k, Wide& value)
+                          [[gnu::always_inline]] { value.store(contacts.history[k] + at); });
+}
+
+[[gnu::always_inline]] inline void write_action(const ContactArrays& contacts, std::size_t at,
+                                                const ContactAction<Wide>& act, double share) {
+  const Wide friction = share * act.dissipated_by_friction;
+  const Wide normal = share * act.dissipated_normally;
+  for (std::uint32_t p = 0; p < n_parts; ++p) {
+    Lanes m[8] = {act.force.x.part[p],  act.force.y.part[p],  act.force.z.part[p],
+                  act.torque.x.part[p], act.torque.y.part[p], act.torque.z.part[p],
+                  friction.part[p],     normal.part[p]};
+    columns_to_rows(m);
+    double* rows = contacts.action[at + p * n_lanes].of;
+    for (std::uint32_t k = 0; k < 8; ++k) lanes_at(rows + k * n_lanes) = m[k];
+  }
+}
+
+// What a block of contacts has of its spheres: of pairs the differences of their rows, with the
+// spins added; of sides the rows themselves.
+struct Columns {
+  Wide of[8], spin_z;
+};
+
+template <bool spin>
+[[gnu::always_inline]] inline Columns of_pairs(const SphereArrays& spheres,
+                                               const ContactArrays& contacts, std::size_t at) {
+  constexpr std::uint32_t per_row = 8 / n_lanes;  // vectors
+  Columns out;
+  for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
+    Lanes m[8];
+    for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
+      const double* a = spheres.rows[contacts.first[at + lane]].of;
+      const double* b = spheres.rows[contacts.second[at + lane]].of;
+      for (std::uint32_t k = 0; k < per_row; ++k) {
+        Lanes sign = Lanes{} + 1.0;
+        for (std::uint32_t l = 0; l < n_lanes; ++l)
+          if (spin && k * n_lanes + l >= 6) sign[l] = -1;
+        m[lane * per_row + k] = lanes_at(a + k * n_lanes) - sign * lanes_at(b + k * n_lanes);
+      }
+      if constexpr (spin)
+        out.spin_z.part[p][lane] =
+            spheres.spin_z[contacts.first[at + lane]] + spheres.spin_z[contacts.second[at + lane]];
+    }
+    rows_to_columns(m);
+    for (std::uint32_t k = 0; k < 8; ++k) out.of[k].part[p] = m[k];
+  }
+  return out;
+}
+
+template <bool spin>
+[[gnu::always_inline]] inline Columns of_spheres(const SphereArrays& spheres,
+                                                 const ContactArrays& contacts, std::size_t at) {
+  constexpr std::uint32_t per_row = 8 / n_lanes;
+  Columns out;
+  for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
+    Lanes m[8];
+    for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
+      const double* a = spheres.rows[contacts.first[at + lane]].of;
+      for (std::uint32_t k = 0; k < per_row; ++k) m[lane * per_row + k] = lanes_at(a + k * n_lanes);
+      if constexpr (spin) out.spin_z.part[p][lane] = spheres.spin_z[contacts.first[at + lane]];
+    }
+    rows_to_columns(m);
+    for (std::uint32_t k = 0; k < 8; ++k) out.of[k].part[p] = m[k];
+  }
+  return out;
+}
+
+template <class Law>
+[[gnu::always_inline]] inline void act(const Meeting<Wide>& meeting, const ContactArrays& contacts,
+                                       std::size_t at, const LawConstants& constants,
+                                       double share) {
+  Law law;
+  read_history(law, contacts, at);
+  const ContactAction<Wide> action = law(meeting, constants);
+  write_history(law, contacts, at);
+  write_action(contacts, at, action, share);
+}
+
+[[gnu::always_inline]] inline void keep_deepest(const ContactArrays& contacts,
+                                                const Wide& deepest) {
+  for (const Lanes& part : deepest.part)
+    for (std::uint32_t k = 0; k < n_lanes; ++k)
+      *contacts.deepest = part[k] > *contacts.deepest ? part[k] : *contacts.deepest;
+}
+
+template <template <class, bool> class LawOf, bool friction>
+void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
+           const LawConstants& constants) {
+  using Law = LawOf<Wide, friction>;
+  Wide deepest = *contacts.deepest;
+  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
+    const Columns m = of_pairs<Law::has_spin>(spheres, contacts, at);
+    const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
+                                   m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
+    const Wide distance = square_root(dot(between, between));
+    Meeting<Wide> meeting;
+    meeting.normal = scaled(1.0 / distance, between);
+    meeting.overlap = 1.0 - distance;
+    meeting.velocity = {m.of[3], m.of[4], m.of[5]};
+    if constexpr (Law::has_spin) {
+      meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
+      meeting.spin = {m.of[6], m.of[7], m.spin_z};
+    }
+    deepest = greater(deepest, meeting.overlap);
+    act<Law>(meeting, contacts, at, constants, 0.5);
+  }
+  keep_deepest(contacts, deepest);
+}
+
+template <template <class, bool> class LawOf, bool friction>
+void sides(const ContactArrays& contacts, const SphereArrays& spheres,
+           const LawConstants& constants) {
+  using Law = LawOf<Wide, friction>;
+  Wide deepest = *contacts.deepest;
+  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
+    const Columns m = of_spheres<Law::has_spin>(spheres, contacts, at);
+    const Wide distance = Wide::at(contacts.side[3] + at);
+    Meeting<Wide> meeting;
+    meeting.normal = {Wide::at(contacts.side[0] + at), Wide::at(contacts.side[1] + at),
+                      Wide::at(contacts.side[2] + at)};
+    meeting.overlap = 0.5 - distance;
+    meeting.velocity = {m.of[3], m.of[4], m.of[5] - contacts.side_velocity};
+    if constexpr (Law::has_spin) {
+      meeting.arm = scaled(Law::arm_is_radius ? Wide(0.5) : distance, meeting.normal);
+      meeting.spin = {m.of[6], m.of[7], m.spin_z};
+    }
+    deepest = greater(deepest, meeting.overlap);
+    act<Law>(meeting, contacts, at, constants, 1.0);
+  }
+  keep_deepest(contacts, deepest);
+}
+
+// A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
+// step back, go a step on, and then the positions. Moment of inertia 1/10.
+template <bool spin, bool full_step>
+void advance(const SphereArrays& spheres, Advance& step) {
+  constexpr Row8 sign_of[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {-1, -1, -1, 1, 1, 1, 1, 1}};
+  const double dt = step.time_step, turn = 10 * dt;
+  const Row8 kick = {0, 0, 0, dt, dt, dt, turn, turn}, move = {dt, dt, dt, 0, 0, 0, 0, 0};
+  constexpr Row8Index forces_to_velocities = {0, 0, 0, 0, 1, 2, 3, 4};
+  constexpr Row8Index velocities_to_positions = {3, 4, 5, 3, 3, 3, 3, 3};
+  const Row8 weight = {0, 0, -step.gravity, 0, 0, 0, 0, 0};
+  double fastest = 0;
+  for (std::size_t i = 0; i < spheres.n; ++i) {
+    Row8 sum = weight;
+    for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
+      const std::uint32_t slot = spheres.slot[s];
+      sum += sign_of[slot & 1] * row8(spheres.action[slot >> 1]);
+    }
+    const Row8 kicked = __builtin_shuffle(sum, forces_to_velocities) * kick;
+    Row8& row = row8(spheres.rows[i]);
+    if constexpr (full_step) {
+      Row8& half = row8(spheres.half_rows[i]);
+      half += kicked;
+      const Row8 moved = row + __builtin_shuffle(half, velocities_to_positions) * move;
+      const Row8 predicted = half + 0.5 * kicked;
+      row = Row8{moved[0],     moved[1],     moved[2],     predicted[3],
+                 predicted[4], predicted[5], predicted[6], predicted[7]};
+    } else {
+      row += kicked;
+      row += __builtin_shuffle(row, velocities_to_positions) * move;
+    }
+    if constexpr (spin) {
+      const double turned = turn * sum[5];
+      if constexpr (full_step) {
+        spheres.half_spin_z[i] += turned;
+        spheres.spin_z[i] = spheres.half_spin_z[i] + 0.5 * turned;
+      } else {
+        spheres.spin_z[i] += turned;
+      }
+    }
+    spheres.dissipated[2 * i] += sum[6];
+    spheres.dissipated[2 * i + 1] += sum[7];
+    const Row8& moving = full_step ? row8(spheres.half_rows[i]) : row;
+    const double u = moving[3] - step.drift[0], v = moving[4] - step.drift[1],
+                 w = moving[5] - step.drift[2];
+    const double speed_squared = u * u + v * v + w * w;
+    fastest = speed_squared > fastest ? speed_squared : fastest;
+  }
+  step.fastest_squared = fastest;
+}
+
+template <template <class, bool> class LawOf, bool friction>
+GrainKernels kernels_of() {
+  using Law = LawOf<Wide, friction>;
+  return {
+      pairs<LawOf, friction>, sides<LawOf, friction>, advance<Law::has_spin, Law::sees_full_step>,
+      Law::n_history,         Law::has_spin,          Law::sees_full_step};
+}
+
+}  // namespace
+
+GrainKernels grain_kernels(GrainLaw law) {
+  switch (law) {
+    case GrainLaw::walton_braun:
+      return kernels_of<WaltonBraunLaw, true>();
+    case GrainLaw::walton_braun_smooth:
+      return kernels_of<WaltonBraunLaw, false>();
+    case GrainLaw::linear:
+      return kernels_of<LinearLaw, true>();
+    case GrainLaw::linear_smooth:
+      return kernels_of<LinearLaw, false>();
+  }
+  return {};
+}
+
+}  // namespace jostle::inline engine::JOSTLE_KERNELS

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "engine/discrete_element/kernel/law_constants.hpp"
+
+// What the kernels read and write, as plain arrays. Units as in contact_law.hpp.
+namespace jostle::inline engine {
+
+/// One cache line. Of a sphere: x, y, z, its velocity, and two components of its spin. Of a
+/// contact: the force on its first sphere, the torque on each, and what it dissipated by friction
+/// and normally, halved where two spheres share it.
+struct alignas(64) Row {
+  double of[8] = {};
+};
+
+/// A vector whose elements begin at a cache line, as kernels load them.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class Other>
+  CacheLineAllocator(const CacheLineAllocator<Other>&) {}
+  T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{alignof(Row)}));
+  }
+  void deallocate(T* from, std::size_t) {
+    ::operator delete (from, std::align_val_t{alignof(Row)});
+  }
+  bool operator==(const CacheLineAllocator&) const = default;
+};
+template <class T>
+using CacheLines = std::vector<T, CacheLineAllocator<T>>;
+
+/// The most numbers that a law remembers of a contact.
+inline constexpr std::size_t most_history = 6;
+
+/// Kernels go through contacts in blocks of 4, 8 or 16.
+inline constexpr std::size_t block_size = 16;
+
+/// Contacts that may be: pairs of spheres, or spheres and sides. All arrays are of `n` entries, a
+/// multiple of block_size; what fills the last block are spheres that touch nothing.
+struct ContactArrays {
+  std::size_t n = 0;
+  const std::uint32_t* first = nullptr;
+  const std::uint32_t* second = nullptr;  // of pairs
+  std::array<const double*, 2> shift{};   // of pairs: periods in x and y
+  std::array<const double*, 4> side{};    // of sides: normal, distance
+  std::array<double*, most_history> history{};
+  Row* action = nullptr;
+  double side_velocity = 0;   // of the floor, upwards
+  double* deepest = nullptr;  // the greatest overlap, raised
+};
+
+/// The spheres, [n_spheres + 2]: the last two touch nothing.
+struct SphereArrays {
+  std::size_t n = 0;
+  Row* rows = nullptr;
+  double* spin_z = nullptr;
+  Row* half_rows = nullptr;  // of laws that see full steps: velocity and spin half a step before
+  double* half_spin_z = nullptr;
+  double* dissipated = nullptr;          // [n][2] by friction, normally
+  const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
+  const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
+  const Row* action = nullptr;
+};
+
+/// What an advance by one step is given, and what it finds.
+struct Advance {
+  double time_step = 0, gravity = 1;
+  double drift[3] = {0, 0, 0};  // velocity from which `fastest` is counted
+  double fastest_squared = 0;
+};
+
+/// One law, for one instruction set.
+struct GrainKernels {
+  void (*pairs)(const ContactArrays&, const SphereArrays&, const LawConstants&);
+  void (*sides)(const ContactArrays&, const SphereArrays&, const LawConstants&);
+  void (*advance)(const SphereArrays&, Advance&);
+  int n_history;
+  bool has_spin, sees_full_step;
+};
+
+enum class GrainLaw { walton_braun, walton_braun_smooth, linear, linear_smooth };
+
+namespace baseline {
+GrainKernels grain_kernels(GrainLaw law);
+}
+namespace avx2 {
+GrainKernels grain_kernels(GrainLaw law);
+}
+namespace avx512 {
+GrainKernels grain_kernels(GrainLaw law);
+}
+
+}  // namespace jostle::inline engine

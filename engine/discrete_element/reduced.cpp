@@ -1,0 +1,112 @@
+#include "engine/discrete_element/reduced.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/bed/container.hpp"
+#include "engine/bed/elementary.hpp"
+
+namespace jostle::inline engine {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+// Of a contact whose two bodies have this mass together: 1/2 of two spheres, 1 of one and a side.
+// `unit` is the stiffness m g / d.
+struct MakeConstants {
+  double unit, mass;
+
+  LawConstants operator()(const WaltonBraun& law) const {
+    const double k1 = law.stiffness / unit, e2 = law.restitution * law.restitution;
+    return {.stiffness = k1,
+            .unloading = k1 / e2,
+            .latched = 1 - e2,
+            .tangential = law.tangential_ratio * k1,
+            .friction = law.friction};
+  }
+  // A damped oscillation that ends after half a period: e = exp(-gamma t_c / 2), with the dashpot's
+  // coefficient mass x gamma.
+  LawConstants operator()(const LinearSpringDashpot& law) const {
+    const double k = law.stiffness / unit;
+    const double loss = -natural_log(law.restitution);
+    const double gamma = 2 * loss * std::sqrt(k / mass / (pi * pi + loss * loss));
+    return {.stiffness = k,
+            .tangential = law.tangential_ratio * k,
+            .friction = law.friction,
+            .damping = mass * gamma,
+            .shear_damping = law.tangential_damping * mass * gamma};
+  }
+};
+
+// How long a contact of this mass lasts, and how long its faster half, twice.
+struct Lasting {
+  double whole, faster;
+};
+struct LastingOf {
+  double mass;
+
+  Lasting operator()(const WaltonBraun& law, const LawConstants& constants) const {
+    const double quarter = 0.5 * pi * std::sqrt(mass / constants.stiffness);
+    return {quarter * (1 + law.restitution), 2 * quarter * law.restitution};
+  }
+  Lasting operator()(const LinearSpringDashpot&, const LawConstants& constants) const {
+    const double damped = 0.5 * constants.damping / mass;
+    const double half = pi / std::sqrt(constants.stiffness / mass - damped * damped);
+    return {half, half};
+  }
+};
+
+double friction_of(const ContactLaw& law) {
+  return std::visit([](const auto& one) { return one.friction; }, law);
+}
+
+double sphere_mass(const DiscreteElement& settings) {
+  const double d = settings.diameter;
+  return sphere_volume * d * d * d * settings.density;
+}
+
+GrainLaw law_of(const DiscreteElement& settings, const ContactLaw& floor, const ContactLaw& sides) {
+  const bool friction =
+      friction_of(settings.spheres) > 0 || friction_of(floor) > 0 || friction_of(sides) > 0;
+  if (std::holds_alternative<WaltonBraun>(settings.spheres))
+    return friction ? GrainLaw::walton_braun : GrainLaw::walton_braun_smooth;
+  return friction ? GrainLaw::linear : GrainLaw::linear_smooth;
+}
+
+}  // namespace
+
+ReducedSettings reduced(const DiscreteElement& settings) {
+  const ContactLaw& floor = settings.floor ? *settings.floor : settings.spheres;
+  const ContactLaw& sides = settings.sides ? *settings.sides : settings.spheres;
+  if (floor.index() != settings.spheres.index() || sides.index() != settings.spheres.index())
+    throw std::invalid_argument("spheres, floor and sides have one kind of contact law");
+  const double unit = sphere_mass(settings) * settings.gravity / settings.diameter;
+  ReducedSettings out;
+  out.law = law_of(settings, floor, sides);
+  out.seconds = std::sqrt(settings.diameter / settings.gravity);
+  double shortest = std::numeric_limits<double>::infinity();
+  const auto constants = [&](const ContactLaw& law, double mass) {
+    const LawConstants made = std::visit(MakeConstants{unit, mass}, law);
+    const Lasting lasts =
+        std::visit([&](const auto& one) { return LastingOf{mass}(one, made); }, law);
+    shortest = std::min({shortest, lasts.whole, lasts.faster});
+    if (mass < 1) out.contact_time = lasts.whole;
+    return made;
+  };
+  out.spheres = constants(settings.spheres, 0.5);
+  out.floor = constants(floor, 1);
+  out.sides = constants(sides, 1);
+  out.time_step = shortest / settings.steps_per_contact;
+  for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
+  return out;
+}
+
+ContactTimes contact_times(const DiscreteElement& settings) {
+  const ReducedSettings units = reduced(settings);
+  return {sphere_mass(settings), units.contact_time * units.seconds,
+          units.time_step * units.seconds};
+}
+
+}  // namespace jostle::inline engine

@@ -1,0 +1,118 @@
+#include "engine/discrete_element/state.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "engine/bytes.hpp"
+
+namespace jostle::inline engine {
+
+namespace {
+
+// "DE" and a number that counts up when the bytes change.
+constexpr std::uint32_t version = 0x44450001;
+
+// Aggregates of numbers without padding, as the numbers in a row.
+template <class T>
+using Numbers = std::array<double, sizeof(T) / sizeof(double)>;
+
+template <class T>
+void put_numbers(ByteWriter& writer, const T& value) {
+  for (const double number : std::bit_cast<Numbers<T>>(value)) writer.put(number);
+}
+template <class T>
+T get_numbers(ByteReader& reader) {
+  Numbers<T> numbers;
+  for (double& number : numbers) {
+    number = reader.get<double>();
+    if (!std::isfinite(number)) throw std::out_of_range("no number");
+  }
+  return std::bit_cast<T>(numbers);
+}
+
+bool is_finite(const ContactHistory& history) {
+  return std::ranges::all_of(history, [](double one) { return std::isfinite(one); });
+}
+
+bool is_finite(const GrainState& grain) {
+  return std::ranges::all_of(std::bit_cast<Numbers<GrainState>>(grain),
+                             [](double one) { return std::isfinite(one); });
+}
+
+bool is_possible(const GrainDynamicsState& state) {
+  const std::size_t n = state.loop.grains.size();
+  const auto pair_is = [&](const KeptPair& pair) {
+    return pair.first < pair.second && pair.second < n && is_finite(pair.history);
+  };
+  const auto side_is = [&](const KeptSide& side) {
+    return side.sphere < n && side.side <= 4 && is_finite(side.history);
+  };
+  return state.loop.motion.frequency > 0 &&
+         std::ranges::all_of(state.loop.grains,
+                             [](const GrainState& grain) { return is_finite(grain); }) &&
+         std::ranges::all_of(state.loop.pairs, pair_is) &&
+         std::ranges::all_of(state.loop.sides, side_is);
+}
+
+GrainDynamicsState read(ByteReader& reader) {
+  if (reader.get<std::uint32_t>() != version) throw std::out_of_range("another version");
+  GrainDynamicsState state;
+  state.status = reader.get_enum(DynamicsStatus::capped);
+  state.loaded = reader.get_flag();
+  state.quiet_since = reader.get<double>();
+  state.input = reader.get<double>();
+  state.before = get_numbers<Energies>(reader);
+  GrainLoop::State& loop = state.loop;
+  loop.grains = reader.get_vector<GrainState>();
+  loop.pairs = reader.get_vector<KeptPair>();
+  loop.sides = reader.get_vector<KeptSide>();
+  loop.motion.amplitude = reader.get<double>();
+  loop.motion.frequency = reader.get<double>();
+  loop.motion.half_periods = reader.get<std::uint64_t>();
+  loop.steps = reader.get<std::uint64_t>();
+  loop.floor_work = reader.get<double>();
+  loop.floor_force = reader.get<double>();
+  loop.greatest_overlap = reader.get<double>();
+  if (!reader.at_end()) throw std::out_of_range("too long");
+  if (!is_possible(state)) throw std::out_of_range("no state of ours");
+  return state;
+}
+
+}  // namespace
+
+std::vector<std::byte> bytes_of(const GrainDynamicsState& state) {
+  ByteWriter writer;
+  writer.put(version);
+  writer.put(state.status);
+  writer.put(state.loaded);
+  writer.put(state.quiet_since);
+  writer.put(state.input);
+  put_numbers(writer, state.before);
+  const GrainLoop::State& loop = state.loop;
+  writer.put(loop.grains);
+  writer.put(loop.pairs);
+  writer.put(loop.sides);
+  writer.put(loop.motion.amplitude);
+  writer.put(loop.motion.frequency);
+  writer.put(loop.motion.half_periods);
+  writer.put(loop.steps);
+  writer.put(loop.floor_work);
+  writer.put(loop.floor_force);
+  writer.put(loop.greatest_overlap);
+  return std::move(writer.bytes());
+}
+
+GrainDynamicsState grain_state(std::span<const std::byte> bytes) {
+  try {
+    ByteReader reader(bytes);
+    return read(reader);
+  } catch (const std::out_of_range&) {
+    throw StateError(
+        "the state it goes on from is of another engine, damaged, or written by another version of "
+        "jostle: resume with the one that wrote it");
+  }
+}
+
+}  // namespace jostle::inline engine

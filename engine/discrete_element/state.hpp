@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/discrete_element/grain_loop.hpp"
+
+namespace jostle::inline engine {
+
+/// What a realization by discrete elements goes on from, besides the centres in the box.
+struct GrainDynamicsState {
+  DynamicsStatus status = DynamicsStatus::settled;
+  bool loaded = false;      // whether `loop` holds anything
+  double quiet_since = -1;  // time of the tap since which the bed is quiet; negative: it is not
+  double input = 0;         // by a displacement at the tap's begin, m g d
+  Energies before;          // as the tap began, after the displacement
+  GrainLoop::State loop;
+};
+
+/// As bytes, which begin with their version, and back. Reading throws StateError for other bytes.
+std::vector<std::byte> bytes_of(const GrainDynamicsState& state);
+GrainDynamicsState grain_state(std::span<const std::byte> bytes);
+
+}  // namespace jostle::inline engine

@@ -1,0 +1,148 @@
+#include "engine/dynamics.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "engine/engines.hpp"
+#include "tests/engine/discrete_element/grain_cases.hpp"
+
+using namespace jostle;
+using namespace jostle::grain_cases;
+
+namespace {
+
+std::unique_ptr<Dynamics> grains(const DiscreteElement& settings) {
+  return make_dynamics(EngineSettings{settings}, {});
+}
+
+std::vector<double> settled_values(Dynamics& dynamics, std::uint64_t slice) {
+  while (dynamics.advance(slice) == DynamicsStatus::running) {
+  }
+  return dynamics.diagnostics();
+}
+
+double value(const std::vector<double>& values, const std::string& name) {
+  const auto all = columns(EngineSettings{DiscreteElement{}});
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].name == name) return values.at(i);
+  throw std::logic_error("no such column: " + name);
+}
+
+}  // namespace
+
+TEST_CASE("grains come to rest and are tapped, the same however they are sliced and stored") {
+  const Container box = PeriodicBox{4, 4};
+  const Packing start = dilute_column(box, 100, 8);
+  const DiscreteElement settings;
+  const std::vector<Tap> taps = {HalfSine{}, Lift{0.1}, Vibration{0.05, 40, 3}, Dilate{0.02}};
+  RandomStream random(stream_key(1, 0, 0, Purpose::tap));
+
+  const auto straight = grains(settings);
+  straight->load(start);
+  straight->settle(RandomSettle{});
+  auto stopped = grains(settings);
+  stopped->load(start);
+  stopped->settle(RandomSettle{});
+  // Saved and restored after every slice of an odd number of steps.
+  const auto go_on = [&] {
+    DynamicsStatus status;
+    do {
+      status = stopped->advance(100 * 1777);
+      Packing bed;
+      stopped->store(bed);
+      const std::vector<std::byte> state = stopped->save();
+      stopped = grains(settings);
+      stopped->load(bed);
+      stopped->restore(state);
+    } while (status == DynamicsStatus::running);
+  };
+  auto values = settled_values(*straight, 1'000'000);
+  CHECK(value(values, "capped") == 0);
+  CHECK(value(values, "kinetic_energy") < QuietRest{}.kinetic_energy);
+  CHECK(value(values, "contacts") > 3);
+  go_on();
+  for (const Tap& tap : taps) {
+    CAPTURE(tap.index());
+    CHECK(stopped->diagnostics() == values);
+    Packing a, b;
+    straight->store(a);
+    stopped->store(b);
+    CHECK(a.centres == b.centres);
+    straight->tap(tap, random);
+    stopped->tap(tap, random);
+    values = settled_values(*straight, 123'400);
+    go_on();
+    CHECK(value(values, "input_energy") > 0);
+    CHECK(std::abs(value(values, "ledger_error")) < 1e-2);
+  }
+  CHECK(straight->effort().units % 100 == 0);
+}
+
+TEST_CASE("a tap of a fixed time ends then, a restless one at the cap") {
+  const Container box = PeriodicBox{4, 4};
+  DiscreteElement settings;
+  settings.rest = TimedRest{0.25};
+  auto timed = grains(settings);
+  timed->load(dilute_column(box, 50, 1));
+  timed->settle(RandomSettle{});
+  CHECK(value(settled_values(*timed, 1'000'000), "seconds") == Approx(0.25).margin(0.002));
+  RandomStream random(stream_key(1, 0, 0, Purpose::tap));
+  timed->tap(HalfSine{0.4, 10}, random);
+  CHECK(value(settled_values(*timed, 1'000'000), "seconds") == Approx(0.30).margin(0.002));
+
+  settings.rest = QuietRest{1e-12, 1};
+  settings.most_seconds = 0.5;
+  auto restless = grains(settings);
+  restless->load(dilute_column(box, 50, 1));
+  restless->settle(RandomSettle{});
+  const auto values = settled_values(*restless, 1'000'000);
+  CHECK(value(values, "capped") == 1);
+  CHECK(value(values, "seconds") == Approx(0.5).margin(0.002));
+}
+
+TEST_CASE("Monte Carlo refuses a floor that moves, grains a container without one") {
+  CHECK(engine_tap_fault(EngineSettings{MonteCarlo{}}, HalfSine{}));
+  CHECK_FALSE(engine_tap_fault(EngineSettings{MonteCarlo{}}, Lift{}));
+  CHECK_FALSE(engine_tap_fault(EngineSettings{DiscreteElement{}}, Vibration{}));
+  CHECK(engine_fault(DiscreteElement{}, FullyPeriodicBox{}));
+  CHECK_FALSE(engine_fault(DiscreteElement{}, Cylinder{}));
+  DiscreteElement mixed;
+  mixed.floor = LinearSpringDashpot{};
+  CHECK(engine_fault(mixed, PeriodicBox{}));
+  Packing bed{PeriodicBox{4, 4}, {{1, 1, 1}}};
+  RandomStream random(stream_key(1, 0, 0, Purpose::tap));
+  CHECK_THROWS_AS(excite(bed, HalfSine{}, random), std::invalid_argument);
+}
+
+TEST_CASE("a state of other bytes, of another engine or another bed is refused") {
+  const Container box = PeriodicBox{4, 4};
+  auto dynamics = grains({});
+  dynamics->load(dilute_column(box, 20, 1));
+  dynamics->settle(RandomSettle{});
+  dynamics->advance(20'000);
+  const std::vector<std::byte> state = dynamics->save();
+  auto other = grains({});
+  other->load(dilute_column(box, 21, 1));
+  CHECK_THROWS_AS(other->restore(state), StateError);
+  other->load(dilute_column(box, 20, 1));
+  CHECK_NOTHROW(other->restore(state));
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{3}, state.size() / 2, state.size() - 1})
+    CHECK_THROWS_AS(other->restore(std::span(state).first(length)), StateError);
+  std::vector<std::byte> forged = state;
+  forged.push_back(std::byte{0});
+  CHECK_THROWS_AS(other->restore(forged), StateError);
+  // A centre that is no number: every eight bytes in turn that hold one of the first sphere's.
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  forged = state;
+  const std::size_t grain_at = forged.size() - 8 * 8;  // near the end: motion, sums
+  std::memcpy(forged.data() + grain_at, &none, sizeof none);
+  CHECK_THROWS_AS(other->restore(forged), StateError);
+}
+
+TEST_CASE("spheres that start deep in each other end with a reason") {
+  auto dynamics = grains({});
+  dynamics->load({WalledBox{4, 4}, {{2, 2, 1}, {2, 2, 1.3}}});
+  dynamics->settle(RandomSettle{});
+  CHECK_THROWS_WITH(settled_values(*dynamics, 1000), Catch::Contains("lies deeper in another"));
+}

@@ -1,0 +1,234 @@
+#include "engine/discrete_element/grain_loop.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <tuple>
+
+#include "engine/bed/boundary.hpp"
+#include "engine/discrete_element/kernel/contact_law.hpp"
+#include "tests/engine/discrete_element/grain_cases.hpp"
+
+using namespace jostle;
+using namespace jostle::grain_cases;
+
+namespace {
+
+using Law = WaltonBraunLaw<double, true>;
+using Vector = Vector3<double>;
+
+/// The same mechanics without any list, vector or sorting: every pair is looked at in every step.
+class BruteForce {
+ public:
+  BruteForce(const WalledBox& box, const ReducedSettings& settings, std::vector<GrainState> grains)
+      : box_(box), settings_(settings), grains_(std::move(grains)) {}
+
+  const std::vector<GrainState>& grains() const { return grains_; }
+
+  void step() {
+    const std::size_t n = grains_.size();
+    force_.assign(n, {0, 0, -settings_.gravity});
+    torque_.assign(n, {0, 0, 0});
+    // Every sphere sums by the number of the other, then the floor, then the sides: as here.
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; j < n; ++j)
+        if (i != j) add_pair(i, j);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const GrainState& one = grains_[i];
+      add_side(i, 0, {0, 0, 1}, one.centre.z, settings_.floor);
+      add_side(i, 1, {1, 0, 0}, one.centre.x, settings_.sides);
+      add_side(i, 2, {-1, 0, 0}, box_.width_x - one.centre.x, settings_.sides);
+      add_side(i, 3, {0, 1, 0}, one.centre.y, settings_.sides);
+      add_side(i, 4, {0, -1, 0}, box_.width_y - one.centre.y, settings_.sides);
+    }
+    const double dt = settings_.time_step;
+    for (std::size_t i = 0; i < n; ++i) {
+      GrainState& one = grains_[i];
+      one.velocity = one.velocity + Vec3{force_[i].x * dt, force_[i].y * dt, force_[i].z * dt};
+      one.spin = one.spin +
+                 Vec3{torque_[i].x * (10 * dt), torque_[i].y * (10 * dt), torque_[i].z * (10 * dt)};
+      one.centre = one.centre + dt * one.velocity;
+    }
+  }
+
+ private:
+  static Vector of(Vec3 a) { return {a.x, a.y, a.z}; }
+
+  // The lower number is the first; each pair is computed once, and kept for the other.
+  void add_pair(std::uint32_t i, std::uint32_t j) {
+    const auto key = std::pair(std::min(i, j), std::max(i, j));
+    if (i < j) {
+      const GrainState &a = grains_[i], &b = grains_[j];
+      const Vector between = of(a.centre) - of(b.centre);
+      const double distance = std::sqrt(dot(between, between));
+      Meeting<double> at;
+      at.normal = scaled(1.0 / distance, between);
+      at.overlap = 1.0 - distance;
+      at.arm = scaled(0.5, between);
+      at.velocity = of(a.velocity) - of(b.velocity);
+      at.spin = of(a.spin) + of(b.spin);
+      acts_[key] = laws_[{i, j, 0}](at, settings_.spheres);
+    }
+    const ContactAction<double>& act = acts_[key];
+    force_[i] = i < j ? force_[i] + act.force : force_[i] - act.force;
+    torque_[i] = torque_[i] + act.torque;
+  }
+
+  void add_side(std::uint32_t i, std::uint32_t side, Vector normal, double distance,
+                const LawConstants& constants) {
+    Meeting<double> at;
+    at.normal = normal;
+    at.overlap = 0.5 - distance;
+    at.arm = scaled(distance, normal);
+    at.velocity = of(grains_[i].velocity);
+    at.spin = of(grains_[i].spin);
+    const ContactAction<double> act = laws_[{i, i, 1 + side}](at, constants);
+    force_[i] = force_[i] + act.force;
+    torque_[i] = torque_[i] + act.torque;
+  }
+
+  WalledBox box_;
+  ReducedSettings settings_;
+  std::vector<GrainState> grains_;
+  std::vector<Vector> force_, torque_;
+  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, Law> laws_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ContactAction<double>> acts_;
+};
+
+bool same(const std::vector<GrainState>& a, const std::vector<GrainState>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(a[i].centre == b[i].centre && a[i].velocity == b[i].velocity && a[i].spin == b[i].spin))
+      return false;
+  }
+  return a.size() == b.size();
+}
+
+std::vector<GrainState> fallen_grains(const Container& container, std::uint32_t n) {
+  std::vector<GrainState> grains;
+  for (const Vec3 centre : dilute_column(container, n, 5).centres) grains.push_back(grain(centre));
+  return grains;
+}
+
+}  // namespace
+
+TEST_CASE("a bed falls between walls as by brute force, to the bit, on every instruction set") {
+  const WalledBox box{3, 3.5};
+  const ReducedSettings units = settings(WaltonBraun{.friction = 0.3}, 1);
+  const std::vector<GrainState> start = fallen_grains(box, 24);
+  BruteForce brute(box, units, start);
+  const int steps = 25'000;
+  for (int k = 0; k < steps; ++k) brute.step();
+  for (const InstructionSet set :
+       {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (set > best_instruction_set()) continue;
+    CAPTURE(name(set));
+    GrainLoop loop = loop_of(box, units, start, set);
+    loop.run(steps);
+    CHECK(same(loop.state().grains, brute.grains()));
+    CHECK(loop.census().contacts > 1);
+  }
+}
+
+TEST_CASE("a bed goes on from any step of a tap as if it had not been stopped") {
+  for (const Container& container : {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}},
+                                     Container{Cylinder{4.5}}, Container{PeriodicBox{2.05, 6}}}) {
+    for (const ContactLaw& law :
+         {ContactLaw{WaltonBraun{}}, ContactLaw{WaltonBraun{.friction = 0}},
+          ContactLaw{LinearSpringDashpot{}}, ContactLaw{LinearSpringDashpot{.friction = 0}}}) {
+      CAPTURE(container.index(), law.index());
+      const ReducedSettings units = settings(law, 1);
+      GrainLoop straight = loop_of(container, units, fallen_grains(container, 90));
+      straight.run(8000);
+      straight.begin_motion({0.4, 0.35, 1});
+      for (const int steps : {1, 399, 2000, 1801}) {
+        const GrainLoop::State saved = straight.state();
+        GrainLoop resumed(container, units);
+        resumed.restore(saved);
+        straight.run(static_cast<std::uint64_t>(steps));
+        resumed.run(static_cast<std::uint64_t>(steps));
+        CHECK(same(resumed.state().grains, straight.state().grains));
+        CHECK(resumed.energies().friction == straight.energies().friction);
+        CHECK(resumed.energies().latched == straight.energies().latched);
+        CHECK(resumed.energies().floor_work == straight.energies().floor_work);
+        CHECK(resumed.greatest_overlap() == straight.greatest_overlap());
+      }
+      CHECK(straight.is_sound());
+    }
+  }
+}
+
+// Input by the floor and by gravity, less what is held and what contacts dissipated.
+TEST_CASE("the ledger of a tap closes, and better as the step shrinks") {
+  const PeriodicBox box{6, 6};
+  const auto missing = [&](const ContactLaw& law, double finer) {
+    const ReducedSettings units = settings(law, 1, finer);
+    GrainLoop loop(box, units);
+    loop.load(dilute_column(box, 300, 3));
+    const auto run = [&](double time) {
+      loop.run(static_cast<std::uint64_t>(time / units.time_step));
+    };
+    run(12);
+    const Energies before = loop.energies();
+    loop.begin_motion({0.4413, 7.5 * units.seconds, 1});
+    run(6);
+    const Energies after = loop.energies();
+    const double dissipated = after.dissipated() - before.dissipated();
+    const double came = after.floor_work - before.floor_work + before.held() - after.held();
+    REQUIRE(after.floor_work > before.floor_work + 100);
+    REQUIRE(dissipated > 100);
+    return std::abs(came - dissipated) / dissipated;
+  };
+  const WaltonBraun latched{};
+  const double coarse = missing(latched, 1), fine = missing(latched, 8);
+  CAPTURE(coarse, fine);
+  CHECK(coarse < 1e-3);
+  CHECK(fine < 0.5 * coarse);
+  CHECK(missing(LinearSpringDashpot{}, 4) < 2e-2);
+}
+
+TEST_CASE("a sphere in the hollow of three stays there") {
+  const ReducedSettings units = settings(WaltonBraun{.friction = 0.6}, 1);
+  const PeriodicBox box{8, 8};
+  const double side = 1.02, depth = std::sqrt(1 - side * side / 3);
+  GrainLoop loop = loop_of(box, units,
+                           {grain({3, 3, 0.5}), grain({3 + side, 3, 0.5}),
+                            grain({3 + 0.5 * side, 3 + 0.5 * std::sqrt(3.0) * side, 0.5}),
+                            grain({3 + 0.5 * side, 3 + side / (2 * std::sqrt(3.0)), 0.5 + depth})});
+  loop.run(50'000);
+  const auto settled = loop.state().grains;
+  loop.run(1'000'000);
+  const auto after = loop.state().grains;
+  for (int i = 0; i < 4; ++i) CHECK(length(after[i].centre - settled[i].centre) < 1e-4);
+  CHECK(after[3].centre.z > 0.5 + 0.9 * depth);
+}
+
+TEST_CASE("a bed at rest stays as it is") {
+  const PeriodicBox box{5, 5};
+  const ReducedSettings units = settings(WaltonBraun{}, 1);
+  GrainLoop loop(box, units);
+  loop.load(dilute_column(box, 200, 11));
+  loop.run(120'000);
+  Packing before, after;
+  loop.store(before);
+  const double held = loop.energies().held();
+  loop.run(200'000);
+  loop.store(after);
+  CHECK(std::abs(mean_height(after) - mean_height(before)) < 2e-5);
+  CHECK(loop.energies().held() <= held * (1 + 1e-9));
+}
+
+TEST_CASE("without friction nothing spins") {
+  const PeriodicBox box{4, 4};
+  GrainLoop loop(box, settings(WaltonBraun{.friction = 0}, 1));
+  loop.load(dilute_column(box, 60, 2));
+  loop.run(10'000);
+  for (const GrainState& one : loop.state().grains) CHECK(one.spin == Vec3{});
+  CHECK(loop.energies().friction == 0);
+}
+
+TEST_CASE("spheres that start deep in each other are found where no sphere can be") {
+  const WalledBox box{4, 4};
+  const ReducedSettings units = settings(WaltonBraun{}, 1);
+  GrainLoop loop = loop_of(box, units, {grain({2, 2, 2}), grain({2, 2, 2.0001})});
+  loop.run(5000);
+  CHECK_FALSE(loop.is_sound());
+}
