@@ -52,7 +52,20 @@ class Check {
     }
   }
 
+  void engine_suits() {
+    if (!all_sound({"/engine"})) return;
+    if (scene_.grains && all_sound({"/container"}))
+      note_if("/engine/discrete_element", engine_fault(*scene_.grains, scene_.container));
+    if (!all_sound({"/protocol"})) return;
+    for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
+      const ProtocolLine& line = scene_.protocol[i];
+      note_if(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"),
+              engine_tap_fault(engine_of(scene_), line.tap));
+    }
+  }
+
   void relaxations_can_be() {
+    if (scene_.grains) return;
     relaxation_can_be(scene_.relax, "/relax");
     if (!scene_.relax_start) return;
     relaxation_can_be(*scene_.relax_start, "/relax_start");
@@ -63,7 +76,7 @@ class Check {
   void observables_have_names() {
     // What every sweep point has beside the observables.
     std::map<std::string, std::string> taken;
-    for (const Column& column : columns(MonteCarlo{scene_.relax, scene_.relax_start}))
+    for (const Column& column : columns(engine_of(scene_)))
       taken[column.name] = "a column of every series";
     for (const std::string beside : names_beside_series)
       taken[beside] = "what is stored beside the observables";
@@ -139,6 +152,7 @@ class Check {
 void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   Check check(scene, faults);
   check.start_suits_container();
+  check.engine_suits();
   check.relaxations_can_be();
   check.observables_have_a_floor();
   check.taps_suit_container();

@@ -50,6 +50,11 @@ Snapshots snapshots(const SnapshotChoice& choice) {
 
 }  // namespace
 
+EngineSettings engine_of(const Scene& scene) {
+  if (scene.grains) return *scene.grains;
+  return MonteCarlo{scene.relax, scene.relax_start};
+}
+
 std::size_t n_sweep_points(const Scene& scene) {
   std::size_t points = 1;
   for (const SweepAxis& axis : scene.sweep) points *= axis.size();
@@ -76,7 +81,7 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
     plan.n_spheres = here.n_spheres;
     plan.start = make_start_of(here.start, here.n_spheres);
     plan.protocol = stages(here.protocol);
-    plan.engine = MonteCarlo{here.relax, here.relax_start};
+    plan.engine = engine_of(here);
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots);
     plans.push_back(std::move(plan));

@@ -74,8 +74,18 @@ void read_simulation(const Reader& in, Scene& scene) {
   } else {
     in.missing("protocol", "a list of stages; [] makes the starting packings only");
   }
-  if (const auto relax = in.find("relax")) scene.relax = read_relaxation(*relax);
-  if (const auto relax = in.find("relax_start")) scene.relax_start = read_relaxation(*relax);
+  if (const auto engine = in.find("engine")) scene.grains = read_engine(*engine);
+  const auto read_trials = [&](const std::string& key) -> std::optional<Relaxation> {
+    const auto relax = in.find(key);
+    if (!relax) return std::nullopt;
+    if (scene.grains)
+      relax->fault(
+          "trials are of Monte Carlo: discrete elements come to rest as their key "
+          "\"rest\" says; leave this out");
+    return read_relaxation(*relax);
+  };
+  scene.relax = read_trials("relax").value_or(Relaxation{});
+  scene.relax_start = read_trials("relax_start");
 }
 
 }  // namespace
@@ -83,10 +93,10 @@ void read_simulation(const Reader& in, Scene& scene) {
 Scene read_scene(const Reader& in) {
   Scene scene;
   scene.observables = default_observables();
-  if (!in.is_object_of({"$schema", "name", "description", "seed", "realizations", "streams",
-                        "container", "spheres", "start", "protocol", "relax", "relax_start",
-                        "observe", "snapshots", "sweep", "until", "fits", "analyse",
-                        "structure"})) {
+  if (!in.is_object_of({"$schema", "name",      "description", "seed",    "realizations",
+                        "streams", "container", "spheres",     "start",   "protocol",
+                        "engine",  "relax",     "relax_start", "observe", "snapshots",
+                        "sweep",   "until",     "fits",        "analyse", "structure"})) {
     return scene;
   }
   read_identity(in, scene);

@@ -23,7 +23,11 @@ Json resolved(const Scene& scene) {
   out["spheres"] = scene.n_spheres;
   out["start"] = written(scene.start);
   out["protocol"] = written(scene.protocol);
-  out["relax"] = written(scene.relax);
+  if (scene.grains) {
+    out["engine"] = written_engine(*scene.grains);
+  } else {
+    out["relax"] = written(scene.relax);
+  }
   if (scene.relax_start) out["relax_start"] = written(*scene.relax_start);
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);

@@ -126,6 +126,7 @@ struct Scene {
   std::vector<ProtocolLine> protocol;
   Relaxation relax;
   std::optional<Relaxation> relax_start;  // absent: a random settle as `relax`, else none
+  std::optional<DiscreteElement> grains;  // they move by these, not by Monte Carlo
 
   std::vector<Observable> observables;
   SnapshotChoice snapshots;
@@ -136,6 +137,9 @@ struct Scene {
   StructureSettings structure;
   bool operator==(const Scene&) const = default;
 };
+
+/// The engine that the scene asks for, with its settings.
+EngineSettings engine_of(const Scene& scene);
 
 /// A scene, or every fault that keeps the text from being one.
 struct ParsedScene {

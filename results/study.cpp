@@ -33,6 +33,7 @@ StudyPoint make_point(const Plan& plan) {
                    .taps = total_taps(plan),
                    .observables = {},
                    .diagnostics = columns(plan.engine),
+                   .unit = unit_name(plan.engine),
                    .snapshots = plan.snapshots,
                    .start_sum = sum_of_given(plan.start)};
   for (const Observable& observable : plan.observables)

@@ -26,6 +26,7 @@ struct StudyPoint {
   std::uint64_t taps = 0;           // the series have taps + 1 rows: tap 0 is the start
   std::vector<Column> observables;  // as the scene lists them
   std::vector<Column> diagnostics;  // the engine's
+  std::string unit = "trials";      // what a unit of its work is called
   Snapshots snapshots;
   std::string start_sum{};  // SHA-256 of the centres of a start from a file; else empty
 

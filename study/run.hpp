@@ -68,7 +68,8 @@ class OtherShard : public BadInput {
 /// What lies ahead when realizations begin to be computed.
 struct WorkAhead {
   std::uint64_t realizations = 0;
-  std::uint64_t taps = 0;  // of all of them, without the starts
+  std::uint64_t taps = 0;       // of all of them, without the starts
+  std::string unit = "trials";  // what the engine's work is counted in
 };
 
 /// Told how a run goes on. Every call comes from the thread that runs.

@@ -16,6 +16,7 @@
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/cost/pilot.hpp"
+#include "study/scenes/grain_summary.hpp"
 #include "study/scenes/scene_file.hpp"
 #include "study/scenes/scene_warnings.hpp"
 
@@ -72,10 +73,10 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
     pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
   }
   print(fmt::format(
-      "  {}{}{}, {} trials at {} trials/s: {} {:.0f} sweeps a tap, {} {} a realization\n",
-      plan.label, plan.label.empty() ? "" : ": ", pilot,
-      format_count(static_cast<double>(estimate.trials)), format_count(estimate.trials_per_second),
-      estimate.settled ? "about" : "at least", estimate.sweeps_per_tap,
+      "  {}{}{}, {} {} at {} {}/s: {} {:.0f} {} a tap, {} {} a realization\n", plan.label,
+      plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
+      unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
+      estimate.settled ? "about" : "at least", estimate.rounds_per_tap, round_name(plan.engine),
       estimate.settled ? "about" : "at least", format_duration(estimate.realization)));
 }
 
@@ -107,6 +108,8 @@ void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
   print(fmt::format("{}\n\n", loaded.resolved));
   print(effects_text(Json::parse(loaded.resolved)));
+  const std::vector<std::string> grains = grain_summary(loaded.plans.front());
+  if (!grains.empty()) print(fmt::format("discrete elements\n  {}\n", joined(grains, "\n  ")));
   print_size(loaded, study_of(loaded));
   const std::vector<std::string> warnings = scene_warnings(loaded);
   if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -51,10 +52,11 @@ std::string state_of(const RunStatus& status) {
   return "killed; --resume goes on";
 }
 
-Json realization_json(const RealizationSummary& one) {
-  Json json{{"point", one.id.point},           {"realization", one.id.realization},
-            {"status", name(one.status)},      {"taps_recorded", one.rows},
-            {"trials", one.work.effort.units}, {"seconds", one.work.seconds}};
+Json realization_json(const RealizationSummary& one, std::string unit) {
+  std::ranges::replace(unit, ' ', '_');
+  Json json{{"point", one.id.point},       {"realization", one.id.realization},
+            {"status", name(one.status)},  {"taps_recorded", one.rows},
+            {unit, one.work.effort.units}, {"seconds", one.work.seconds}};
   if (!one.reason.empty()) json["reason"] = one.reason;
   return json;
 }
@@ -86,7 +88,9 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
                       {"taps", point.taps},
                       {"seed", point.seed}});
   }
-  for (const auto& one : status.realizations) realizations.push_back(realization_json(one));
+  for (const auto& one : status.realizations) {
+    realizations.push_back(realization_json(one, study.points[one.id.point].unit));
+  }
   return {{"file", file.path()},
           {"state", name(status.state)},
           {"alive", status.owner && status.owner->alive},

@@ -98,15 +98,17 @@ std::string resume_command(const RunArguments& arguments) {
 }
 
 /// What this process computed, all sweep points together.
-std::string process_line(const Progress& progress, Seconds elapsed, int threads) {
+std::string process_line(const Progress& progress, Seconds elapsed, int threads,
+                         const std::string& unit) {
   std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
                                  counted(static_cast<std::uint64_t>(threads), "thread"));
-  const auto trials = static_cast<double>(progress.units_done);
+  const auto units = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
-  if (trials > 0 && relaxing > 0) {
-    line += fmt::format("; relaxing, {} trials/s a core and {:.3f} distance tests a trial",
-                        format_count(trials / relaxing),
-                        static_cast<double>(progress.pair_tests) / trials);
+  if (units > 0 && relaxing > 0) {
+    line += fmt::format("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
+                        format_count(units / relaxing), unit,
+                        static_cast<double>(progress.pair_tests) / units,
+                        unit == "trials" ? "a trial" : "for each");
   }
   return line + "\n";
 }
@@ -138,7 +140,8 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const bool stopped = !run.compute_until_precise();
   if (!arguments.quiet) {
     print(report(run.results()) +
-          process_line(run.progress(), std::chrono::steady_clock::now() - began, settings.threads));
+          process_line(run.progress(), std::chrono::steady_clock::now() - began, settings.threads,
+                       run.results().study().points.front().unit));
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);

@@ -47,10 +47,14 @@ bool is_on(const std::string& part, const Json& value) {
 
 std::string effects_text(const Json& resolved) {
   std::string on = "effects\n", off;
-  for (const char* part : {"container", "start", "protocol", "relax", "observe", "snapshots",
-                           "sweep", "until", "fits", "analyse", "structure"}) {
+  for (const char* part : {"container", "start", "protocol", "engine", "relax", "observe",
+                           "snapshots", "sweep", "until", "fits", "analyse", "structure"}) {
     const Json value =
         without_empty_lists(resolved.contains(part) ? resolved.at(part) : Json::object());
+    // One of the two is there: Monte Carlo's settings are "relax".
+    const bool is_of_engine =
+        std::string_view(part) == "engine" || std::string_view(part) == "relax";
+    if (is_of_engine && value.empty()) continue;
     if (is_on(part, value)) {
       on += fmt::format("  {:<11}{}\n", part, in_words(value));
     } else {

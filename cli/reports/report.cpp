@@ -166,16 +166,16 @@ struct PointCost {
   Work work;
 };
 
-std::string cost_line(const PointCost& cost) {
+std::string cost_line(const PointCost& cost, const std::string& unit) {
   std::string line = fmt::format("{} done", cost.done);
   if (cost.unfinished > 0) line += fmt::format(", {} unfinished", cost.unfinished);
-  line += fmt::format(", {} failed; {} trials in {} of one core", cost.failed,
-                      format_count(static_cast<double>(cost.work.effort.units)),
+  line += fmt::format(", {} failed; {} {} in {} of one core", cost.failed,
+                      format_count(static_cast<double>(cost.work.effort.units)), unit,
                       format_duration(Seconds(cost.work.seconds)));
   if (cost.work.seconds > 0) {
-    line +=
-        fmt::format(", {} trials/s a core",
-                    format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds));
+    line += fmt::format(
+        ", {} {}/s a core",
+        format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds), unit);
   }
   return line + "\n";
 }
@@ -206,7 +206,7 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
   if (!series.reached.empty()) {
     text += tap_table(series) + sentences(series) + growth_line(series) + fitting_line(file, point);
   }
-  return text + cost_line(cost) + failures;
+  return text + cost_line(cost, study.unit) + failures;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ Container read_container(const Reader& in);
 StartChoice read_start(const Reader& in);
 std::vector<ProtocolLine> read_protocol(const Reader& in);
 Relaxation read_relaxation(const Reader& in);
+/// The grains' settings; nothing for Monte Carlo, whose own are "relax" and "relax_start".
+std::optional<DiscreteElement> read_engine(const Reader& in);
 Window read_window(const Reader& in);
 HeightWindow read_heights(const Reader& in);
 std::vector<Observable> read_observables(const Reader& in);
@@ -32,6 +34,7 @@ Start engine_start(const StartChoice& choice);
 std::string key_of(const StartChoice& start);
 Json written(const std::vector<ProtocolLine>& protocol);
 Json written(const Relaxation& relaxation);
+Json written_engine(const DiscreteElement& engine);
 Json written(const Window& window);
 Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);

@@ -97,6 +97,33 @@ Json written_shake(const Shake& tap, const StrengthWriter& strength) {
           {"retries", tap.retries}};
 }
 
+constexpr Range amplitudes = between(0, 100);      // diameters
+constexpr Range frequencies = between(1e-3, 1e6);  // Hz
+
+template <class FloorTap>
+void read_floor_motion(const Reader& in, const StrengthReader& strength, FloorTap& tap) {
+  if (const auto amplitude = in.find("amplitude")) {
+    tap.amplitude = strength(*amplitude, amplitudes, Rooted::no);
+  } else if (strength.ramp) {
+    in.missing("amplitude", "the ramp of a floor that moves is an object here");
+  }
+  in.read("frequency", tap.frequency, frequencies);
+}
+
+Tap read_half_sine(const Reader& in, const StrengthReader& strength) {
+  HalfSine tap;
+  if (in.is_object_of({"amplitude", "frequency"})) read_floor_motion(in, strength, tap);
+  return tap;
+}
+
+Tap read_vibration(const Reader& in, const StrengthReader& strength) {
+  Vibration tap;
+  if (!in.is_object_of({"amplitude", "frequency", "cycles"})) return tap;
+  read_floor_motion(in, strength, tap);
+  in.read_whole("cycles", tap.cycles, 1, 1'000'000);
+  return tap;
+}
+
 constexpr TableOf<TapEntry, Tap>::Type taps{
     {"dilate",
      [](const Reader& in, const StrengthReader& strength) -> Tap {
@@ -115,7 +142,16 @@ constexpr TableOf<TapEntry, Tap>::Type taps{
        return Lift{strength(in, lifts, Rooted::no)};
      },
      [](const Lift& tap, const StrengthWriter& strength) { return strength(tap.gamma); }},
-    {"shake", read_shake, written_shake}};
+    {"shake", read_shake, written_shake},
+    {"half_sine", read_half_sine,
+     [](const HalfSine& tap, const StrengthWriter& strength) -> Json {
+       return {{"amplitude", strength(tap.amplitude)}, {"frequency", plain_number(tap.frequency)}};
+     }},
+    {"vibration", read_vibration, [](const Vibration& tap, const StrengthWriter& strength) -> Json {
+       return {{"amplitude", strength(tap.amplitude)},
+               {"frequency", plain_number(tap.frequency)},
+               {"cycles", tap.cycles}};
+     }}};
 
 Tap read_tap(const Reader& in, const StrengthReader& strength) {
   const auto choice = in.choice(names_of(taps));

@@ -34,10 +34,12 @@ inline constexpr const char* keeps_what_point_keeps = "keeps_what_point_keeps";
 /// The columns of the engine are named in the file where they are not those of Monte Carlo, which
 /// every file without names has.
 inline constexpr const char *diagnostics_name = "diagnostics", *diagnostics_prefix = "diagnostics_";
+inline constexpr const char* diagnostics_unit = "diagnostics_unit";  // else trials
 inline std::vector<Column> unnamed_diagnostics() {
   return columns(MonteCarlo{});
 }
-inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share"};  // of Shown
+inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share",
+                                                   "stored"};  // of Shown
 
 /// What fitting did to the pours of points that start from one.
 inline constexpr const char* fitting_folder = "fitting";

@@ -141,6 +141,7 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
     point.sweep_values = values_like(earlier[as], swept, number);
     point.observables = earlier[as].observables;
     point.diagnostics = earlier[as].diagnostics;
+    point.unit = earlier[as].unit;
     point.snapshots = earlier[as].snapshots;
   } else {
     const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
@@ -148,6 +149,8 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
       point.sweep_values.emplace_back(pointers[i], values.at(i));
     point.observables = read_labels(group, "observables", "");
     point.diagnostics = read_diagnostics(group);
+    if (checked(H5Aexists(group, diagnostics_unit)) > 0)
+      point.unit = read_text_attribute(group, diagnostics_unit);
     point.snapshots = read_snapshot_settings(group);
   }
   if (checked(H5Aexists(group, "start_sha256")) > 0)

@@ -70,6 +70,7 @@ void write_columns(hid_t group, const StudyPoint& point) {
   add("if_any", [](const Column& one) { return one.if_any; });
   add("if_none", [](const Column& one) { return one.if_none; });
   write_texts_along(group, own);
+  write_attribute(group, diagnostics_unit, point.unit);
 }
 
 Texts pointers_of(const StudyPoint& point) {

@@ -19,6 +19,7 @@ namespace {
 
 using Clock = ProcessorClock;
 
+constexpr double trials_per_slice = 4e6;    // of the Monte Carlo engine
 constexpr double narrowest = 8;             // diameters, of a footprint that is cut
 constexpr std::uint32_t most_oversize = 5;  // times max_spheres, before depth is cut as well
 
@@ -86,16 +87,18 @@ class Pilot {
   Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
       : plan_(plan),
         bed_(bed),
-        budget_(budget),
         dynamics_(make_dynamics(plan.engine, {.start = stream_key(plan, 0, Purpose::start_trials),
                                               .taps = stream_key(plan, 0, Purpose::trials)})),
         tap_random_(stream_key(plan, 0, Purpose::tap)) {
+    // The budget is one of trials; other engines do less in the same time.
+    budget_ = static_cast<std::uint64_t>(static_cast<double>(budget) *
+                                         dynamics_->units_per_slice() / trials_per_slice);
     const auto began = Clock::now();
     RandomStream random(stream_key(plan, 0, Purpose::start));
     const Packing start = make_start(plan.start, bed.container, bed.n_spheres, random);
     dynamics_->load(start);
     dynamics_->settle(plan.start);
-    advance(budget / 2);
+    advance(budget_ / 2);
     start_time_ = Clock::now() - began;
   }
 
@@ -150,23 +153,22 @@ class Pilot {
     }
     const double scale = static_cast<double>(plan_.n_spheres) / bed_.n_spheres;
     const auto n_taps = static_cast<double>(total_taps(plan_));
-    const std::uint64_t trials = dynamics_->effort().units;
+    const std::uint64_t units = dynamics_->effort().units;
     const double observed = static_cast<double>(bed_.n_spheres) * sizeof(Vec3);
-    return {
-        .n_spheres = bed_.n_spheres,
-        .n_strengths = n_strengths,
-        .trials = trials,
-        .trials_per_second = trials > 0 ? static_cast<double>(trials) / moving_time_.count() : 0,
-        .sweeps_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
-        .settled = settled_ && bed_.as_deep,
-        .realization = scale * (start_time_ + taps_time),
-        .bytes =
-            static_cast<std::size_t>(scale * (static_cast<double>(dynamics_->bytes()) + observed))};
+    return {.n_spheres = bed_.n_spheres,
+            .n_strengths = n_strengths,
+            .units = units,
+            .units_per_second = units > 0 ? static_cast<double>(units) / moving_time_.count() : 0,
+            .rounds_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
+            .settled = settled_ && bed_.as_deep,
+            .realization = scale * (start_time_ + taps_time),
+            .bytes = static_cast<std::size_t>(
+                scale * (static_cast<double>(dynamics_->bytes()) + observed))};
   }
 
   const Plan& plan_;
   const CutBed& bed_;
-  std::uint64_t budget_;
+  std::uint64_t budget_ = 0;
   std::unique_ptr<Dynamics> dynamics_;
   RandomStream tap_random_;
   Seconds start_time_{0}, moving_time_{0};

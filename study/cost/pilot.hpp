@@ -11,20 +11,21 @@ namespace jostle::inline study {
 
 /// What a short trial of a sweep point measured, and what it makes of a realization.
 struct PilotEstimate {
-  std::uint32_t n_spheres = 0;   // of the pilot's packing: a large one is cut down
-  std::size_t n_strengths = 0;   // of taps that were tried
-  std::uint64_t trials = 0;      // made by the pilot
-  double trials_per_second = 0;  // on one core
-  double sweeps_per_tap = 0;     // mean over the protocol; a lower bound where `settled` is false
-  bool settled = false;          // whether start and taps met their stop rules within the budget
-  Seconds realization{0};        // a whole one on one core; a lower bound likewise
-  std::size_t bytes = 0;         // held by one running realization
+  std::uint32_t n_spheres = 0;  // of the pilot's packing: a large one is cut down
+  std::size_t n_strengths = 0;  // of taps that were tried
+  std::uint64_t units = 0;      // of the engine, made by the pilot
+  double units_per_second = 0;  // on one core
+  double rounds_per_tap = 0;    // units / spheres, mean over the protocol; a lower bound where
+                                // `settled` is false
+  bool settled = false;         // whether start and taps met their stop rules within the budget
+  Seconds realization{0};       // a whole one on one core; a lower bound likewise
+  std::size_t bytes = 0;        // held by one running realization
 };
 
 /// Makes the start, applies taps of a few strengths of the protocol in its order and relaxes each,
-/// all within about `budget` trials besides the start; the other taps cost what lies between. A bed
-/// of more than `max_spheres` is cut down (cut_down) and its cost scaled up in proportion.
-/// Throws StartError where the start does not suit the container.
+/// all within about `budget` trials (or what takes as long) besides the start; the other taps cost
+/// what lies between. A bed of more than `max_spheres` is cut down (cut_down) and its cost scaled
+/// up in proportion. Throws StartError where the start does not suit the container.
 PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_spheres = 20'000);
 
 /// A smaller piece of a bed.

@@ -17,6 +17,7 @@ namespace {
 constexpr double largest_angle = 2, largest_degrees = 180;  // theta0 of 1000 means: any direction
 constexpr double largest_stretch = 1;                       // twice as high; the papers end at 0.5
 constexpr double largest_lift = 5;                          // diameters; the papers' end at 0.5
+constexpr double large_diameter = 0.5;                      // m
 constexpr double much_disk = 1e12;                          // bytes
 constexpr std::size_t most_warnings = 50;
 
@@ -45,6 +46,11 @@ class Warnings {
     look_at("/relax", engine.relax);
     if (engine.relax_start) look_at("/relax_start", *engine.relax_start);
   }
+  void look_at_engine(const DiscreteElement& engine) {
+    if (engine.diameter <= large_diameter) return;
+    add(fmt::format("/engine: the diameter is in metres, and {:g} m is a boulder",
+                    engine.diameter));
+  }
   void look_at(const char* key, const Relaxation& relax) {
     const auto* move = std::get_if<PolarMove>(&relax.move);
     if (move == nullptr || move->theta0 <= largest_angle || move->theta0 > largest_degrees) return;
@@ -60,6 +66,13 @@ class Warnings {
     if (tap.gamma <= largest_lift) return;
     add(fmt::format("/protocol: lift {:g} drops the bed from {:g} diameters above the floor",
                     tap.gamma, tap.gamma));
+  }
+  void look_at_tap(const HalfSine& tap) { look_at_floor("half_sine", tap.amplitude); }
+  void look_at_tap(const Vibration& tap) { look_at_floor("vibration", tap.amplitude); }
+  void look_at_floor(const char* name, double amplitude) {
+    if (amplitude <= largest_lift) return;
+    add(fmt::format("/protocol: {}: the amplitude is in diameters, and {:g} are many", name,
+                    amplitude));
   }
   void look_at_stretch(const char* name, double strength) {
     if (strength < largest_stretch) return;

@@ -17,9 +17,9 @@ TEST_CASE("Every part of a scene is among its effects, on or off") {
       CHECK(has_line == on);
       if (!on) CHECK(text.find(part, text.find("\n  off ")) != std::string::npos);
     };
-    for (const char* part : {"container", "start", "protocol", "relax", "observe"}) {
-      lists(part, true);
-    }
+    for (const char* part : {"container", "start", "observe"}) lists(part, true);
+    lists("protocol", !scene.protocol.empty());
+    lists(scene.grains ? "engine" : "relax", true);
     lists("sweep", !scene.sweep.empty());
     lists("until", !scene.until.targets.empty());
     lists("fits", !scene.fits.empty());

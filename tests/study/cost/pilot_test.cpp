@@ -92,7 +92,7 @@ TEST_CASE("A ramp costs the sum over its taps") {
     ramp.protocol = std::move(protocol);
     const PilotEstimate estimate = pilot(ramp, 1'000'000'000);
     CHECK(estimate.settled);
-    return estimate.sweeps_per_tap;
+    return estimate.rounds_per_tap;
   };
   const double weak = sweeps({{Dilate{0.01}, 10}}), strong = sweeps({{Dilate{0.3}, 10}});
   CHECK(strong > 1.5 * weak);  // a bed that is stretched more falls longer
