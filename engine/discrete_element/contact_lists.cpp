@@ -127,20 +127,30 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
   near_of_.assign(far_.size(), none);
   constexpr double reach2 = (1 + near_skin) * (1 + near_skin);
   const Vec3 periods = boundary_.periods();
-  for (std::uint32_t p = 0; p < far_.size(); ++p) {
-    const FarPair& pair = far_[p];
-    const double sx = pair.turns[0] * periods.x, sy = pair.turns[1] * periods.y;
-    const double* a = rows[pair.first].of;
-    const double* b = rows[pair.second].of;
-    const double x = a[0] - b[0] - sx, y = a[1] - b[1] - sy, z = a[2] - b[2];
-    if (x * x + y * y + z * z >= reach2) continue;
+  const auto add = [&](std::uint32_t p, const FarPair& pair) {
     near_of_[p] = static_cast<std::uint32_t>(near_.first.size());
     near_.first.push_back(pair.first);
     near_.second.push_back(pair.second);
     near_.source.push_back(p);
-    near_.shift[0].push_back(sx);
-    near_.shift[1].push_back(sy);
+    near_.shift[0].push_back(pair.turns[0] * periods.x);
+    near_.shift[1].push_back(pair.turns[1] * periods.y);
+  };
+  // Those that touch now come first: whole blocks of the others are done with at once.
+  std::vector<std::uint32_t> apart;
+  for (std::uint32_t p = 0; p < far_.size(); ++p) {
+    const FarPair& pair = far_[p];
+    const double* a = rows[pair.first].of;
+    const double* b = rows[pair.second].of;
+    const double x = a[0] - b[0] - pair.turns[0] * periods.x;
+    const double y = a[1] - b[1] - pair.turns[1] * periods.y, z = a[2] - b[2];
+    const double distance2 = x * x + y * y + z * z;
+    if (distance2 < 1) {
+      add(p, pair);
+    } else if (distance2 < reach2) {
+      apart.push_back(p);
+    }
   }
+  for (const std::uint32_t p : apart) add(p, far_[p]);
   fill(near_, near_.first.size());
   if (!old_near_of.empty()) {
     for (std::size_t at = 0; at < near_.n; ++at) {

@@ -144,6 +144,7 @@ struct WaltonBraunLaw {
   JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
+    if (!any_of(touching) && !any_of(greatest > zero)) return {};
     const N before = greatest;
     greatest = greater(before, at.overlap);
     const N unloading = law.unloading * (at.overlap - law.latched * greatest);
@@ -206,7 +207,7 @@ struct WaltonBraunLaw {
     tangential = masked(touching, end);
     reversal = select(touching, reversal, zero);
     shrinking = select(touching, 0.5 - 0.5 * direction, zero);
-    act.torque = scaled(zero - 1.0, cross(at.arm, tangential));
+    act.torque = cross(tangential, at.arm);
     act.force = act.force + tangential;
   }
 };
@@ -235,6 +236,7 @@ struct LinearLaw {
   JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
+    if (!any_of(touching) && !any_of(dot(spring, spring) > zero)) return {};
     const N speed = dot(at.velocity, at.normal);
     const N resisting = law.stiffness * at.overlap - law.damping * speed;
     const N normal_force = select(touching, resisting, zero);
@@ -273,7 +275,7 @@ struct LinearLaw {
     act.dissipated_by_friction = select(touching, rubbed, held);
     spring = masked(touching, kept);
     const Vector3<N> force = masked(touching, scaled(zero - 1.0, acting));
-    act.torque = scaled(zero - 1.0, cross(at.arm, force));
+    act.torque = cross(force, at.arm);
     act.force = act.force + force;
   }
 };

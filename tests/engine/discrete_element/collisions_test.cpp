@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
 #include "tests/engine/discrete_element/grain_cases.hpp"
 
@@ -175,4 +178,63 @@ TEST_CASE("a sphere that slides on the floor comes to roll") {
   const auto rolling = loop.state().grains[0];
   CHECK(rolling.velocity.x == Approx(5.0 / 7 * speed).epsilon(2e-3));
   CHECK(std::abs(rolling.velocity.x - 0.5 * rolling.spin.y) < 2e-3);
+}
+
+TEST_CASE("collisions go step by step as those of LAMMPS") {
+  constexpr double stiffness = 40559.36368294987, tangential = 11588.389623699963;
+  constexpr double gamma_n = 19.093013324349467, gamma_t = 9.546506662174734, speed = 0.05;
+  const double contact_time =
+      std::numbers::pi / std::sqrt(2 * stiffness - 0.25 * gamma_n * gamma_n);
+  ReducedSettings units;
+  units.law = GrainLaw::linear;
+  units.gravity = 0;
+  units.time_step = contact_time / 200'000;
+  const auto of_mass = [&](double mass) {  // of the two together: LAMMPS' gamma is a rate
+    LawConstants law;
+    law.stiffness = stiffness;
+    law.tangential = tangential;
+    law.friction = 0.1;
+    law.damping = mass * gamma_n;
+    law.shear_damping = mass * gamma_t;
+    law.time_step = units.time_step;
+    return law;
+  };
+  units.spheres = of_mass(0.5);
+  units.floor = units.sides = of_mass(1);
+  constexpr double gap = 1.0000001;
+  GrainLoop pair =
+      loop_of(box, units,
+              {grain({5, 5, 5}, {speed, 0.2 * speed, 0.8 * speed}),
+               grain({5 + gap * 0.6, 5, 5 + gap * 0.8}, {-0.3 * speed, 0, -0.9 * speed})});
+  GrainLoop floor = loop_of(box, units, {grain({5, 5, 0.5000001}, {0.15 * speed, 0, -speed})});
+
+  std::ifstream trace(TEST_DATA "/lammps_collisions.txt");
+  const auto largest = [](Vec3 a) {
+    return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+  };
+  GrainLoop* loop = nullptr;
+  std::uint64_t done = 0;
+  int compared = 0;
+  for (std::string line; std::getline(trace, line);) {
+    if (line == "# pair" || line == "# floor") {
+      loop = line == "# pair" ? &pair : &floor;
+      done = 0;
+    }
+    if (line.starts_with("#")) continue;
+    REQUIRE(loop != nullptr);
+    std::istringstream numbers(line);
+    std::uint64_t step = 0;
+    numbers >> step;
+    loop->run(step - std::exchange(done, step));
+    CAPTURE(step);
+    for (const GrainState& one : loop->state().grains) {
+      Vec3 centre, velocity, spin;
+      for (Vec3* into : {&centre, &velocity, &spin}) numbers >> into->x >> into->y >> into->z;
+      CHECK(largest(one.centre - centre) < 1e-9);
+      CHECK(largest(one.seen_velocity - velocity) < 1e-6 * speed);
+      CHECK(0.5 * largest(one.seen_spin - spin) < 1e-6 * speed);
+      ++compared;
+    }
+  }
+  CHECK(compared == 39);
 }
