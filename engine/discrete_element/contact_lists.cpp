@@ -45,6 +45,12 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
   sides_ = {};
   near_of_.clear();
 
+  find_far_pairs(rows);
+  make_far_slots();
+}
+
+// Each pair, and each of its images, from the first of its two places.
+void ContactLists::find_far_pairs(std::span<const Row> rows) {
   const Vec3 periods = boundary_.periods();
   double top = 1;
   for (std::uint32_t i = 0; i < n_spheres_; ++i) top = std::max(top, rows[i].of[2]);
@@ -64,8 +70,7 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
   constexpr double reach = 1 + far_skin;
   for (std::uint32_t i = 0; i < n_spheres_; ++i) {
     cells.any_near(inside[i], reach, [&](std::uint32_t j, Vec3 image) {
-      const bool is_once = j > i;  // each pair, and each of its images, from its first place
-      if (!is_once || norm_squared(inside[i] - image) >= reach * reach) return false;
+      if (j <= i || norm_squared(inside[i] - image) >= reach * reach) return false;
       const auto turn = [&](int axis, double length, double at, double own) {
         if (length == 0) return 0;
         const auto images = static_cast<std::int32_t>(std::lround((at - own) / length));
@@ -73,7 +78,7 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
       };
       std::array<std::int32_t, 2> turns = {turn(0, periods.x, image.x, inside[j].x),
                                            turn(1, periods.y, image.y, inside[j].y)};
-      if (numbers[i] < numbers[j]) {
+      if (numbers_[i] < numbers_[j]) {
         far_.push_back({i, j, turns});
       } else {
         far_.push_back({j, i, {-turns[0], -turns[1]}});
@@ -81,7 +86,10 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
       return false;
     });
   }
+}
 
+// Of every sphere its far pairs, in the order of the other spheres' numbers.
+void ContactLists::make_far_slots() {
   far_begin_.assign(n_spheres_ + 1, 0);
   for (const FarPair& pair : far_) {
     ++far_begin_[pair.first + 1];

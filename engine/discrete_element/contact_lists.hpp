@@ -88,6 +88,8 @@ class ContactLists {
     std::array<CacheLines<double>, most_history> history;
   };
 
+  void find_far_pairs(std::span<const Row> rows);
+  void make_far_slots();
   void find_pairs(std::span<const Row> rows);
   void find_sides(std::span<const Row> rows, double floor_height);
   void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;

@@ -108,7 +108,6 @@ class GrainDynamics final : public Dynamics {
 
   std::vector<std::byte> save() const override {
     GrainDynamicsState state = state_;
-    state.loaded = true;
     state.loop = loop_->state();
     return bytes_of(state);
   }

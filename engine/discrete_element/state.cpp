@@ -60,7 +60,6 @@ GrainDynamicsState read(ByteReader& reader) {
   if (reader.get<std::uint32_t>() != version) throw std::out_of_range("another version");
   GrainDynamicsState state;
   state.status = reader.get_enum(DynamicsStatus::capped);
-  state.loaded = reader.get_flag();
   state.quiet_since = reader.get<double>();
   state.input = reader.get<double>();
   state.before = get_numbers<Energies>(reader);
@@ -86,7 +85,6 @@ std::vector<std::byte> bytes_of(const GrainDynamicsState& state) {
   ByteWriter writer;
   writer.put(version);
   writer.put(state.status);
-  writer.put(state.loaded);
   writer.put(state.quiet_since);
   writer.put(state.input);
   put_numbers(writer, state.before);

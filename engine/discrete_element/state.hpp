@@ -11,7 +11,6 @@ namespace jostle::inline engine {
 /// What a realization by discrete elements goes on from, besides the centres in the box.
 struct GrainDynamicsState {
   DynamicsStatus status = DynamicsStatus::settled;
-  bool loaded = false;      // whether `loop` holds anything
   double quiet_since = -1;  // time of the tap since which the bed is quiet; negative: it is not
   double input = 0;         // by a displacement at the tap's begin, m g d
   Energies before;          // as the tap began, after the displacement
