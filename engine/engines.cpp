@@ -2,12 +2,31 @@
 
 namespace jostle::inline engine {
 
+namespace {
+
+std::optional<std::string> motion_fault(const DiscreteElement& grains, const Tap& tap) {
+  constexpr double least_steps = 20;
+  const auto* half_sine = std::get_if<HalfSine>(&tap);
+  const double frequency = half_sine ? half_sine->frequency : std::get<Vibration>(tap).frequency;
+  if (grains.spheres.index() != grains.floor.value_or(grains.spheres).index() ||
+      grains.spheres.index() != grains.sides.value_or(grains.spheres).index())
+    return std::nullopt;  // a fault of its own
+  const double steps = 0.5 / frequency / contact_times(grains).step_seconds;
+  if (steps >= least_steps) return std::nullopt;
+  return "half a period of the floor takes " + std::to_string(steps) +
+         " time steps, 20 at least: lower the frequency, or raise stiffness or steps_per_contact";
+}
+
+}  // namespace
+
 std::vector<Column> columns(const EngineSettings& settings) {
   return std::visit([](const auto& engine) { return columns(engine); }, settings);
 }
 
 std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap) {
-  if (std::holds_alternative<DiscreteElement>(settings) || !moves_floor(tap)) return std::nullopt;
+  if (!moves_floor(tap)) return std::nullopt;
+  if (const auto* grains = std::get_if<DiscreteElement>(&settings))
+    return motion_fault(*grains, tap);
   return "the floor moves under discrete elements only: set \"engine\" to "
          "{\"discrete_element\": {}}, or tap by dilate, dilate_floor_held, lift or shake";
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -80,6 +82,32 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
       estimate.settled ? "about" : "at least", format_duration(estimate.realization)));
 }
 
+/// What the grains' settings come to, at the first sweep points that differ in it.
+void print_grains(const LoadedScene& loaded) {
+  constexpr std::size_t most = 5;
+  std::set<std::string> known;
+  std::string text;
+  for (const Plan& plan : loaded.plans) {
+    const std::vector<std::string> lines = grain_summary(plan);
+    if (lines.empty() || known.size() == most) continue;
+    const std::string block = joined(lines, "\n  ");
+    if (!known.insert(block).second) continue;
+    text += fmt::format("  {}{}{}\n", plan.label, plan.label.empty() ? "" : "\n  ", block);
+  }
+  if (!text.empty()) print("discrete elements\n" + text);
+}
+
+PilotEstimate tried(const Plan& plan, std::uint64_t budget) {
+  try {
+    return pilot(plan, budget);
+  } catch (const StartError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw BadInput(fmt::format("{}{}the pilot failed: {}", plan.label,
+                               plan.label.empty() ? "" : ": ", error.what()));
+  }
+}
+
 void print_pilot(const LoadedScene& loaded, int cpus) {
   print("cost, extrapolated from the first taps of a pilot\n");
   const auto points = pilot_points(loaded.plans.size());
@@ -87,7 +115,7 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   std::size_t bytes = 0;
   bool settled = true;
   for (const std::size_t point : points) {
-    const PilotEstimate estimate = pilot(loaded.plans[point], pilot_budget / points.size());
+    const PilotEstimate estimate = tried(loaded.plans[point], pilot_budget / points.size());
     print_pilot_line(loaded.plans[point], estimate);
     mean += estimate.realization / static_cast<double>(points.size());
     bytes = std::max(bytes, estimate.bytes);
@@ -108,8 +136,7 @@ void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
   print(fmt::format("{}\n\n", loaded.resolved));
   print(effects_text(Json::parse(loaded.resolved)));
-  const std::vector<std::string> grains = grain_summary(loaded.plans.front());
-  if (!grains.empty()) print(fmt::format("discrete elements\n  {}\n", joined(grains, "\n  ")));
+  print_grains(loaded);
   print_size(loaded, study_of(loaded));
   const std::vector<std::string> warnings = scene_warnings(loaded);
   if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));

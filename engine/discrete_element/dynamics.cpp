@@ -1,6 +1,7 @@
 #include "engine/dynamics.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/discrete_element/discrete_element.hpp"
@@ -85,14 +86,14 @@ class GrainDynamics final : public Dynamics {
     // What came in and was held before is held now or was dissipated.
     const double came = floor_work + state_.before.held();
     const double missing = came - now.held() - latched - friction;
-    const double turnover = latched + friction + now.kinetic;
+    const double turnover = std::abs(latched) + std::abs(friction);
     return {loop.time() * units_.seconds,
             now.kinetic / n,
             now.elastic / n,
             (state_.input + floor_work) / n,
             latched / n,
             friction / n,
-            turnover > 0 ? missing / turnover : 0,
+            turnover > 0 ? missing / turnover : std::numeric_limits<double>::quiet_NaN(),
             loop.greatest_overlap(),
             census.mean_overlap,
             census.contacts,
@@ -153,6 +154,19 @@ class GrainDynamics final : public Dynamics {
     } else if (now - motion_seconds() >= settings_.most_seconds) {
       state_.status = DynamicsStatus::capped;
     }
+    if (state_.status != DynamicsStatus::running) require_closed_ledger();
+  }
+
+  // A step that is too long makes or loses energy: no such tap is recorded.
+  void require_closed_ledger() const {
+    constexpr double widest = 0.1, least = 1e-2;  // of what is dissipated; m g d a sphere
+    const std::vector<double> values = diagnostics();
+    const double ledger_error = values[6], dissipated = std::abs(values[4]) + std::abs(values[5]);
+    if (!(std::abs(ledger_error) > widest && std::abs(ledger_error) * dissipated > least)) return;
+    throw std::runtime_error("the energy ledger of a tap misses " +
+                             std::to_string(100 * std::abs(ledger_error)) +
+                             " % of what was dissipated: the time step is too long, raise "
+                             "steps_per_contact");
   }
 
   double motion_seconds() const { return loop_->motion().duration() * units_.seconds; }

@@ -54,7 +54,13 @@ struct LastingOf {
   Lasting operator()(const LinearSpringDashpot&, const LawConstants& constants) const {
     const double damped = 0.5 * constants.damping / mass;
     const double half = pi / std::sqrt(constants.stiffness / mass - damped * damped);
-    return {half, half};
+    // Along the tangent plane spheres turn, too: 2/7 of the mass. Its spring and its dashpot must
+    // be resolved as well, the latter by ten steps of its own time.
+    const double turning = 2.0 / 7 * mass;
+    const double tangential = pi * std::sqrt(turning / constants.tangential);
+    const double dashpot =
+        constants.shear_damping > 0 ? 4 * turning / constants.shear_damping : half;
+    return {half, std::min({half, tangential, dashpot})};
   }
 };
 

@@ -51,9 +51,10 @@ std::vector<std::string> grain_summary(const Plan& plan) {
     const std::string line = fmt::format(
         "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap up to {:.2g} "
         "d, "
-        "{:.0f} steps while the floor moves",
+        "{:.0f} steps while the floor moves{}",
         floor->amplitude, floor->frequency, gamma, speed, overlap,
-        floor->seconds / times.step_seconds);
+        floor->seconds / times.step_seconds,
+        overlap < 0.1 ? "" : "; such overlaps fail: raise the stiffness");
     if (known.insert(line).second && known.size() <= 5) lines.push_back(line);
   }
   if (known.size() > 5) lines.push_back(fmt::format("... and {} more taps", known.size() - 5));

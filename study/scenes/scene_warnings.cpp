@@ -47,6 +47,13 @@ class Warnings {
     if (engine.relax_start) look_at("/relax_start", *engine.relax_start);
   }
   void look_at_engine(const DiscreteElement& engine) {
+    const double rest = std::visit([](const auto& one) { return one.seconds; }, engine.rest);
+    if (rest > engine.most_seconds) {
+      add(fmt::format(
+          "/engine: a bed rests no sooner than after {:g} s, and is capped after {:g} s: "
+          "every tap will be",
+          rest, engine.most_seconds));
+    }
     if (engine.diameter <= large_diameter) return;
     add(fmt::format("/engine: the diameter is in metres, and {:g} m is a boulder",
                     engine.diameter));

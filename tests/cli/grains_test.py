@@ -75,6 +75,22 @@ class Grains(Case):
                      "sphere steps at", "time steps a tap"):
             self.assertIn(part, text)
 
+    def test_check_speaks_of_every_point_and_of_what_will_fail(self):
+        law = "/engine/discrete_element/contact/walton_braun/"
+        self.write(changed(GRAINS, sweep={law + "stiffness": [1e4, 1e6]}))
+        text = self.jostle("check", "scene.json", "--no-pilot").stdout
+        self.assertIn("contact time 0.0015 s", text)
+        self.assertIn("contact time 0.00015 s", text)
+        hard = changed(GRAINS, protocol=[{"tap": {"half_sine": {"amplitude": 50}}, "count": 1}])
+        hard["engine"] = {"discrete_element": {"contact": {"walton_braun": {"stiffness": 300}},
+                                               "rest": {"timed": {"seconds": 9}}}}
+        self.write(changed(hard, snapshots={}))
+        text = self.jostle("check", "scene.json", "--no-pilot").stdout
+        self.assertIn("such overlaps fail: raise the stiffness", text)
+        self.assertIn("is capped after 5 s: every tap will be", text)
+        self.assertIn("the pilot failed: a sphere left the container, or lies deeper",
+                      self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
+
     def test_what_does_not_go_together_is_refused(self):
         self.write(changed(GRAINS, relax={"polar": {}}))
         self.assertIn("/relax: trials are of Monte Carlo",

@@ -70,6 +70,7 @@ const std::vector<std::string> cross_field_messages{
     "discrete elements fall on a floor",
     "the contacts with floor and sides have the law",
     "the floor moves under discrete elements only",
+    "half a period of the floor takes",
     "nothing settles",
     "this start is at rest",
     "skipping needs trials that only fall",

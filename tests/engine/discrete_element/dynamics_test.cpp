@@ -104,6 +104,7 @@ TEST_CASE("Monte Carlo refuses a floor that moves, grains a container without on
   CHECK(engine_tap_fault(EngineSettings{MonteCarlo{}}, HalfSine{}));
   CHECK_FALSE(engine_tap_fault(EngineSettings{MonteCarlo{}}, Lift{}));
   CHECK_FALSE(engine_tap_fault(EngineSettings{DiscreteElement{}}, Vibration{}));
+  CHECK(engine_tap_fault(EngineSettings{DiscreteElement{}}, HalfSine{0.001, 1e5}));  // unresolved
   CHECK(engine_fault(DiscreteElement{}, FullyPeriodicBox{}));
   CHECK_FALSE(engine_fault(DiscreteElement{}, Cylinder{}));
   DiscreteElement mixed;
@@ -138,6 +139,31 @@ TEST_CASE("a state of other bytes, of another engine or another bed is refused")
   const std::size_t grain_at = forged.size() - 8 * 8;  // near the end: motion, sums
   std::memcpy(forged.data() + grain_at, &none, sizeof none);
   CHECK_THROWS_AS(other->restore(forged), StateError);
+}
+
+TEST_CASE("stiff and strongly damped contacts are resolved, a step that is too long is found out") {
+  const Container box = PeriodicBox{3, 3};
+  for (const LinearSpringDashpot& law :
+       {LinearSpringDashpot{3000, 0.05, 1, 2.0 / 7, 10}, LinearSpringDashpot{3000, 0.1, 1, 10, 1},
+        LinearSpringDashpot{3000, 0.05, 100, 10, 0},
+        LinearSpringDashpot{1e5, 0.4, 1, 2.0 / 7, 10}}) {
+    CAPTURE(law.restitution, law.tangential_ratio, law.tangential_damping);
+    DiscreteElement settings;
+    settings.spheres = law;
+    auto dynamics = grains(settings);
+    dynamics->load(dilute_column(box, 24, 4));
+    dynamics->settle(RandomSettle{});
+    const auto values = settled_values(*dynamics, 1'000'000);
+    CHECK(std::abs(value(values, "ledger_error")) < 0.05);
+    CHECK(value(values, "friction_energy") > 0);
+  }
+  DiscreteElement coarse;
+  coarse.steps_per_contact = 2.5;
+  auto dynamics = grains(coarse);
+  dynamics->load(dilute_column(box, 24, 4));
+  dynamics->settle(RandomSettle{});
+  CHECK_THROWS_WITH(settled_values(*dynamics, 1'000'000),
+                    Catch::Contains("energy ledger") || Catch::Contains("lies deeper"));
 }
 
 TEST_CASE("spheres that start deep in each other end with a reason") {
