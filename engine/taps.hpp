@@ -47,6 +47,9 @@ struct HalfSine {
   bool operator==(const HalfSine&) const = default;
 };
 
+/// Whole periods of a vibration, at most.
+inline constexpr std::uint64_t most_cycles = 1'000'000;
+
 /// The floor vibrates as a sin(2 pi f t) for whole periods: Rosato et al. 2010, fig. 15. Discrete
 /// elements only.
 struct Vibration {

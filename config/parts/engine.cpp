@@ -1,4 +1,3 @@
-#include "config/names.hpp"
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 

@@ -120,7 +120,7 @@ Tap read_vibration(const Reader& in, const StrengthReader& strength) {
   Vibration tap;
   if (!in.is_object_of({"amplitude", "frequency", "cycles"})) return tap;
   read_floor_motion(in, strength, tap);
-  in.read_whole("cycles", tap.cycles, 1, 1'000'000);
+  in.read_whole("cycles", tap.cycles, 1, most_cycles);
   return tap;
 }
 

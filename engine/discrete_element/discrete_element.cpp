@@ -81,7 +81,13 @@ std::vector<Column> columns(const DiscreteElement&) {
            .source = source,
            .shown = Shown::count,
            .if_any = "{} taps ended at the cap on seconds, not at rest: raise most_seconds",
-           .if_none = "no tap ended at the cap on seconds"}};
+           .if_none = "no tap ended at the cap on seconds"},
+          {.name = "dropped_offsets",
+           .units = "1",
+           .long_name = "lateral offsets of the tap that found no room / number of spheres",
+           .source = "jostle",
+           .shown = Shown::share,
+           .if_any = "shakes dropped {} of their lateral offsets for want of room"}};
 }
 
 }  // namespace jostle::inline engine

@@ -51,9 +51,10 @@ class GrainDynamics final : public Dynamics {
     const double held = loop_->energies().held();
     Packing bed;
     loop_->store(bed);
-    excite(bed, tap, random);
+    const TapReport report = excite(bed, tap, random);
     loop_->displace(bed);
     begin({});
+    state_.dropped_offsets = report.lateral_offsets_dropped;
     state_.input = state_.before.held() - held;
   }
 
@@ -98,7 +99,8 @@ class GrainDynamics final : public Dynamics {
             census.mean_overlap,
             census.contacts,
             census.sliding,
-            state_.status == DynamicsStatus::capped ? 1.0 : 0.0};
+            state_.status == DynamicsStatus::capped ? 1.0 : 0.0,
+            static_cast<double>(state_.dropped_offsets) / n};
   }
 
   Effort effort() const override { return effort_; }

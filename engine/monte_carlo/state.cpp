@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/bytes.hpp"
+#include "engine/state_bytes.hpp"
 
 namespace jostle::inline engine {
 
@@ -45,7 +45,6 @@ MonteCarloState read(ByteReader& reader) {
   state.dropped_offsets = reader.get<std::uint64_t>();
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
-  if (!reader.at_end()) throw std::out_of_range("too long");
   if (!is_possible(state)) throw std::out_of_range("no state of ours");
   return state;
 }
@@ -80,14 +79,7 @@ std::vector<std::byte> bytes_of(const MonteCarloState& state) {
 }
 
 MonteCarloState monte_carlo_state(std::span<const std::byte> bytes) {
-  try {
-    ByteReader reader(bytes);
-    return read(reader);
-  } catch (const std::out_of_range&) {
-    throw StateError(
-        "the state it goes on from is of another engine, damaged, or written by another version of "
-        "jostle: resume with the one that wrote it");
-  }
+  return state_from(bytes, read);
 }
 
 }  // namespace jostle::inline engine

@@ -40,7 +40,8 @@ void check_overlaps(const Packing& packing) {
   refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
          in_diameters(worst.depth) +
          ", the deepest overlap of the packing; check that its lengths are in diameters and that "
-         "it was made in this container, and that no digits were dropped when it was written");
+         "it was made in this container, and that no digits were dropped when it was written; "
+         "packings of discrete elements overlap, and cannot be given");
 }
 
 }  // namespace

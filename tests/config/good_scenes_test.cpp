@@ -92,6 +92,31 @@ TEST_CASE("Metropolis moves, their adaptation and beta are read") {
   CHECK(warm.relax.stop.rule == StopRule{SweepsStop{100}});
 }
 
+TEST_CASE("The settings of discrete elements and of a floor that moves are read") {
+  const Scene scene = scene_of(text_of(good_scenes / "grains.json"));
+  REQUIRE(scene.grains);
+  const LinearSpringDashpot spheres{.stiffness = 2e4,
+                                    .restitution = 0.7,
+                                    .friction = 0.3,
+                                    .tangential_ratio = 0.5,
+                                    .tangential_damping = 0.25};
+  CHECK(*scene.grains == DiscreteElement{.diameter = 0.003,
+                                         .density = 2500,
+                                         .gravity = 9.8,
+                                         .spheres = spheres,
+                                         .floor = LinearSpringDashpot{.friction = 0.5},
+                                         .sides = LinearSpringDashpot{},
+                                         .steps_per_contact = 50,
+                                         .rest = TimedRest{0.5},
+                                         .most_seconds = 4});
+  REQUIRE(scene.protocol.size() == 4);
+  CHECK(scene.protocol[0].tap == Tap{HalfSine{0.4, 12}});
+  CHECK(scene.protocol[1].tap == Tap{Vibration{0.05, 60, 4}});
+  CHECK(scene.protocol[2].ramp == Ramp{0.1, 0.3, 0.1});
+  CHECK(engine_of(scene) == EngineSettings{*scene.grains});
+  CHECK(scene_of(resolved(scene).dump()) == scene);
+}
+
 TEST_CASE("The defaults of the schema are those of the aggregates") {
   const auto schema = nlohmann::ordered_json::parse(scene_schema());
   const auto& relax = schema["definitions"]["relax"]["properties"];
@@ -118,6 +143,35 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(start["random_settle"]["properties"]["dilute_fraction"]["default"] ==
         RandomSettle{}.dilute_fraction);
   CHECK(start["grow"]["properties"]["max_sweeps"]["default"] == Grow{}.max_sweeps);
+  const auto& definitions = schema["definitions"];
+  const auto& grains = definitions["discrete_element"]["properties"];
+  CHECK(grains["diameter"]["default"] == DiscreteElement{}.diameter);
+  CHECK(grains["density"]["default"] == DiscreteElement{}.density);
+  CHECK(grains["gravity"]["default"] == DiscreteElement{}.gravity);
+  CHECK(grains["steps_per_contact"]["default"] == DiscreteElement{}.steps_per_contact);
+  CHECK(grains["most_seconds"]["default"] == DiscreteElement{}.most_seconds);
+  const auto& rest = grains["rest"]["anyOf"][1]["properties"];
+  CHECK(rest["quiet"]["properties"]["kinetic_energy"]["default"] == QuietRest{}.kinetic_energy);
+  CHECK(rest["quiet"]["properties"]["seconds"]["default"] == QuietRest{}.seconds);
+  CHECK(rest["timed"]["properties"]["seconds"]["default"] == TimedRest{}.seconds);
+  CHECK(definitions["stiffness"]["default"] == WaltonBraun{}.stiffness);
+  CHECK(definitions["stiffness"]["default"] == LinearSpringDashpot{}.stiffness);
+  CHECK(definitions["restitution"]["default"] == WaltonBraun{}.restitution);
+  CHECK(definitions["restitution"]["default"] == LinearSpringDashpot{}.restitution);
+  CHECK(definitions["friction"]["default"] == WaltonBraun{}.friction);
+  CHECK(definitions["friction"]["default"] == LinearSpringDashpot{}.friction);
+  const auto& laws = definitions["contact_law"]["anyOf"][1]["properties"];
+  CHECK(laws["walton_braun"]["properties"]["tangential_ratio"]["default"] ==
+        WaltonBraun{}.tangential_ratio);
+  CHECK(laws["linear_spring_dashpot"]["properties"]["tangential_damping"]["default"] ==
+        LinearSpringDashpot{}.tangential_damping);
+  const auto& taps = definitions["tap"]["properties"];
+  CHECK(taps["half_sine"]["properties"]["amplitude"]["default"] == HalfSine{}.amplitude);
+  CHECK(definitions["floor_frequency"]["default"] == HalfSine{}.frequency);
+  CHECK(taps["vibration"]["properties"]["amplitude"]["default"] == Vibration{}.amplitude);
+  CHECK(taps["vibration"]["properties"]["frequency"]["default"] == Vibration{}.frequency);
+  CHECK(definitions["floor_cycles"]["default"] == Vibration{}.cycles);
+  CHECK(definitions["floor_cycles"]["maximum"] == most_cycles);
   CHECK(schema["definitions"]["lateral_radius"]["default"] == Shake{}.lateral_radius);
   CHECK(schema["definitions"]["retries"]["default"] == Shake{}.retries);
   const auto& snapshots = schema["definitions"]["snapshots"]["properties"];

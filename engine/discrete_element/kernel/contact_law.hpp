@@ -1,20 +1,37 @@
 #pragma once
 
-#include "engine/discrete_element/kernel/lanes.hpp"
+#include <cstdint>
+
 #include "engine/discrete_element/kernel/law_constants.hpp"
 
-// The force of one contact, for one contact (Number = double) or for as many as a vector of doubles
-// has room for: the same operations in the same order, so the same bits. All of it is inlined, for
-// it is compiled once for every instruction set. Lengths in diameters, masses in sphere masses,
-// times in sqrt(diameter / gravity).
+// The force of a contact, for one contact (N = double) or for as many as vectors of doubles have
+// room for (N = Wide, kernel/lanes.hpp): the same operations in the same order, so the same bits.
+// All of it is inlined, for it is compiled once for every instruction set. Lengths in diameters,
+// masses in sphere masses, times in sqrt(diameter / gravity).
 namespace jostle::inline engine {
 
-template <class Number>
-struct Vector3 {
-  Number x, y, z;
-};
-
 #define JOSTLE_INLINE [[gnu::always_inline]] inline
+
+// What Wide has, too, for one number.
+JOSTLE_INLINE double select(bool mask, double yes, double no) {
+  return mask ? yes : no;
+}
+JOSTLE_INLINE bool any_of(bool mask) {
+  return mask;
+}
+JOSTLE_INLINE double square_root(double x) {
+  return __builtin_sqrt(x);
+}
+/// A third of the exponent, and of what follows it: within 6 % of the cube root of x > 0.
+JOSTLE_INLINE double cube_root_guess(double x) {
+  const std::int64_t high = __builtin_bit_cast(std::int64_t, x) >> 32;
+  return __builtin_bit_cast(double, (((high * 0x55555556) >> 32) + 715094163) << 32);
+}
+
+template <class N>
+struct Vector3 {
+  N x, y, z;
+};
 
 template <class N>
 JOSTLE_INLINE Vector3<N> operator+(const Vector3<N>& a, const Vector3<N>& b) {

@@ -3,10 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <new>
 #include <vector>
 
 #include "engine/discrete_element/kernel/law_constants.hpp"
+#include "engine/large_pages.hpp"
 
 // What the kernels read and write, as plain arrays. Units as in contact_law.hpp.
 namespace jostle::inline engine {
@@ -20,21 +20,7 @@ struct alignas(64) Row {
 
 /// A vector whose elements begin at a cache line, as kernels load them.
 template <class T>
-struct CacheLineAllocator {
-  using value_type = T;
-  CacheLineAllocator() = default;
-  template <class Other>
-  CacheLineAllocator(const CacheLineAllocator<Other>&) {}
-  T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{alignof(Row)}));
-  }
-  void deallocate(T* from, std::size_t) {
-    ::operator delete (from, std::align_val_t{alignof(Row)});
-  }
-  bool operator==(const CacheLineAllocator&) const = default;
-};
-template <class T>
-using CacheLines = std::vector<T, CacheLineAllocator<T>>;
+using CacheLines = std::vector<T, LargePageAllocator<T>>;
 
 /// The most numbers that a law remembers of a contact.
 inline constexpr std::size_t most_history = 6;

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 // As many doubles side by side as the instruction set has room for. Only sources that are compiled
-// once for every instruction set include it; all of it is inlined, so that none is picked up by
-// another.
-namespace jostle::inline engine {
+// once for every instruction set include it; it differs between them, so it stands in the namespace
+// of each (JOSTLE_KERNELS).
+namespace jostle::inline engine::JOSTLE_KERNELS {
 
 #if defined(__AVX512F__)
 using Lanes = double __attribute__((vector_size(64)));
@@ -76,9 +76,6 @@ JOSTLE_INLINE WideMask operator<(const Wide& a, const Wide& b) {
 }
 
 // Numbers where the mask is set, others where it is not. Both are computed.
-JOSTLE_INLINE double select(bool mask, double yes, double no) {
-  return mask ? yes : no;
-}
 JOSTLE_INLINE Wide select(const WideMask& mask, const Wide& yes, const Wide& no) {
   Wide chosen;
   for (std::uint32_t p = 0; p < n_parts; ++p)
@@ -86,9 +83,6 @@ JOSTLE_INLINE Wide select(const WideMask& mask, const Wide& yes, const Wide& no)
   return chosen;
 }
 
-JOSTLE_INLINE bool any_of(bool mask) {
-  return mask;
-}
 JOSTLE_INLINE bool any_of(const WideMask& mask) {
   LaneBits any = mask.part[0];
   for (std::uint32_t p = 1; p < n_parts; ++p) any |= mask.part[p];
@@ -101,9 +95,6 @@ JOSTLE_INLINE bool any_of(const WideMask& mask) {
 #endif
 }
 
-JOSTLE_INLINE double square_root(double x) {
-  return __builtin_sqrt(x);
-}
 JOSTLE_INLINE Wide square_root(Wide x) {
   for (Lanes& one : x.part) {
 #if defined(__AVX512F__)
@@ -117,11 +108,7 @@ JOSTLE_INLINE Wide square_root(Wide x) {
   return x;
 }
 
-// A third of the exponent, and of what follows it: within 6 % of the cube root of x > 0.
-JOSTLE_INLINE double cube_root_guess(double x) {
-  const std::int64_t high = __builtin_bit_cast(std::int64_t, x) >> 32;
-  return __builtin_bit_cast(double, (((high * 0x55555556) >> 32) + 715094163) << 32);
-}
+// As that of one number.
 JOSTLE_INLINE Wide cube_root_guess(Wide x) {
   for (Lanes& one : x.part) {
     const LaneBits high = (LaneBits)one >> 32;
@@ -200,4 +187,4 @@ JOSTLE_INLINE void columns_to_rows(Lanes (&m)[8]) {
 
 #undef JOSTLE_INLINE
 
-}  // namespace jostle::inline engine
+}  // namespace jostle::inline engine::JOSTLE_KERNELS

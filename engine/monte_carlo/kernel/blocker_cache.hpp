@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/monte_carlo/kernel/large_pages.hpp"
+#include "engine/large_pages.hpp"
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
 

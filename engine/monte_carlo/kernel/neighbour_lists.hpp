@@ -6,7 +6,7 @@
 
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
-#include "engine/monte_carlo/kernel/large_pages.hpp"
+#include "engine/large_pages.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
 
 namespace jostle::inline engine {

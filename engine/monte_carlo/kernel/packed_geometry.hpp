@@ -9,7 +9,7 @@
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
-#include "engine/monte_carlo/kernel/large_pages.hpp"
+#include "engine/large_pages.hpp"
 
 // The arithmetic of engine/bed/geometry.hpp for the trial loop: x and y side by side in one
 // register and no branches. It gives the same numbers, bit for bit (a zero may differ in its sign);
