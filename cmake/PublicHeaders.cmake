@@ -32,14 +32,14 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/ageing/log_curves.hpp
     ensemble/analysis/ageing/trends.hpp
     ensemble/analysis/analyses.hpp
-    ensemble/analysis/ensemble_spectrum.hpp
+    ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/histogram_fit.hpp
     ensemble/analysis/hysteresis.hpp
-    ensemble/analysis/spectra.hpp
+    ensemble/analysis/spectra/spectra.hpp
     ensemble/analysis/steady_state.hpp
     ensemble/analysis/structure_fits.hpp
     ensemble/analysis/structure_tables.hpp
-    ensemble/analysis/sweep_curve.hpp
+    ensemble/analysis/sweeps/sweep_curve.hpp
     ensemble/analysis/table.hpp
     ensemble/fitting_report.hpp
     ensemble/fold.hpp

@@ -9,14 +9,10 @@
 
 namespace jostle::inline ensemble {
 
-namespace {
-
 std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index) {
   return make_dynamics(plan.engine, {.start = stream_key(plan, index, Purpose::start_trials),
                                      .taps = stream_key(plan, index, Purpose::trials)});
 }
-
-}  // namespace
 
 Realization::Realization(const Plan& plan, std::uint32_t index,
                          std::optional<RealizationState> resumed)

@@ -23,6 +23,9 @@ struct Slice {
   std::chrono::nanoseconds relaxing{0};  // processor time inside the engine, without the start
 };
 
+/// The engine of a realization of a plan, with its random numbers; nothing is loaded yet.
+std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index);
+
 /// One realization of a plan: start, then tap, advance until at rest and record, tap after tap. It
 /// is advanced a slice at a time and can be stopped, stored and resumed between any two slices; its
 /// rows and snapshots do not depend on how it was sliced.

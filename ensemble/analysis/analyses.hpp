@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ensemble/analysis/ensemble_spectrum.hpp"
+#include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
 

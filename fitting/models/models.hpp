@@ -1,7 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "fitting/models/model.hpp"
 
@@ -9,14 +12,32 @@
 // Rev. E 81, 061301, "DR"). t: number of taps unless said otherwise.
 namespace jostle::inline fitting {
 
+/// A law as it is published: what it is called, how it reads, where it is from.
+class PublishedLaw : public Model {
+ public:
+  std::string name() const final { return name_; }
+  std::string formula() const final { return formula_; }
+  std::string source() const final { return source_; }
+  const std::vector<Parameter>& parameters() const final { return parameters_; }
+
+ protected:
+  PublishedLaw(std::string name, std::string formula, std::string source,
+               std::vector<Parameter> parameters)
+      : name_(std::move(name)),
+        formula_(std::move(formula)),
+        source_(std::move(source)),
+        parameters_(std::move(parameters)) {}
+
+ private:
+  std::string name_, formula_, source_;
+  std::vector<Parameter> parameters_;
+};
+
 /// X(t) = X_inf - dX / (1 + B ln(1 + t/tau)); parameters X_inf, dX = X_inf - X(0), B > 0, tau > 0.
 /// PB eq. 3, after Knight et al. 1995.
-class InverseLog final : public Model {
+class InverseLog final : public PublishedLaw {
  public:
-  std::string name() const override { return "inverse_log"; }
-  std::string formula() const override { return "X_inf - dX / (1 + B ln(1 + t/tau))"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  InverseLog();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
@@ -27,14 +48,9 @@ class InverseLog final : public Model {
 
 /// Z(t) = Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau)): the inverse log for 1/Z, so
 /// Z is measured from the floor; parameters Z_inf, Z_0, B, tau, all > 0. PB eq. 4.
-class InverseLogHeight final : public Model {
+class InverseLogHeight final : public PublishedLaw {
  public:
-  std::string name() const override { return "inverse_log_height"; }
-  std::string formula() const override {
-    return "Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau))";
-  }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  InverseLogHeight();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
@@ -44,12 +60,9 @@ class InverseLogHeight final : public Model {
 };
 
 /// Z(t) = Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2), tau1 <= tau2. PB sec. IV.
-class TwoExponentials final : public Model {
+class TwoExponentials final : public PublishedLaw {
  public:
-  std::string name() const override { return "two_exponentials"; }
-  std::string formula() const override { return "Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2)"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  TwoExponentials();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
@@ -59,12 +72,9 @@ class TwoExponentials final : public Model {
 
 /// rho(n) = rho_inf - (rho_inf - rho_0) exp(-(n/tau)^beta), Kohlrausch-Williams-Watts; rho_0 is
 /// free unless it is fixed; tau > 0, beta > 0 (above 1 it is compressed, and said so). DR.
-class StretchedExponential final : public Model {
+class StretchedExponential final : public PublishedLaw {
  public:
-  std::string name() const override { return "kww"; }
-  std::string formula() const override { return "rho_inf - (rho_inf - rho_0) exp(-(t/tau)^beta)"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  StretchedExponential();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
@@ -73,12 +83,9 @@ class StretchedExponential final : public Model {
 };
 
 /// A(t) = A_inf (1 - 1 / (1 + B ln(1 + t/tau))), t the lag. PB eq. 6.
-class Ageing final : public Model {
+class Ageing final : public PublishedLaw {
  public:
-  std::string name() const override { return "ageing"; }
-  std::string formula() const override { return "A_inf (1 - 1 / (1 + B ln(1 + t/tau)))"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  Ageing();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;
@@ -89,38 +96,27 @@ class Ageing final : public Model {
 
 /// Phi(z) = (Phi_0 - alpha z) / (1 + exp(beta (z - z_star))), t = height z in R; beta > 0. PB
 /// eq. 7.
-class DensityProfile final : public Model {
+class DensityProfile final : public PublishedLaw {
  public:
-  std::string name() const override { return "profile"; }
-  std::string formula() const override {
-    return "(Phi_0 - alpha t) / (1 + exp(beta (t - z_star)))";
-  }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  DensityProfile();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::vector<std::vector<double>> candidates(const Curve& curve) const override;
 };
 
 /// rho_v = A exp(-v/v0), t = pore volume v; v0 > 0. PB sec. VI.
-class PoreTail final : public Model {
+class PoreTail final : public PublishedLaw {
  public:
-  std::string name() const override { return "pore_tail"; }
-  std::string formula() const override { return "A exp(-t/v0)"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  PoreTail();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::vector<std::vector<double>> candidates(const Curve& curve) const override;
 };
 
 /// P(f) = A f^-s, t = frequency f > 0, fitted in ln P: s is minus the log-log slope. PB sec. IV.
-class PowerLaw final : public Model {
+class PowerLaw final : public PublishedLaw {
  public:
-  std::string name() const override { return "power_law"; }
-  std::string formula() const override { return "A t^-s"; }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  PowerLaw();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   ResidualScale residual_scale() const override { return ResidualScale::logarithmic; }
@@ -130,14 +126,9 @@ class PowerLaw final : public Model {
 };
 
 /// N(x) = area / (width sqrt(2 pi)) exp(-(x - mean)^2 / (2 width^2)), t = x; width > 0. DR fig. 8.
-class Normal final : public Model {
+class Normal final : public PublishedLaw {
  public:
-  std::string name() const override { return "normal"; }
-  std::string formula() const override {
-    return "area / (width sqrt(2 pi)) exp(-(t - mean)^2 / (2 width^2))";
-  }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  Normal();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::vector<std::vector<double>> candidates(const Curve& curve) const override;
@@ -145,14 +136,9 @@ class Normal final : public Model {
 
 /// G(x) = area k^k / Gamma(k) x^(k - 1) / mean^k exp(-k x / mean), the k-gamma distribution of what
 /// cells have above the least that they can, x = t > 0; k > 0, mean > 0. Aste & Di Matteo 2008.
-class KGamma final : public Model {
+class KGamma final : public PublishedLaw {
  public:
-  std::string name() const override { return "k_gamma"; }
-  std::string formula() const override {
-    return "area k^k / Gamma(k) t^(k - 1) / mean^k exp(-k t / mean)";
-  }
-  std::string source() const override;
-  const std::vector<Parameter>& parameters() const override;
+  KGamma();
   double value(double t, const double* p) const override;
   double value_and_gradient(double t, const double* p, double* gradient) const override;
   std::string refusal(const Curve& curve) const override;

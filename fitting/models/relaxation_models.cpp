@@ -71,24 +71,20 @@ std::vector<Combination> Ageing::combinations() const {
           {"B/tau", "growth a unit of time at first", ParameterUnit::per_time, 1, 2, -1}};
 }
 
-std::string InverseLog::source() const {
-  return "Philippe & Bideau 2001, eq. 3; Knight et al. 1995";
-}
-
-const std::vector<Parameter>& InverseLog::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "X_inf",
-       .meaning = "value after infinitely many taps",
-       .unit = ParameterUnit::value,
-       .linear = true},
-      {.name = "dX", .meaning = "X_inf - X(0)", .unit = ParameterUnit::value, .linear = true},
-      {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
-      {.name = "tau",
-       .meaning = "taps before the logarithm sets in",
-       .unit = ParameterUnit::time,
-       .lower = 0}};
-  return list;
-}
+InverseLog::InverseLog()
+    : PublishedLaw(
+          "inverse_log", "X_inf - dX / (1 + B ln(1 + t/tau))",
+          "Philippe & Bideau 2001, eq. 3; Knight et al. 1995",
+          {{.name = "X_inf",
+            .meaning = "value after infinitely many taps",
+            .unit = ParameterUnit::value,
+            .linear = true},
+           {.name = "dX", .meaning = "X_inf - X(0)", .unit = ParameterUnit::value, .linear = true},
+           {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
+           {.name = "tau",
+            .meaning = "taps before the logarithm sets in",
+            .unit = ParameterUnit::time,
+            .lower = 0}}) {}
 
 double InverseLog::value(double t, const double* p) const {
   return p[0] - p[1] / (1 + p[2] * std::log1p(t / p[3]));
@@ -115,27 +111,23 @@ std::vector<ParameterValues> InverseLog::starts(const Curve& curve, std::span<co
   return best_of_grid(*this, sample, fixed, log_grid(sample, fixed, 2, 3), n);
 }
 
-std::string InverseLogHeight::source() const {
-  return "Philippe & Bideau 2001, eq. 4";
-}
-
-const std::vector<Parameter>& InverseLogHeight::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "Z_inf",
-       .meaning = "mean height after infinitely many taps",
-       .unit = ParameterUnit::value,
-       .lower = 0},
-      {.name = "Z_0",
-       .meaning = "mean height before the first tap",
-       .unit = ParameterUnit::value,
-       .lower = 0},
-      {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
-      {.name = "tau",
-       .meaning = "taps before the logarithm sets in",
-       .unit = ParameterUnit::time,
-       .lower = 0}};
-  return list;
-}
+InverseLogHeight::InverseLogHeight()
+    : PublishedLaw("inverse_log_height",
+                   "Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau))",
+                   "Philippe & Bideau 2001, eq. 4",
+                   {{.name = "Z_inf",
+                     .meaning = "mean height after infinitely many taps",
+                     .unit = ParameterUnit::value,
+                     .lower = 0},
+                    {.name = "Z_0",
+                     .meaning = "mean height before the first tap",
+                     .unit = ParameterUnit::value,
+                     .lower = 0},
+                    {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
+                    {.name = "tau",
+                     .meaning = "taps before the logarithm sets in",
+                     .unit = ParameterUnit::time,
+                     .lower = 0}}) {}
 
 double InverseLogHeight::value(double t, const double* p) const {
   const double grown = p[2] * std::log1p(t / p[3]);
@@ -191,33 +183,29 @@ std::vector<ParameterValues> InverseLogHeight::starts(const Curve& curve,
   return starts;
 }
 
-std::string TwoExponentials::source() const {
-  return "Philippe & Bideau 2001";
-}
-
-const std::vector<Parameter>& TwoExponentials::parameters() const {
-  static const std::vector<Parameter> list = {{.name = "Z_inf",
-                                               .meaning = "value after infinitely many taps",
-                                               .unit = ParameterUnit::value,
-                                               .linear = true},
-                                              {.name = "a1",
-                                               .meaning = "amplitude of the fast decay",
-                                               .unit = ParameterUnit::value,
-                                               .linear = true},
-                                              {.name = "tau1",
-                                               .meaning = "time of the fast decay",
-                                               .unit = ParameterUnit::time,
-                                               .lower = 0},
-                                              {.name = "a2",
-                                               .meaning = "amplitude of the slow decay",
-                                               .unit = ParameterUnit::value,
-                                               .linear = true},
-                                              {.name = "tau2",
-                                               .meaning = "time of the slow decay",
-                                               .unit = ParameterUnit::time,
-                                               .lower = 0}};
-  return list;
-}
+TwoExponentials::TwoExponentials()
+    : PublishedLaw("two_exponentials", "Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2)",
+                   "Philippe & Bideau 2001",
+                   {{.name = "Z_inf",
+                     .meaning = "value after infinitely many taps",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "a1",
+                     .meaning = "amplitude of the fast decay",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "tau1",
+                     .meaning = "time of the fast decay",
+                     .unit = ParameterUnit::time,
+                     .lower = 0},
+                    {.name = "a2",
+                     .meaning = "amplitude of the slow decay",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "tau2",
+                     .meaning = "time of the slow decay",
+                     .unit = ParameterUnit::time,
+                     .lower = 0}}) {}
 
 double TwoExponentials::value(double t, const double* p) const {
   return p[0] + p[1] * std::exp(-t / p[2]) + p[3] * std::exp(-t / p[4]);
@@ -254,24 +242,19 @@ ParameterValues TwoExponentials::canonical(const ParameterValues& p) const {
   return {p[0], p[3], p[4], p[1], p[2]};
 }
 
-std::string StretchedExponential::source() const {
-  return "Rosato et al. 2010, sec. III";
-}
-
-const std::vector<Parameter>& StretchedExponential::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "rho_inf",
-       .meaning = "value after infinitely many taps",
-       .unit = ParameterUnit::value,
-       .linear = true},
-      {.name = "rho_0",
-       .meaning = "value before the first tap",
-       .unit = ParameterUnit::value,
-       .linear = true},
-      {.name = "tau", .meaning = "relaxation time", .unit = ParameterUnit::time, .lower = 0},
-      {.name = "beta", .meaning = "stretching exponent", .lower = 0}};
-  return list;
-}
+StretchedExponential::StretchedExponential()
+    : PublishedLaw(
+          "kww", "rho_inf - (rho_inf - rho_0) exp(-(t/tau)^beta)", "Rosato et al. 2010, sec. III",
+          {{.name = "rho_inf",
+            .meaning = "value after infinitely many taps",
+            .unit = ParameterUnit::value,
+            .linear = true},
+           {.name = "rho_0",
+            .meaning = "value before the first tap",
+            .unit = ParameterUnit::value,
+            .linear = true},
+           {.name = "tau", .meaning = "relaxation time", .unit = ParameterUnit::time, .lower = 0},
+           {.name = "beta", .meaning = "stretching exponent", .lower = 0}}) {}
 
 // As rho_0 + (rho_inf - rho_0) (1 - exp): where the law has hardly begun rho_inf can be any size.
 double StretchedExponential::value(double t, const double* p) const {
@@ -316,23 +299,18 @@ std::vector<ParameterValues> StretchedExponential::starts(const Curve& curve,
   return best_of_grid(*this, sample, fixed, std::move(grid), n);
 }
 
-std::string Ageing::source() const {
-  return "Philippe & Bideau 2001, eq. 6";
-}
-
-const std::vector<Parameter>& Ageing::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "A_inf",
-       .meaning = "value at infinite lag",
-       .unit = ParameterUnit::value,
-       .linear = true},
-      {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
-      {.name = "tau",
-       .meaning = "lag before the logarithm sets in",
-       .unit = ParameterUnit::time,
-       .lower = 0}};
-  return list;
-}
+Ageing::Ageing()
+    : PublishedLaw("ageing", "A_inf (1 - 1 / (1 + B ln(1 + t/tau)))",
+                   "Philippe & Bideau 2001, eq. 6",
+                   {{.name = "A_inf",
+                     .meaning = "value at infinite lag",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "B", .meaning = "strength of the logarithm", .lower = 0},
+                    {.name = "tau",
+                     .meaning = "lag before the logarithm sets in",
+                     .unit = ParameterUnit::time,
+                     .lower = 0}}) {}
 
 double Ageing::value(double t, const double* p) const {
   const double grown = p[1] * std::log1p(t / p[2]);

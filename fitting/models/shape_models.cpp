@@ -40,24 +40,21 @@ double digamma(double x) {
 
 }  // namespace
 
-std::string DensityProfile::source() const {
-  return "Philippe & Bideau 2001, eq. 7";
-}
-
-const std::vector<Parameter>& DensityProfile::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "Phi_0",
-       .meaning = "solids fraction extrapolated to z = 0",
-       .unit = ParameterUnit::value,
-       .linear = true},
-      {.name = "alpha",
-       .meaning = "loss of solids fraction per height",
-       .unit = ParameterUnit::value_per_time,
-       .linear = true},
-      {.name = "beta", .meaning = "sharpness of the free surface", .lower = 0},
-      {.name = "z_star", .meaning = "height of the free surface", .unit = ParameterUnit::time}};
-  return list;
-}
+DensityProfile::DensityProfile()
+    : PublishedLaw("profile", "(Phi_0 - alpha t) / (1 + exp(beta (t - z_star)))",
+                   "Philippe & Bideau 2001, eq. 7",
+                   {{.name = "Phi_0",
+                     .meaning = "solids fraction extrapolated to z = 0",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "alpha",
+                     .meaning = "loss of solids fraction per height",
+                     .unit = ParameterUnit::value_per_time,
+                     .linear = true},
+                    {.name = "beta", .meaning = "sharpness of the free surface", .lower = 0},
+                    {.name = "z_star",
+                     .meaning = "height of the free surface",
+                     .unit = ParameterUnit::time}}) {}
 
 double DensityProfile::value(double t, const double* p) const {
   return (p[0] - p[1] * t) / (1 + std::exp(p[2] * (t - p[3])));
@@ -85,21 +82,16 @@ std::vector<std::vector<double>> DensityProfile::candidates(const Curve& curve) 
   return {{}, {}, geometric(2 / length, 400 / length, 10), surfaces};
 }
 
-std::string PoreTail::source() const {
-  return "Philippe & Bideau 2001, sec. on pores";
-}
-
-const std::vector<Parameter>& PoreTail::parameters() const {
-  static const std::vector<Parameter> list = {{.name = "A",
-                                               .meaning = "density extrapolated to v = 0",
-                                               .unit = ParameterUnit::value,
-                                               .linear = true},
-                                              {.name = "v0",
-                                               .meaning = "mean volume of the tail",
-                                               .unit = ParameterUnit::time,
-                                               .lower = 0}};
-  return list;
-}
+PoreTail::PoreTail()
+    : PublishedLaw("pore_tail", "A exp(-t/v0)", "Philippe & Bideau 2001, sec. on pores",
+                   {{.name = "A",
+                     .meaning = "density extrapolated to v = 0",
+                     .unit = ParameterUnit::value,
+                     .linear = true},
+                    {.name = "v0",
+                     .meaning = "mean volume of the tail",
+                     .unit = ParameterUnit::time,
+                     .lower = 0}}) {}
 
 double PoreTail::value(double t, const double* p) const {
   return p[0] * std::exp(-t / p[1]);
@@ -116,16 +108,11 @@ std::vector<std::vector<double>> PoreTail::candidates(const Curve& curve) const 
   return {{}, geometric(1e-3 * extent(curve), 1e2 * extent(curve), 21)};
 }
 
-std::string PowerLaw::source() const {
-  return "Philippe & Bideau 2001, sec. on fluctuations";
-}
-
-const std::vector<Parameter>& PowerLaw::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "A", .meaning = "value at t = 1", .unit = ParameterUnit::value, .lower = 0},
-      {.name = "s", .meaning = "minus the log-log slope"}};
-  return list;
-}
+PowerLaw::PowerLaw()
+    : PublishedLaw(
+          "power_law", "A t^-s", "Philippe & Bideau 2001, sec. on fluctuations",
+          {{.name = "A", .meaning = "value at t = 1", .unit = ParameterUnit::value, .lower = 0},
+           {.name = "s", .meaning = "minus the log-log slope"}}) {}
 
 double PowerLaw::value(double t, const double* p) const {
   return p[0] * std::pow(t, -p[1]);
@@ -168,20 +155,18 @@ std::vector<ParameterValues> PowerLaw::starts(const Curve& curve, std::span<cons
       {std::isnan(fixed[0]) ? std::exp(c[0]) : fixed[0], std::isnan(fixed[1]) ? c[1] : fixed[1]}};
 }
 
-std::string Normal::source() const {
-  return "Rosato et al. 2010, nearest neighbours";
-}
-
-const std::vector<Parameter>& Normal::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "area",
-       .meaning = "integral over t",
-       .unit = ParameterUnit::value_time,
-       .linear = true},
-      {.name = "mean", .meaning = "centre", .unit = ParameterUnit::time},
-      {.name = "width", .meaning = "standard deviation", .unit = ParameterUnit::time, .lower = 0}};
-  return list;
-}
+Normal::Normal()
+    : PublishedLaw("normal", "area / (width sqrt(2 pi)) exp(-(t - mean)^2 / (2 width^2))",
+                   "Rosato et al. 2010, nearest neighbours",
+                   {{.name = "area",
+                     .meaning = "integral over t",
+                     .unit = ParameterUnit::value_time,
+                     .linear = true},
+                    {.name = "mean", .meaning = "centre", .unit = ParameterUnit::time},
+                    {.name = "width",
+                     .meaning = "standard deviation",
+                     .unit = ParameterUnit::time,
+                     .lower = 0}}) {}
 
 double Normal::value(double t, const double* p) const {
   const double u = (t - p[1]) / p[2];
@@ -204,19 +189,16 @@ std::vector<std::vector<double>> Normal::candidates(const Curve& curve) const {
   return {{}, means, geometric(0.01 * length, 2 * length, 12)};
 }
 
-std::string KGamma::source() const {
-  return "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309";
-}
-const std::vector<Parameter>& KGamma::parameters() const {
-  static const std::vector<Parameter> list = {
-      {.name = "area",
-       .meaning = "integral over t",
-       .unit = ParameterUnit::value_time,
-       .linear = true},
-      {.name = "mean", .meaning = "mean of t", .unit = ParameterUnit::time, .lower = 0},
-      {.name = "k", .meaning = "shape: mean^2 over variance", .lower = 0}};
-  return list;
-}
+KGamma::KGamma()
+    : PublishedLaw(
+          "k_gamma", "area k^k / Gamma(k) t^(k - 1) / mean^k exp(-k t / mean)",
+          "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309",
+          {{.name = "area",
+            .meaning = "integral over t",
+            .unit = ParameterUnit::value_time,
+            .linear = true},
+           {.name = "mean", .meaning = "mean of t", .unit = ParameterUnit::time, .lower = 0},
+           {.name = "k", .meaning = "shape: mean^2 over variance", .lower = 0}}) {}
 double KGamma::value(double t, const double* p) const {
   const double x = t / p[1], k = p[2];
   return p[0] / t * std::exp(k * (std::log(k * x) - x) - log_gamma(k));

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "engine/bed/slab.hpp"
-#include "engine/engines.hpp"
-#include "engine/starts/starts.hpp"
-#include "engine/taps.hpp"
 #include "ensemble/processor_clock.hpp"
-#include "ensemble/protocol_steps.hpp"
+#include "ensemble/realization.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -80,67 +78,107 @@ TapCost between(const CostsByStrength& costs, double strength) {
           below->second.sweeps + share * (above->second.sweeps - below->second.sweeps)};
 }
 
-/// A realization that is tried, a cut one where the plan's is large: each piece of it is ended
-/// where its share of the budget ends, at rest or not.
+/// Mechanics whose bed counts as at rest where what is allowed ends, at rest or not.
+class ShortDynamics final : public Dynamics {
+ public:
+  explicit ShortDynamics(std::unique_ptr<Dynamics> whole) : whole_(std::move(whole)) {}
+
+  /// Units until the bed counts as at rest, from now on.
+  void allow(std::uint64_t units) {
+    left_ = units;
+    settled_ = true;
+  }
+  /// Whether the bed was at rest when it counted as such.
+  bool settled() const { return settled_; }
+
+  DynamicsStatus advance(std::uint64_t units) override {
+    const std::uint64_t before = effort().units;
+    const DynamicsStatus status = whole_->advance(std::min(units, left_));
+    left_ -= std::min(left_, effort().units - before);
+    if (status != DynamicsStatus::running || left_ > 0) return status;
+    settled_ = false;
+    return DynamicsStatus::capped;
+  }
+
+  void load(const Packing& bed) override { whole_->load(bed); }
+  void settle(const Start& start) override { whole_->settle(start); }
+  void tap(const Tap& tap, RandomStream& random) override { whole_->tap(tap, random); }
+  void store(Packing& bed) const override { whole_->store(bed); }
+  std::vector<double> diagnostics() const override { return whole_->diagnostics(); }
+  Effort effort() const override { return whole_->effort(); }
+  std::uint64_t units_per_slice() const override { return whole_->units_per_slice(); }
+  std::size_t bytes() const override { return whole_->bytes(); }
+  std::vector<std::byte> save() const override { return whole_->save(); }
+  void restore(std::span<const std::byte> state) override { whole_->restore(state); }
+
+ private:
+  std::unique_ptr<Dynamics> whole_;
+  std::uint64_t left_ = 0;
+  bool settled_ = true;
+};
+
+/// The plan on the cut bed, with one tap of each of these stages. The first stage comes twice: its
+/// first tap makes what all others use, and ends what the start left to settle; it is not counted.
+Plan short_plan(const Plan& plan, const CutBed& bed, const std::vector<std::size_t>& stages) {
+  Plan cut = plan;
+  cut.container = bed.container;
+  cut.n_spheres = bed.n_spheres;
+  cut.snapshots.taps = {};
+  cut.protocol = {};
+  for (const std::size_t stage : stages) {
+    const std::uint64_t taps = cut.protocol.empty() ? 2 : 1;
+    cut.protocol.push_back({plan.protocol[stage].tap, taps});
+  }
+  return cut;
+}
+
+/// A short realization, a cut one where the plan's is large: each piece of it is ended where its
+/// share of the budget ends, at rest or not.
 class Pilot {
  public:
   Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
-      : plan_(plan),
-        bed_(bed),
-        dynamics_(make_dynamics(plan.engine, {.start = stream_key(plan, 0, Purpose::start_trials),
-                                              .taps = stream_key(plan, 0, Purpose::trials)})),
-        tap_random_(stream_key(plan, 0, Purpose::tap)) {
+      : plan_(plan), bed_(bed), short_(short_plan(plan, bed, piloted_stages(plan.protocol))) {
+    auto dynamics = std::make_unique<ShortDynamics>(dynamics_of(short_, 0));
+    dynamics_ = dynamics.get();
+    realization_.emplace(short_, 0, std::move(dynamics));
     // The budget is one of trials; other engines do less in the same time.
-    budget_ = static_cast<std::uint64_t>(static_cast<double>(budget) *
-                                         dynamics_->units_per_slice() / trials_per_slice);
-    const auto began = Clock::now();
-    RandomStream random(stream_key(plan, 0, Purpose::start));
-    const Packing start = make_start(plan.start, bed.container, bed.n_spheres, random);
-    dynamics_->load(start);
-    dynamics_->settle(plan.start);
-    advance(budget_ / 2);
-    start_time_ = Clock::now() - began;
+    left_ = static_cast<std::uint64_t>(static_cast<double>(budget) *
+                                       static_cast<double>(dynamics_->units_per_slice()) /
+                                       trials_per_slice);
   }
 
   PilotEstimate estimate() {
-    constexpr Seconds short_tap{0.2};
-    const std::vector<std::size_t> stages = piloted_stages(plan_.protocol);
-    std::uint64_t left = budget_ - std::min(budget_ / 2, dynamics_->effort().units);
-    std::size_t untried = stages.size();
+    const TapCost start = next_row(left_ / 2);
+    settled_ = dynamics_->settled();
+    std::size_t untried = short_.protocol.size();
     std::map<std::string, CostsByStrength> costs;
-    for (const std::size_t stage : stages) {
-      const Tap& tap = plan_.protocol[stage].tap;
-      const std::uint64_t before = dynamics_->effort().units;
-      TapCost cost = timed(tap, left / untried);
-      // The first also makes what all others use.
-      if (stage == stages.front() && cost.time < short_tap) cost = timed(tap, left / untried);
-      --untried;
-      left -= std::min(left, dynamics_->effort().units - before);
-      const Control strength = control(tap);
-      costs[strength.name][strength.value] = cost;
+    for (const Stage& stage : short_.protocol) {
+      if (stage.count > 1) next_row(left_ / (4 * untried));
+      const Control strength = control(stage.tap);
+      costs[strength.name][strength.value] = next_row(left_ / untried--);
+      settled_ = settled_ && dynamics_->settled();
     }
-    return summed(costs, stages.size());
+    return summed(start.time, costs);
   }
 
  private:
-  TapCost timed(const Tap& tap, std::uint64_t budget) {
+  /// Makes the next row: the start, or a tap.
+  TapCost next_row(std::uint64_t budget) {
     const std::uint64_t before = dynamics_->effort().units;
     const auto began = Clock::now();
-    dynamics_->tap(tap, tap_random_);
-    advance(budget);
-    const auto units = static_cast<double>(dynamics_->effort().units - before);
-    return {Clock::now() - began, units / bed_.n_spheres};
+    dynamics_->allow(budget);
+    Slice slice;
+    while (!slice.row) {
+      slice = realization_->advance(std::max<std::uint64_t>(1, budget));
+      moving_time_ += slice.relaxing;
+    }
+    const std::uint64_t units = dynamics_->effort().units - before;
+    left_ -= std::min(left_, units);
+    return {Clock::now() - began, static_cast<double>(units) / bed_.n_spheres};
   }
 
-  void advance(std::uint64_t budget) {
-    const auto began = Clock::now();
-    const DynamicsStatus status = dynamics_->advance(budget);
-    moving_time_ += Clock::now() - began;
-    settled_ = settled_ && status != DynamicsStatus::running;
-  }
-
-  PilotEstimate summed(const std::map<std::string, CostsByStrength>& costs,
-                       std::size_t n_strengths) const {
+  PilotEstimate summed(Seconds start_time,
+                       const std::map<std::string, CostsByStrength>& costs) const {
     Seconds taps_time{0};
     double sweeps = 0;
     for (const Stage& stage : plan_.protocol) {
@@ -156,22 +194,23 @@ class Pilot {
     const std::uint64_t units = dynamics_->effort().units;
     const double observed = static_cast<double>(bed_.n_spheres) * sizeof(Vec3);
     return {.n_spheres = bed_.n_spheres,
-            .n_strengths = n_strengths,
+            .n_strengths = short_.protocol.size(),
             .units = units,
             .units_per_second = units > 0 ? static_cast<double>(units) / moving_time_.count() : 0,
             .rounds_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
             .settled = settled_ && bed_.as_deep,
-            .realization = scale * (start_time_ + taps_time),
+            .realization = scale * (start_time + taps_time),
             .bytes = static_cast<std::size_t>(
                 scale * (static_cast<double>(dynamics_->bytes()) + observed))};
   }
 
   const Plan& plan_;
   const CutBed& bed_;
-  std::uint64_t budget_ = 0;
-  std::unique_ptr<Dynamics> dynamics_;
-  RandomStream tap_random_;
-  Seconds start_time_{0}, moving_time_{0};
+  const Plan short_;
+  std::uint64_t left_ = 0;
+  ShortDynamics* dynamics_ = nullptr;  // of the realization
+  std::optional<Realization> realization_;
+  Seconds moving_time_{0};
   bool settled_ = true;
 };
 

@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "config/json/json_text.hpp"
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"

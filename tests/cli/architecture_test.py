@@ -31,7 +31,7 @@ RESERVED = {
     r"CLI/": {"cli/options/command.cpp", "cli/options/command_line.cpp", "cli/terminal/version.cpp"},
     r"Eigen/Core": {"fitting", "ensemble"},
     r"unsupported/Eigen/FFT": {"ensemble/statistics/autocorrelation.cpp",
-                               "ensemble/analysis/spectra.cpp"},
+                               "ensemble/analysis/spectra/spectra.cpp"},
     r"Eigen/(?!Core)": {"fitting/solver/decompositions.cpp"},
     r"spdlog/": {"cli/terminal/log.cpp", "cli/terminal/version.cpp"},
     r"Random123/": {"engine/bed/philox.hpp"},

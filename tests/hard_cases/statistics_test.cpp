@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/spectra/spectra.hpp"
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/noise.hpp"

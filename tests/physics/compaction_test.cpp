@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/spectra/spectra.hpp"
 #include "short_scene.hpp"
 
 using namespace jostle;

@@ -216,6 +216,23 @@ TEST_CASE("a bed at rest stays as it is") {
   CHECK(loop.energies().held() <= held * (1 + 1e-9));
 }
 
+TEST_CASE("a bed left alone for a million steps stays where it is", "[slow]") {
+  const PeriodicBox box{5, 5};
+  for (const double friction : {0.0, 0.1, 0.5}) {
+    CAPTURE(friction);
+    GrainLoop loop(box, settings(WaltonBraun{.friction = friction}, 1));
+    loop.load(dilute_column(box, 200, 11));
+    loop.run(320'000);
+    Packing before, after;
+    loop.store(before);
+    const double held = loop.energies().held();
+    loop.run(1'000'000);
+    loop.store(after);
+    CHECK(std::abs(mean_height(after) - mean_height(before)) < 1e-6);
+    CHECK(loop.energies().held() <= held);
+  }
+}
+
 TEST_CASE("without friction nothing spins") {
   const PeriodicBox box{4, 4};
   GrainLoop loop(box, settings(WaltonBraun{.friction = 0}, 1));

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 
 namespace jostle::inline ensemble {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/polynomial.hpp"
 

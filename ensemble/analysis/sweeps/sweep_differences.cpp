@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle::inline ensemble {

@@ -1,4 +1,4 @@
-#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/spectra/spectra.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "ensemble/analysis/ensemble_spectrum.hpp"
+#include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/spectra/spectra.hpp"
 
 namespace jostle::inline ensemble {
 

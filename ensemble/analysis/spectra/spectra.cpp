@@ -1,4 +1,4 @@
-#include "ensemble/analysis/spectra.hpp"
+#include "ensemble/analysis/spectra/spectra.hpp"
 
 #include <cassert>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ensemble/analysis/sweep_curve.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

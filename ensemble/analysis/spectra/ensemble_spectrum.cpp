@@ -1,4 +1,4 @@
-#include "ensemble/analysis/ensemble_spectrum.hpp"
+#include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 
 #include <algorithm>
 #include <cassert>
