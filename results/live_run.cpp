@@ -71,42 +71,66 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The file and its parts in one. Throws ResultsError also where a fold takes parts away meanwhile.
-ResultsFile joined_once(const std::string& results_path, const std::string& known_as,
-                        Content content) {
-  ResultsFile file(results_path, known_as);
-  const auto with_parts = realizations_with_parts(results_path);
-  if (with_parts.empty()) return file;
+/// Writes the file and these of its parts in one to `output`. Throws ResultsError also where a fold
+/// takes parts away meanwhile.
+void write_joined(const ResultsFile& file, const std::string& results_path,
+                  const std::vector<RealizationId>& with_parts, const std::string& output,
+                  Content content) {
   const auto realization = [&](RealizationId id) {
     auto base = file.realization(id, content);
     if (!std::ranges::binary_search(with_parts, id)) return base;
     const std::size_t n_columns = file.study().points[id.point].n_columns();
     return continued(std::move(base), results_path, {file.run_id(), id}, n_columns, content);
   };
+  write_results(output,
+                {file.study(), file.shard(), file.provenance(), file.run_id(), realization});
+}
+
+/// The file and its parts in one.
+ResultsFile joined_once(const std::string& results_path, const std::string& known_as,
+                        Content content) {
+  ResultsFile file(results_path, known_as);
+  const auto with_parts = realizations_with_parts(results_path);
+  if (with_parts.empty()) return file;
   const TemporaryFolder folder;
   const std::string joined = (folder.path() / "live.h5").string();
-  write_results(joined,
-                {file.study(), file.shard(), file.provenance(), file.run_id(), realization});
+  write_joined(file, results_path, with_parts, joined, content);
   return {joined, known_as};  // open, it outlives its name
 }
 
-}  // namespace
-
-ResultsFile live_results(const std::string& named, Content content) {
-  const std::string results_path = end_of_links(named);
+/// Calls read() until the run neither folded nor published while it read.
+template <class Read>
+auto read_undisturbed(const std::string& results_path, const Read& read) {
   constexpr int most_tries = 20;
   for (int tries = 1;; ++tries) {
     const auto before = version_of(results_path);
     const auto parts = realizations_with_parts(results_path);
     try {
-      ResultsFile file = joined_once(results_path, named, content);
-      if (version_of(results_path) == before || tries == most_tries) return file;
+      auto found = read();
+      if (version_of(results_path) == before || tries == most_tries) return found;
     } catch (const ResultsError&) {
       const bool folded =
           version_of(results_path) != before || realizations_with_parts(results_path) != parts;
       if (!folded || tries == most_tries) throw;
     }
   }
+}
+
+}  // namespace
+
+ResultsFile live_results(const std::string& named, Content content) {
+  const std::string results_path = end_of_links(named);
+  return read_undisturbed(results_path, [&] { return joined_once(results_path, named, content); });
+}
+
+void write_copy(const std::string& named, const std::string& output, bool live) {
+  const std::string results_path = end_of_links(named);
+  read_undisturbed(results_path, [&] {
+    const auto parts = live ? realizations_with_parts(results_path) : std::vector<RealizationId>{};
+    write_joined(ResultsFile(results_path, named), results_path, parts, output,
+                 Content::everything);
+    return true;
+  });
 }
 
 RunStatus run_status(const std::string& named) {

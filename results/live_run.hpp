@@ -34,4 +34,8 @@ RunStatus run_status(const std::string& results_path);
 /// that TMPDIR names, which is gone when this returns. Throws ResultsError.
 ResultsFile live_results(const std::string& results_path, Content content = Content::everything);
 
+/// The same as a results file of its own, under `output`, without derived tables. `live`: with the
+/// checkpoints. Throws ResultsError.
+void write_copy(const std::string& results_path, const std::string& output, bool live);
+
 }  // namespace jostle::inline results

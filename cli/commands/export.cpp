@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -13,6 +14,8 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/export.hpp"
+#include "results/export/h5md.hpp"
+#include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/bad_input.hpp"
 
@@ -21,7 +24,8 @@ namespace {
 
 const std::map<std::string, ExportFormat> formats = {{"extxyz", ExportFormat::extended_xyz},
                                                      {"lammps", ExportFormat::lammps},
-                                                     {"vtp", ExportFormat::vtk}};
+                                                     {"vtp", ExportFormat::vtk},
+                                                     {"h5md", ExportFormat::h5md}};
 
 struct ExportArguments {
   std::string input, output, format, point;
@@ -81,6 +85,24 @@ Wanted wanted(const ExportArguments& arguments) {
   return {kept_frames(input, taps), fmt::format("{}, frame", input), ""};
 }
 
+/// How a frame a file, or all in one, are written.
+struct Writing {
+  std::vector<std::string> paths;
+  std::function<void()> write;
+};
+
+Writing writing(ExportFormat format, const std::string& output,
+                const std::vector<ExportedFrame>& frames) {
+  if (format == ExportFormat::h5md) return {{output}, [&] { write_h5md(output, frames); }};
+  Writing found;
+  auto files = exported_files(format, output, frames);
+  for (const ExportedFile& file : files) found.paths.push_back(file.path);
+  found.write = [files = std::move(files)] {
+    for (const ExportedFile& file : files) write_text(file.path, file.text);
+  };
+  return found;
+}
+
 int export_packings(const ExportArguments& arguments) {
   const ExportFormat format = formats.at(arguments.format);
   const Wanted found = wanted(arguments);
@@ -88,18 +110,40 @@ int export_packings(const ExportArguments& arguments) {
                                  ? arguments.output
                                  : std::filesystem::path(arguments.input).stem().string() +
                                        found.suffix + "." + extension(format);
-  const auto files = exported_files(format, output, found.frames);
+  const Writing files = writing(format, output, found.frames);
   // Nothing is written where one of the files may not be.
-  for (const ExportedFile& file : files) {
-    require_replaceable(file.path, fmt::format("packing.{}", extension(format)));
-    if (file.path != arguments.output) require_no_link(file.path);
-    require_text_output("-o", file.path, std::span(&arguments.input, 1), arguments.force);
+  for (const std::string& path : files.paths) {
+    require_replaceable(path, fmt::format("packing.{}", extension(format)));
+    if (path != arguments.output) require_no_link(path);
+    require_text_output("-o", path, std::span(&arguments.input, 1), arguments.force);
   }
   std::vector<std::uint64_t> taps;
   for (const ExportedFrame& frame : found.frames) taps.push_back(frame.tap);
-  for (const ExportedFile& file : files) write_text(file.path, file.text);
-  print(fmt::format("{}: {} {}, {}\n", files.back().path, found.source, list_of(taps),
+  files.write();
+  print(fmt::format("{}: {} {}, {}\n", files.paths.back(), found.source, list_of(taps),
                     counted(found.frames.front().packing.centres.size(), "sphere")));
+  return exit_ok;
+}
+
+/// The results themselves, with the checkpoints of a run that goes on: a file for other programs.
+int export_results(const ExportArguments& arguments) {
+  const std::string& input = arguments.input;
+  if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
+  if (arguments.output.empty()) {
+    throw BadInput("--format results: -o FILE: name the file to write");
+  }
+  if (!arguments.point.empty() || arguments.realization_given || !arguments.taps.empty()) {
+    throw BadInput(
+        "--format results: --sweep-point, --realization and --tap mean nothing: all of "
+        "the run is written");
+  }
+  require_replaceable(arguments.output, "copy.h5");
+  require_text_output("-o", arguments.output, std::span(&input, 1), arguments.force);
+  if (arguments.force) require_results_or_empty(arguments.output);
+  write_copy(input, arguments.output, arguments.live == Live::yes);
+  print(fmt::format("{}: {} of {}\n", arguments.output,
+                    arguments.live == Live::yes ? "results and last checkpoints" : "results",
+                    input));
   return exit_ok;
 }
 
@@ -112,13 +156,15 @@ void add_export(Command& app, int& code) {
   command.add_option("file", a.input, "Results, or a packing in extended XYZ")
       .required()
       .existing_file();
-  command.add_option("--format", a.format, "extxyz, lammps (text dump), vtp (VTK points)")
+  command
+      .add_option("--format", a.format,
+                  "extxyz, lammps (text dump), vtp (VTK points), h5md; results: all of the run")
       .required()
-      .one_of({"extxyz", "lammps", "vtp"});
+      .one_of({"extxyz", "lammps", "vtp", "h5md", "results"});
   command
       .add_option("-o,--output", a.output,
                   "The file to write (default: the input's name, of a sweep with _pointP, with "
-                  ".xyz, .dump or .vtp, in the current folder)")
+                  ".xyz, .dump, .vtp or .h5md, in the current folder)")
       .file_to_write();
   command.add_option("--sweep-point", a.point,
                      "Its number, or POINTER=VALUE of the sweep (default: the first)");
@@ -138,13 +184,16 @@ void add_export(Command& app, int& code) {
       "  jostle export quickstart.h5 --format vtp --tap 0,100   two .vtp files, and a .pvd of "
       "both\n"
       "  jostle export packing.xyz --format vtp -o packing.vtp\n"
+      "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis, and h5py\n"
+      "  jostle export quickstart.h5 --format results --live -o so_far.h5\n"
       "\n"
       "Every sphere with its radius, coordination (centres within 1.05 diameters), the volume of\n"
       "its Voronoi cell, q6 and crystal structure. A scene can start from the extended XYZ: the\n"
       "same bits.");
   command.run([arguments, realization, &code] {
     arguments->realization_given = realization.count() > 0;
-    code = export_packings(*arguments);
+    code =
+        arguments->format == "results" ? export_results(*arguments) : export_packings(*arguments);
   });
 }
 

@@ -107,6 +107,8 @@ const char* extension(ExportFormat format) {
       return "dump";
     case ExportFormat::vtk:
       return "vtp";
+    case ExportFormat::h5md:
+      return "h5md";
   }
   return "";
 }

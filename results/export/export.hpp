@@ -12,16 +12,17 @@
 // Packings for OVITO, ParaView and other programs.
 namespace jostle::inline results {
 
-enum class ExportFormat { extended_xyz, lammps, vtk };
+enum class ExportFormat { extended_xyz, lammps, vtk, h5md };
 
-/// "xyz", "dump" or "vtp": what a file of the format is named by default.
+/// "xyz", "dump", "vtp" or "h5md": what a file of the format is named by default.
 const char* extension(ExportFormat format);
 
 struct ExportedFile {
   std::string path, text;
 };
 
-/// What the frames are written to: `path`, with all of them; only VTK's format keeps a frame a
+/// Of a format that is text, as all but H5MD are (write_h5md):
+/// what the frames are written to: `path`, with all of them; only VTK's format keeps a frame a
 /// file, so that several go to STEM_tapT.vtp beside `path`, which becomes STEM.pvd, their list.
 /// Requires a frame.
 std::vector<ExportedFile> exported_files(ExportFormat format, const std::string& path,

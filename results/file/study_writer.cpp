@@ -199,6 +199,10 @@ void write_table(hid_t sweep, const Study& study) {
 
 void write_root(hid_t file) {
   write_attribute(file, "jostle_format", layout_version);
+  write_h5md_root(file);
+}
+
+void write_h5md_root(hid_t file) {
   const Hdf5Handle h5md = create_group(file, "h5md");
   const std::array<std::uint32_t, 2> version = {1, 1};
   write_attribute<std::uint32_t>(h5md, "version", version);
