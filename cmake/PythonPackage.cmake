@@ -1,0 +1,10 @@
+# The Python package: pure Python, installed with the metadata by which xarray finds engine="jostle".
+set(JOSTLE_PYTHON_DIR lib/python3/dist-packages
+    CACHE STRING "Where the Python package goes, below the prefix")
+set(metadata ${PROJECT_BINARY_DIR}/python/jostle-${PROJECT_VERSION}.dist-info)
+file(WRITE ${metadata}/METADATA "Metadata-Version: 2.1\nName: jostle\nVersion: ${PROJECT_VERSION}\n"
+                                "Summary: ${PROJECT_DESCRIPTION}\n")
+file(WRITE ${metadata}/entry_points.txt
+     "[xarray.backends]\njostle = jostle.xarray_engine:JostleBackendEntrypoint\n")
+install(DIRECTORY python/jostle ${metadata} DESTINATION ${JOSTLE_PYTHON_DIR}
+        PATTERN __pycache__ EXCLUDE)

@@ -1,0 +1,40 @@
+"""Results of jostle, ensembles of tapped granular packings, in Python; and the program from Python.
+
+    import jostle
+
+    results = jostle.open("quickstart.h5")
+    results.ensemble["bottom_fraction_mean"]       # xarray, the whole sweep
+    results.positions(point=0, realization=0)      # [sphere, 3], diameters
+    jostle.plot.compaction(results, "bottom_fraction")
+
+    scene = {"seed": 1, "container": {"sides": "periodic", "width": 8}, "spheres": 512,
+             "protocol": [{"tap": {"dilate": 0.02}, "count": 100}]}
+    results = jostle.run(scene, "mine.h5")
+
+It needs numpy and h5py; xarray, pandas, matplotlib and jsonschema for what is named after them.
+"""
+
+from .commands import analyse, cost, export, fit, run, structure
+from .errors import (Fault, JostleError, NotThere, ProgramError, ProgramMissing, RealizationsFailed,
+                     ResultsError, RunStopped, SceneError, UnfinishedRun)
+from .fits import Fit, FittedCurve, Parameter
+from .point import Box, Point
+from .program import program_path
+from .results import Results, open
+from .scenes import Checked, check, schema
+from .tables import Quantity, Table, Tables
+
+__version__ = "0.1.0"
+
+__all__ = ["Box", "Checked", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
+           "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
+           "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun", "analyse", "check", "cost",
+           "export", "fit", "open", "plot", "program_path", "run", "schema", "structure"]
+
+
+def __getattr__(name: str) -> object:
+    """jostle.plot, which needs matplotlib, is imported when it is used."""
+    if name == "plot":
+        import importlib
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,181 @@
+"""The program's commands as functions. docs/cli.md says what each does."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from . import results as results_files
+from .errors import RealizationsFailed, RunStopped
+from .fits import FittedCurve, fitted_curves
+from .program import BAD_INPUT, FAILED, OK, STOPPED, Path, call, refusal
+from .results import Results
+from .tables import Table, table_from_json
+
+Scene = Mapping[str, Any]
+
+
+@contextlib.contextmanager
+def scene_file(scene: Scene | Path) -> Iterator[str]:
+    """A scene's file: its path, or that of a dict, written for a while. Packings that a dict starts from
+    are named from the current folder, where it is written then."""
+    if not isinstance(scene, Mapping):
+        yield os.fspath(scene)
+        return
+    text = json.dumps(scene, indent=1)
+    beside = os.getcwd() if '"file"' in text else None
+    with tempfile.NamedTemporaryFile("w", dir=beside, prefix=".scene-", suffix=".json") as file:
+        file.write(text)
+        file.flush()
+        yield file.name
+
+
+def _options(**values: object) -> list[object]:
+    """--name value for what is given; a True is a flag; sequences are joined by commas."""
+    words: list[object] = []
+    for name, value in values.items():
+        option = "--" + name.replace("_", "-")
+        if value is True:
+            words.append(option)
+        elif value is not None and value is not False:
+            several = isinstance(value, Sequence) and not isinstance(value, str)
+            words += [option, ",".join(map(str, value)) if several else value]  # type: ignore[arg-type]
+    return words
+
+
+def _output(scene: Scene | Path, output: Path | None) -> Path:
+    if output is not None:
+        return output
+    if isinstance(scene, Mapping):
+        named = scene.get("name", "scene")
+    else:
+        with open(scene, encoding="utf-8") as file, contextlib.suppress(ValueError):
+            read = json.load(file)
+            return f"{read.get('name', 'scene') if isinstance(read, dict) else 'scene'}.h5"
+        named = "scene"
+    return f"{named}.h5"
+
+
+def _opened(done: Any, path: Path, program: Path | None) -> Results:
+    """The results of a run or cost; raises where they are unfinished."""
+    if done.returncode == OK:
+        return results_files.open(path, program=program)
+    error = refusal(done)
+    kind = RunStopped if done.returncode == STOPPED else RealizationsFailed
+    unfinished = kind(str(error), error.exit_code, error.stderr, error.command)
+    if os.path.exists(path):
+        unfinished.results = results_files.open(path, program=program)
+    raise unfinished
+
+
+def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None = None,
+        resume: bool = False, retry_failed: bool = False, force: bool = False,
+        time_limit: str | None = None, checkpoint_every: str | None = None, shard: str | None = None,
+        progress: bool = False, program: Path | None = None) -> Results:
+    """Runs a scene (a dict, or the path of one) to its end and opens its results.
+
+    output: default the scene's name + .h5, in the current folder. time_limit, checkpoint_every: "90s",
+    "30m", "1h30m". shard: "i/n". progress: show it on stderr. The other options are those of `jostle run`.
+    KeyboardInterrupt (Ctrl-C) stops the run as the program does: all taps are stored, resume=True goes on.
+    Raises SceneError with every fault; RunStopped after a time limit or a signal, RealizationsFailed: both
+    have the results that there are; ProgramError for everything else.
+    """
+    path = _output(scene, output)
+    with scene_file(scene) as file:
+        done = call(["run", file, "-o", path, *([] if progress else ["--quiet"]),
+                     *_options(threads=threads, resume=resume, retry_failed=retry_failed, force=force,
+                               time_limit=time_limit, checkpoint_every=checkpoint_every, shard=shard)],
+                    program, show=progress, accept=(OK, FAILED, STOPPED))
+    return _opened(done, path, program)
+
+
+def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | None = None,
+         target: float | None = None, budget: str | None = None, replicates: int | None = None,
+         taps: int | None = None, sweep_point: int | str | None = None, resume: bool = False,
+         force: bool = False, program: Path | None = None) -> tuple[Results, str]:
+    """What the accuracy of a scene costs: its results file (tables in `.tables`), and the report's text.
+
+    output: default NAME-cost.h5. target: recommend the cheapest way to this total error of `observable`.
+    """
+    path = output if output is not None else f"{os.fspath(_output(scene, None))[:-3]}-cost.h5"
+    with scene_file(scene) as file:
+        done = call(["cost", file, "-o", path,
+                     *_options(observable=observable, target=target, budget=budget, taps=taps,
+                               replicates=replicates, sweep_point=sweep_point, resume=resume,
+                               force=force)], program, accept=(OK, FAILED, STOPPED))
+    return _opened(done, path, program), done.stdout
+
+
+def _paths(results: Results | Path | Sequence[Path]) -> list[Path]:
+    if isinstance(results, Results):
+        return [results.path]
+    if isinstance(results, (str, os.PathLike)):
+        return [results]
+    return [one.path if isinstance(one, Results) else one for one in results]
+
+
+def fit(results: Results | Path, observable: str | None = None, *, model: str = "all",
+        sweep_point: int | str | None = None, range: str | None = None,
+        fix: Mapping[str, float] | None = None, realizations: bool = False, resample: str | None = None,
+        resamples: int | None = None, seed: int | None = None, store: bool = True, live: bool = False,
+        program: Path | None = None) -> list[FittedCurve]:
+    """Fits laws to the mean curve of an observable at every sweep point, or to a measured curve (CSV).
+
+    Kept in the file under /fits unless store=False; a Results that is open shows them once it is opened
+    anew. range: "first:last" of t. The laws and what a report means: docs/fitting.md.
+    """
+    fixed = [word for name, value in (fix or {}).items() for word in ("--fix", f"{name}={value!r}")]
+    done = call(["fit", *_paths(results), "--json", *fixed,
+                 *_options(observable=observable, model=model, sweep_point=sweep_point, range=range,
+                           realizations=realizations, resample=resample, resamples=resamples, seed=seed,
+                           no_store=not store, live=live)], program)
+    return fitted_curves(json.loads(done.stdout))
+
+
+def analyse(results: Results | Path | Sequence[Path], what: str, observable: str | Sequence[str], *,
+            sweep_point: int | str | None = None, last: int | None = None,
+            waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
+            quantity: str | None = None, against: str | None = None, reference: float | None = None,
+            segment: int | None = None, window: str | None = None, detrend: str | None = None,
+            band: str | None = None, threads: int | None = None, store: bool = True, live: bool = False,
+            program: Path | None = None) -> list[Table]:
+    """what: "steady", "spectrum", "ageing", "hysteresis" or "sweep"; docs/analysis.md has the equations.
+
+    Kept in the files under /analysis unless store=False.
+    """
+    names = [observable] if isinstance(observable, str) else list(observable)
+    done = call(["analyse", *_paths(results), what, "--json", "--observable", *names,
+                 *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
+                           quantity=quantity, against=against, reference=reference, segment=segment,
+                           window=window, detrend=detrend, band=band, threads=threads,
+                           no_store=not store, live=live)], program)
+    return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
+
+
+def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] | None = None,
+              settings: Mapping[str, Any] | None = None, tap: Sequence[int] | None = None,
+              sweep_point: int | str | None = None, threads: int | None = None, store: bool = True,
+              live: bool = False, program: Path | None = None) -> list[Table]:
+    """What kept packings, or extended XYZ files, look like inside; docs/structure.md says what.
+
+    Kept in a results file under /structure unless store=False.
+    """
+    done = call(["structure", *_paths(results), "--json",
+                 *_options(part=part, settings=None if settings is None else json.dumps(settings),
+                           tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store,
+                           live=live)], program)
+    return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
+
+
+def export(results: Results | Path, output: Path, *, format: str, point: int | None = None,
+           realization: int | None = None, tap: Sequence[int] | str | None = None, live: bool = False,
+           force: bool = False, program: Path | None = None) -> Path:
+    """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
+    last, "all", or some. Returns `output`."""
+    call(["export", *_paths(results), "--format", format, "-o", output,
+          *_options(sweep_point=point, realization=realization, tap=tap, live=live, force=force)], program)
+    return output

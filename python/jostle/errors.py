@@ -1,0 +1,71 @@
+"""Everything that this package raises of its own is a JostleError."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Sequence
+
+if TYPE_CHECKING:
+    from .results import Results
+
+
+class JostleError(Exception):
+    """Base of all errors of this package."""
+
+
+class ResultsError(JostleError):
+    """A file that cannot be read as results: none of jostle's, damaged, cut short, of another layout."""
+
+
+class NotThere(JostleError, LookupError):
+    """What was asked for is not in the file; the message lists what is."""
+
+
+class ProgramMissing(JostleError):
+    """The program jostle was not found."""
+
+
+class Fault(NamedTuple):
+    """One fault of a scene: where (a JSON pointer, "" for the whole), and what is wrong with it."""
+
+    pointer: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.pointer or '(scene)'}: {self.message}"
+
+
+class ProgramError(JostleError):
+    """The program refused or failed.
+
+    exit_code: as in docs/cli.md (2 bad input, 4 files, disk, memory); negative: the signal that
+    killed it. stderr: all that it said. command: its command line.
+    """
+
+    def __init__(self, message: str, exit_code: int = 2, stderr: str = "",
+                 command: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.exit_code, self.stderr, self.command = exit_code, stderr, tuple(command)
+
+
+class SceneError(ProgramError):
+    """A scene with faults; nothing was run. faults: every one of them, in the order of the scene."""
+
+    def __init__(self, faults: Sequence[Fault], **of_program: object) -> None:
+        self.faults = list(faults)
+        n = len(self.faults)
+        super().__init__("\n".join([f"{n} fault{'s' if n != 1 else ''} in the scene",
+                                    *map(str, self.faults)]), **of_program)  # type: ignore[arg-type]
+
+
+class UnfinishedRun(ProgramError):
+    """A run that ended without all of its taps; all that it made is stored. results: the file, open."""
+
+    results: Results | None = None
+
+
+class RunStopped(UnfinishedRun):
+    """Stopped by a signal or its time limit (exit code 75): run(..., resume=True) goes on."""
+
+
+class RealizationsFailed(UnfinishedRun):
+    """Some realizations failed (exit code 3): results.points[i].reasons says why."""

@@ -1,0 +1,66 @@
+"""What `jostle fit --json` says, as objects."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+
+def _number(value: float | None, unknown: float = math.nan) -> float:
+    return unknown if value is None else float(value)
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """value, error (standard error): NaN where the data do not limit the parameter. interval_68,
+    interval_95: by the profile of the sum of squares; an open end is infinite. statement: in words."""
+
+    value: float
+    error: float
+    interval_68: tuple[float, float]
+    interval_95: tuple[float, float]
+    identifiability: str
+    statement: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Fit:
+    """A law fitted to a curve. refused: why there is none (parameters is empty then). report: all that
+    `jostle fit --json` has of it: reduced_chi2, r2, aic, covariance, remarks and more."""
+
+    model: str
+    formula: str
+    parameters: dict[str, Parameter]
+    refused: str | None
+    report: dict[str, Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class FittedCurve:
+    """title: which curve. fits: law -> fit."""
+
+    title: str
+    fits: dict[str, Fit]
+
+    def __getitem__(self, model: str) -> Fit:
+        return self.fits[model]
+
+
+def _interval(ends: list[float | None]) -> tuple[float, float]:
+    return _number(ends[0], -math.inf), _number(ends[1], math.inf)
+
+
+def _parameter(one: dict[str, Any]) -> Parameter:
+    return Parameter(_number(one["value"]), _number(one["error"]), _interval(one["interval_68"]),
+                     _interval(one["interval_95"]), one["identifiability"], one["statement"])
+
+
+def _fit(one: dict[str, Any]) -> Fit:
+    parameters = {name: _parameter(value) for name, value in one.get("parameters", {}).items()}
+    return Fit(one["model"], one.get("formula", ""), parameters, one.get("refused"), one)
+
+
+def fitted_curves(report: dict[str, Any]) -> list[FittedCurve]:
+    return [FittedCurve(curve["title"], {one["model"]: _fit(one) for one in curve["fits"]})
+            for curve in report["curves"]]

@@ -1,0 +1,256 @@
+"""One sweep point of a results file."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Callable
+
+import h5py
+import numpy as np
+
+from .errors import NotThere
+from .text import attribute, text, texts
+
+if TYPE_CHECKING:
+    from .results import Results
+
+STATUS = ("missing", "running", "done", "failed")
+FOLDS = ("mean", "sigma", "error", "count")
+
+
+@dataclasses.dataclass(frozen=True)
+class Box:
+    """What holds the spheres. boundary: "periodic" or "none" along x, y, z; edges: [3], diameters. An open
+    top ends at the highest point of any kept frame, and is infinite where there is none."""
+
+    boundary: tuple[str, str, str]
+    edges: np.ndarray
+
+
+class Columns(Mapping[str, np.ndarray]):
+    """Arrays by name, read when they are asked for."""
+
+    def __init__(self, names: list[str], read: Callable[[str], np.ndarray], of: str) -> None:
+        self._names, self._read, self._of = names, read, of
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._names:
+            raise NotThere(f"{self._of} has no {name!r}; it has {', '.join(self._names) or 'nothing'}")
+        return self._read(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        return f"<{self._of}: {', '.join(self._names)}>"
+
+
+class Point:
+    """Sweep point `index` of a file. A point whose realizations have not begun has zero taps.
+
+    label: its values for people. values: JSON pointer -> value that the sweep gives it.
+    coordinates: the same by the names that `Results.ensemble` has. n_spheres; seed; planned_taps: of the
+    protocol, whatever was reached.
+    """
+
+    def __init__(self, results: Results, index: int) -> None:
+        self._results, self.index = results, index
+        self._name = f"point_{index:04}"
+        sweep = results.sweep
+        self.label, self.values = sweep.labels[index], sweep.values[index]
+        self.coordinates = {sweep.names[pointer]: value for pointer, value in self.values.items()}
+        attributes = self._file[f"sweep/{self._name}"].attrs
+        self.n_spheres, self.seed = int(attributes["n_spheres"]), int(attributes["seed"])
+        self.planned_taps = int(attributes["taps"])
+
+    @property
+    def _file(self) -> h5py.File:
+        return self._results.file
+
+    def __repr__(self) -> str:
+        return (f"<jostle sweep point {self.index}{': ' if self.label else ''}{self.label}, "
+                f"{len(self.tap)} taps of {self.n_realizations} realizations>")
+
+    @property
+    def begun(self) -> bool:
+        """Whether any of its realizations has a tap stored."""
+        return f"observables/{self._name}" in self._file
+
+    def _group(self, folder: str) -> h5py.Group:
+        group = self._file.get(f"{folder}/{self._name}")
+        if group is None:
+            raise NotThere(f"{self._results.path}: /{folder} has nothing of sweep point {self.index}")
+        return group
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """The resolved scene with the values of this point in their places, without the sweep."""
+        scene = copy.deepcopy(self._results.scene)
+        scene.pop("sweep", None)
+        for pointer, value in self.values.items():
+            *above, last = [part.replace("~1", "/").replace("~0", "~")
+                            for part in pointer.split("/")[1:]]
+            place: Any = scene
+            for part in above:
+                place = place[int(part) if isinstance(place, list) else part]
+            place[int(last) if isinstance(place, list) else last] = copy.deepcopy(value)
+        return scene
+
+    # Taps and realizations.
+
+    @property
+    def n_realizations(self) -> int:
+        return self._results.n_realizations
+
+    @property
+    def tap(self) -> np.ndarray:
+        """[tap]: 0 is the start; as far as the farthest realization has come."""
+        return self._group("observables")["tap"][()] if self.begun else np.zeros(0, np.uint64)
+
+    @property
+    def observables(self) -> list[str]:
+        """All columns: what the scene observes, then what the engine records of a tap."""
+        own = ("tap", "realization", "status", "rows", "reason", "trial_key")
+        if not self.begun:
+            return self._results.observables
+        there = [name for name in self._group("observables") if name not in own]
+        first = [name for name in self._results.observables if name in there]
+        return first + [name for name in there if name not in first]
+
+    def units(self, name: str) -> str:
+        """Of a column: "diameter", "1", ..."""
+        return attribute(self._group("observables")[name], "units")
+
+    @property
+    def series(self) -> Columns:
+        """name -> [tap, realization]. NaN: not reached, failed, or undefined (no acceptance at tap 0)."""
+        def read(name: str) -> np.ndarray:
+            if not self.begun:
+                return np.zeros((0, self.n_realizations))
+            return self._group("observables")[name][()]
+        return Columns(self.observables, read, f"sweep point {self.index}")
+
+    def _fold(self, fold: str) -> Columns:
+        def read(name: str) -> np.ndarray:
+            return self._group("ensemble")[f"{name}_{fold}"][()] if self.begun else np.zeros(0)
+        return Columns(self.observables, read, f"sweep point {self.index}")
+
+    @property
+    def mean(self) -> Columns:
+        """name -> [tap], over the realizations that have a value; NaN where none has."""
+        return self._fold("mean")
+
+    @property
+    def sigma(self) -> Columns:
+        """name -> [tap]: population standard deviation (1/M) over realizations."""
+        return self._fold("sigma")
+
+    @property
+    def error(self) -> Columns:
+        """name -> [tap]: standard error of the mean; NaN of fewer than two values."""
+        return self._fold("error")
+
+    @property
+    def count(self) -> Columns:
+        """name -> [tap]: number of realizations that have a value."""
+        return self._fold("count")
+
+    @property
+    def status(self) -> list[str]:
+        """[realization]: "missing" (of another shard, or not begun), "running", "done" or "failed"."""
+        if not self.begun:
+            return ["missing"] * self.n_realizations
+        return [STATUS[code] for code in self._group("observables")["status"][()]]
+
+    @property
+    def rows(self) -> np.ndarray:
+        """[realization]: taps recorded, the start included."""
+        if not self.begun:
+            return np.zeros(self.n_realizations, np.uint64)
+        return self._group("observables")["rows"][()]
+
+    @property
+    def reasons(self) -> dict[int, str]:
+        """Why realizations failed: number of the realization -> reason."""
+        if not self.begun:
+            return {}
+        found = enumerate(texts(self._group("observables")["reason"]))
+        return {number: reason for number, reason in found if reason}
+
+    @property
+    def timing(self) -> Columns:
+        """name -> [realization]: seconds and start_seconds of processor time, trials (in units of the
+        engine), distance_tests."""
+        group = self._group("timing")
+        return Columns([name for name in group if name != "realization"],
+                       lambda name: group[name][()], f"timing of sweep point {self.index}")
+
+    @property
+    def fitting(self) -> Columns:
+        """name -> [realization]: what fitting between walls did to the pours; empty of other starts."""
+        group = self._file.get(f"fitting/{self._name}", {})
+        return Columns([name for name in group if name != "realization"],
+                       lambda name: group[name][()], f"fitting of sweep point {self.index}")
+
+    # Snapshots.
+
+    @property
+    def snapshots(self) -> Columns:
+        """What is kept of packings besides positions: tap: [tap]; coordination: [tap, realization];
+        height_histogram: [tap, realization, height], fraction of all centres in a bin; height: [height],
+        the middle of a bin, diameters."""
+        group = self._file.get(f"snapshots/{self._name}", {})
+        return Columns([name for name in group if name != "realization"],
+                       lambda name: group[name][()], f"snapshots of sweep point {self.index}")
+
+    def _particles(self, realization: int) -> h5py.Group:
+        name = f"particles/{self._name}_realization_{realization:05}"
+        if name not in self._file:
+            start = f"{self._name}_realization_"
+            kept = [int(one[len(start):]) for one in self._file.get("particles", {})
+                    if one.startswith(start)]
+            raise NotThere(f"{self._results.path}: no positions of sweep point {self.index}, "
+                           f"realization {realization}; there are those of "
+                           f"{', '.join(map(str, kept)) or 'none (snapshots of the scene)'}")
+        return self._file[name]
+
+    def position_taps(self, realization: int = 0) -> np.ndarray:
+        """[frame]: the taps whose positions are kept."""
+        return self._particles(realization)["position/step"][()]
+
+    def positions(self, realization: int = 0, tap: int | None = None) -> np.ndarray:
+        """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""
+        group = self._particles(realization)
+        taps = group["position/step"][()].tolist()
+        if tap is not None and tap not in taps:
+            raise NotThere(f"{self._results.path}: no positions of tap {tap}; kept: "
+                           f"{', '.join(map(str, taps))}")
+        return group["position/value"][-1 if tap is None else taps.index(tap)]
+
+    def box(self, realization: int = 0) -> Box:
+        """The box of a realization's packings."""
+        try:
+            box = self._particles(realization)["box"]
+        except NotThere:
+            return self._planned_box()
+        x, y, z = texts(box.attrs["boundary"])
+        return Box((x, y, z), box["edges"][()])
+
+    def _planned_box(self) -> Box:
+        attributes = self._file[f"sweep/{self._name}"].attrs
+        x, y, z = attributes["widths"]
+        kind = text(attributes["container"])
+        sides = "periodic" if "periodic" in kind else "none"
+        open_top = kind != "fully_periodic"
+        if kind == "cylinder":
+            y = x
+        return Box((sides, sides, "none" if open_top else "periodic"),
+                   np.array([x, y, np.inf if open_top else z]))

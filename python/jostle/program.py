@@ -1,0 +1,104 @@
+"""The program jostle: where it is, and what it says when it refuses."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+
+from .errors import Fault, ProgramError, ProgramMissing, SceneError
+
+OK, BAD_INPUT, FAILED, BROKEN, STOPPED = 0, 2, 3, 4, 75
+
+Path = str | os.PathLike[str]
+
+
+def program_path(program: Path | None = None) -> str:
+    """The program: as named here, else by the environment variable JOSTLE, else on the PATH."""
+    named = os.fspath(program) if program is not None else os.environ.get("JOSTLE", "")
+    found = shutil.which(named or "jostle")
+    if found is None:
+        where = f"{named} is no program" if named else "it is not on the PATH"
+        raise ProgramMissing(f"the program jostle was not found: {where}. Build it (./dev install PREFIX), "
+                             "and name it with program=, the environment variable JOSTLE, or the PATH")
+    return found
+
+
+def call(arguments: Sequence[object], program: Path | None = None, folder: Path | None = None,
+         show: bool = False, accept: Sequence[int] = (OK,)) -> subprocess.CompletedProcess[str]:
+    """Runs the program to its end; an exit code not in `accept` raises what `refusal` makes of it.
+
+    show: its stderr (progress) goes to this process' stderr. A KeyboardInterrupt is handed on as SIGINT,
+    once: the program stores what it has and ends, and the interrupt goes on from here.
+    """
+    command = [program_path(program), *map(os.fspath, map(_word, arguments))]
+    # A group of its own: Ctrl-C reaches it through here alone, and so once.
+    process = subprocess.Popen(command, cwd=folder, text=True, errors="replace", stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=None if show else subprocess.PIPE,
+                               start_new_session=True)
+    try:
+        out, err = _communicate(process)
+    finally:
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+    done = subprocess.CompletedProcess(command, process.returncode, out, err or "")
+    if done.returncode not in accept:
+        raise refusal(done)
+    return done
+
+
+def _communicate(process: subprocess.Popen[str]) -> tuple[str, str]:
+    try:
+        return process.communicate()
+    except KeyboardInterrupt:
+        process.send_signal(signal.SIGINT)
+        process.communicate()  # a second interrupt ends it at once
+        raise
+
+
+def _word(argument: object) -> str:
+    return os.fspath(argument) if isinstance(argument, os.PathLike) else str(argument)
+
+
+def faults_in(stderr: str) -> list[Fault]:
+    """Lines `pointer: message` below the line that counts them."""
+    faults = []
+    for line in stderr.splitlines():
+        found = re.match(r"(\(scene\)|/\S*): (.*)", line)
+        if found:
+            faults.append(Fault("" if found[1] == "(scene)" else found[1], found[2]))
+    return faults
+
+
+def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
+    """The exception for an exit code."""
+    about = {"exit_code": done.returncode, "stderr": done.stderr, "command": done.args}
+    if re.search(r"^jostle: .*\b\d+ faults?\b", done.stderr, re.MULTILINE):
+        faults = faults_in(done.stderr)
+        if faults:
+            return SceneError(faults, **about)
+    said = done.stderr.strip().removeprefix("jostle: ")
+    if done.returncode < 0:
+        said = f"jostle was killed by {signal.Signals(-done.returncode).name}. {said}"
+    return ProgramError(said or f"jostle ended with exit code {done.returncode}", **about)
+
+
+def digest_of(path: Path, program: Path | None = None) -> str:
+    """SHA-256 of the data of a results file."""
+    return call(["info", path, "--digest"], program).stdout.strip()
+
+
+@contextlib.contextmanager
+def joined_with_parts(path: str, program: Path | None = None) -> Iterator[str]:
+    """A file of a run's results with its checkpoints joined in; gone afterwards."""
+    with tempfile.TemporaryDirectory(prefix="jostle-live-") as folder:
+        joined = pathlib.Path(folder) / "live.h5"
+        call(["export", path, "--format", "results", "--live", "-o", joined], program)
+        yield str(joined)

@@ -1,0 +1,226 @@
+"""Results files: `open` gives a `Results`."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import warnings
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+
+from .errors import ResultsError
+from .point import Box, Point
+from .program import digest_of, joined_with_parts
+from .seal import require_seal
+from .sweep import Sweep, read_sweep, swept_pointers
+from .tables import Tables, stored_tables
+from .text import text, texts
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+LAYOUT = 1  # attribute jostle_format of the root
+MONTE_CARLO = ["sweeps", "acceptance", "capped", "dropped_offsets"]  # unnamed in files
+
+
+def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = False,
+         program: str | os.PathLike[str] | None = None) -> Results:
+    """Opens a results file to read.
+
+    verify: check the SHA-256 of the whole file too; its last line must be there in any case.
+    live: of a run that goes on or was killed, join its checkpoints to what the file has (a copy, made by
+    the program in a temporary folder; nothing beside the file is touched).
+    Raises ResultsError for what is no results file, or one of another layout.
+    """
+    name = os.fspath(path)
+    require_seal(name, whole=verify)
+    parts = pathlib.Path(os.path.realpath(name) + ".parts")
+    if live and parts.is_dir():
+        with joined_with_parts(name, program) as joined:
+            return Results(name, _opened(joined, name), program)  # open, it outlives its name
+    results = Results(name, _opened(name, name), program)
+    if parts.is_dir() and not live:
+        warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
+                      "live=True reads them too", stacklevel=2)
+    return results
+
+
+def _opened(path: str, known_as: str) -> h5py.File:
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise ResultsError(f"{known_as}: cannot read it: {error}") from error
+    layout = file.attrs.get("jostle_format")
+    if layout is None or int(layout) != LAYOUT:
+        file.close()
+        what = "not written by jostle" if layout is None else f"of layout {layout}, which is not {LAYOUT}"
+        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layout {LAYOUT}")
+    return file
+
+
+class Points(Sequence[Point]):
+    """The sweep points of a file, in its order."""
+
+    def __init__(self, results: Results, n: int) -> None:
+        self._results, self._n = results, n
+
+    def __len__(self) -> int:
+        return self._n
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(self._n))]
+        number = int(index) + (self._n if index < 0 else 0)
+        if not 0 <= number < self._n:
+            raise IndexError(f"{self._results.path} has {self._n} sweep points, from 0")
+        return Point(self._results, number)
+
+
+class Results:
+    """A results file, open to read. Lengths are in sphere diameters, z points up, tap 0 is the start.
+
+    It stays open until `close`, or the end of a `with`; a file that a run replaces meanwhile goes on to be
+    read as it was. `file` is its h5py.File.
+    """
+
+    def __init__(self, path: str, file: h5py.File,
+                 program: str | os.PathLike[str] | None = None) -> None:
+        self.path, self.file, self._program = path, file, program
+
+    def __enter__(self) -> Results:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self.file.close()
+
+    def __repr__(self) -> str:
+        return (f"<jostle results {self.path}: {self.scene['name']}, {self.state}, {len(self.points)} sweep "
+                f"point{'s' if len(self.points) != 1 else ''} x {self.n_realizations} realizations>")
+
+    # What was asked for.
+
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """The scene, every default written out."""
+        return json.loads(self.scene_text("resolved"))
+
+    @property
+    def scene_verbatim(self) -> str:
+        """The text of the scene as it was written."""
+        return self.scene_text("verbatim")
+
+    def scene_text(self, which: str) -> str:
+        return text(self.file[f"scene/{which}"])
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        """Axes, labels and values of what is swept."""
+        return read_sweep(self.file, self.scene, self.observables)
+
+    @property
+    def n_realizations(self) -> int:
+        """At every sweep point."""
+        return int(self.file["scene"].attrs["realizations"])
+
+    @cached_property
+    def observables(self) -> list[str]:
+        """The columns of the first sweep point, and what others have besides."""
+        names: dict[str, None] = {}
+        for observed in (True, False):
+            for group in self._kept():
+                own = texts(group["diagnostics"]) if "diagnostics" in group else MONTE_CARLO
+                names.update(dict.fromkeys(texts(group["observables"]) if observed else own))
+        return list(names)
+
+    def _kept(self) -> list[h5py.Group]:
+        """Groups of /sweep that name columns: of all points where the sweep changes them."""
+        swept = any(pointer.startswith(("/observe", "/engine")) for pointer in swept_pointers(self.file))
+        numbers = range(len(self.file["sweep/label"]) if swept else 1)
+        groups = [self.file[f"sweep/point_{number:04}"] for number in numbers]
+        return [group for group in groups if "observables" in group]
+
+    # What came of it.
+
+    @property
+    def points(self) -> Points:
+        return Points(self, len(self.sweep.labels))
+
+    def __iter__(self) -> Iterator[Point]:
+        return iter(self.points)
+
+    @cached_property
+    def ensemble(self) -> xarray.Dataset:
+        """One dataset of the whole sweep: NAME_mean, NAME_sigma, NAME_error and NAME_count of every
+        column, [axes of the sweep ..., tap], read when they are used. NaN (count 0) where a point has not
+        come to a tap. Needs xarray; points[i].mean and the like do without."""
+        from .datasets import ensemble
+        return ensemble(self)
+
+    @cached_property
+    def series(self) -> xarray.Dataset:
+        """Every column of every realization, [axes of the sweep ..., tap, realization], and `status`
+        [axes ..., realization]; read when they are used. Needs xarray."""
+        from .datasets import series
+        return series(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The ensemble as a table: a row a sweep point and tap, indexed by the axes of the sweep and the
+        tap; a column each NAME_mean, NAME_sigma, NAME_error, NAME_count. Needs pandas."""
+        from .frames import ensemble_frame
+        return ensemble_frame(self)
+
+    def positions(self, point: int = 0, realization: int = 0, tap: int | None = None) -> np.ndarray:
+        """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""
+        return self.points[point].positions(realization, tap)
+
+    def box(self, point: int = 0, realization: int = 0) -> Box:
+        """The box of these positions."""
+        return self.points[point].box(realization)
+
+    @property
+    def tables(self) -> Tables:
+        """What was derived from the data: fits, analyses, structure."""
+        return stored_tables(self.file, self.path)
+
+    # How it came about.
+
+    @property
+    def state(self) -> str:
+        """"running" (also of a run that was killed), "interrupted" or "complete"."""
+        return text(self.file["provenance"].attrs["state"])
+
+    @property
+    def shard(self) -> tuple[int, int]:
+        """(i, n): share i of n; (1, 1) of a whole run."""
+        index, count = self.file["provenance"].attrs["shard"]
+        return int(index), int(count)
+
+    @property
+    def run_id(self) -> str:
+        return text(self.file["provenance"].attrs["run_id"])
+
+    @property
+    def provenance(self) -> list[dict[str, str]]:
+        """Of every process that worked on the file: version, git_revision, libraries, host, cpu,
+        instruction_set, threads, command_line, started (UTC)."""
+        group = self.file["provenance"]
+        columns = {name: texts(group[name]) for name in group if name != "process"}
+        n = len(next(iter(columns.values()), []))
+        return [{name: column[i] for name, column in columns.items()} for i in range(n)]
+
+    def digest(self) -> str:
+        """SHA-256 of the data alone, the same for equal runs (jostle info --digest of the file)."""
+        return digest_of(self.path, self._program)
+
+    def verify(self) -> None:
+        """Raises ResultsError unless the file's checksum is right."""
+        require_seal(self.path, whole=True)

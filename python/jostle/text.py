@@ -1,0 +1,25 @@
+"""Text in HDF5 files: UTF-8 of any length."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import h5py
+import numpy as np
+
+
+def text(value: Any) -> str:
+    """Of a scalar dataset, an attribute or an element."""
+    if isinstance(value, h5py.Dataset):
+        value = value[()]
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def texts(values: Any) -> list[str]:
+    """Of a dataset or an attribute of one dimension."""
+    return [text(value) for value in np.asarray(values)]
+
+
+def attribute(item: h5py.Group | h5py.Dataset, name: str) -> str:
+    """"" where there is none."""
+    return text(item.attrs[name]) if name in item.attrs else ""

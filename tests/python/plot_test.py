@@ -1,0 +1,155 @@
+"""Figures show the numbers that they are made of."""
+
+import unittest
+
+import jostle
+import numpy as np
+from jostle.student import factor, half_width
+from matplotlib import pyplot
+
+from support import TINY, Case, changed, made
+
+BED = changed(TINY, name="bed", realizations=4, sweep=None,
+              protocol=[{"tap": {"dilate": 0.05}, "count": 64}], snapshots={"taps": [0, 64]},
+              fits=[{"observable": "mean_height", "model": "inverse_log"}],
+              analyse={"ageing": [{"observable": "mean_height"}],
+                       "spectrum": [{"observable": "mean_height", "last": 64}]},
+              structure={"profile": {}})
+LOOP = changed(TINY, sweep=None, snapshots=None, protocol=[
+    {"ramp": {"dilate": {"from": 0.02, "to": 0.1, "step": 0.04}}, "count": 8},
+    {"ramp": {"dilate": {"from": 0.1, "to": 0.02, "step": 0.04}}, "count": 8}],
+    analyse={"hysteresis": [{"observable": "mean_height"}]})
+BELL = changed(TINY, snapshots=None, sweep={"/protocol/0/tap/dilate": [0.02, 0.05, 0.1]},
+               analyse={"sweep": [{"observable": "mean_height"}]})
+
+
+class Figures(Case):
+    def setUp(self):
+        super().setUp()
+        self.ax = pyplot.figure().gca()
+        self.addCleanup(pyplot.close, self.ax.figure)
+
+    def drawn(self):
+        self.ax.figure.savefig("figure.png")  # what cannot be drawn fails here
+        self.assertGreater((self.folder / "figure.png").stat().st_size, 5000)
+        return [np.array(line.get_xydata()) for line in self.ax.get_lines()]
+
+    def test_compaction_shows_tap_0_and_a_band(self):
+        results = self.open(made(TINY))
+        jostle.plot.compaction(results, "mean_height", points=[0, 3], ax=self.ax)
+        lines = self.drawn()
+        self.assertEqual(len(lines), 2)
+        np.testing.assert_array_equal(lines[1][:, 0], np.arange(41))
+        np.testing.assert_array_equal(lines[1][:, 1], results.points[3].mean["mean_height"])
+        self.assertLess(self.ax.get_xlim()[0], 0)
+        self.assertEqual(self.ax.get_xscale(), "symlog")
+        self.assertEqual(self.ax.get_ylabel(), "mean height (diameter)")
+        top = max(self.ax.collections[1].get_paths()[0].vertices[:, 1])
+        point = results.points[3]
+        self.assertAlmostEqual(top, max(point.mean["mean_height"] +
+                                        half_width(point.error["mean_height"], 2)), places=12)
+        with self.assertRaisesRegex(ValueError, "one of error, sigma, none"):
+            jostle.plot.compaction(results, "mean_height", band="two", ax=self.ax)
+
+    def test_a_fit_is_drawn_over_its_curve(self):
+        table = self.open(made(BED)).tables.one("inverse_log")
+        jostle.plot.fit(table, ax=self.ax)
+        points, law = [line for line in self.drawn() if len(line) == 64]
+        np.testing.assert_array_equal(points[:, 1], table["x"])
+        np.testing.assert_array_equal(law[:, 1], table["fitted"])
+
+    def test_ageing_is_drawn_measured_and_scaled(self):
+        table = self.open(made(BED)).tables.one("ageing")
+        jostle.plot.ageing(table, ax=self.ax)
+        first = self.drawn()[0]
+        known = np.isfinite(table["a"][0])
+        np.testing.assert_array_equal(first[:, 1], table["a"][0][known])
+        ax = pyplot.figure().gca()
+        self.addCleanup(pyplot.close, ax.figure)
+        if np.isfinite(table["scaled_a"]).any():
+            jostle.plot.ageing(table, scaled=True, ax=ax)
+            known = np.isfinite(table["scaled_a"][0])
+            np.testing.assert_array_equal(ax.get_lines()[0].get_ydata(), table["scaled_a"][0][known])
+        else:
+            with self.assertRaisesRegex(jostle.NotThere, "no scaled curves"):
+                jostle.plot.ageing(table, scaled=True, ax=ax)
+
+    def test_scaled_ageing_of_a_law(self):
+        """A table as the program makes one of curves that collapse."""
+        lag = np.array([1.0, 10, 100])
+        curves = np.array([[0.1, 0.2, 0.3], [0.05, np.nan, 0.25]])
+        along = ("waiting_time", "lag")
+        table = jostle.Table(
+            "ageing", {"waiting_time": jostle.Quantity(np.array([0, 10]), ("waiting_time",)),
+                       "lag": jostle.Quantity(lag, ("lag",))},
+            {"scaled_lag": jostle.Quantity(np.array([lag, lag / 3]), along),
+             "scaled_a": jostle.Quantity(curves, along),
+             "scaled_a_error": jostle.Quantity(curves / 10, along),
+             "realizations_fitted": jostle.Quantity(np.array(4), ())}, {})
+        jostle.plot.ageing(table, scaled=True, ax=self.ax)
+        first, second = (line for line in self.drawn() if len(line) > 1)
+        np.testing.assert_array_equal(first, np.transpose([lag, curves[0]]))
+        np.testing.assert_array_equal(second[:, 0], [1 / 3, 100 / 3])
+
+    def test_spectrum_hysteresis_and_sweep(self):
+        table = self.open(made(BED)).tables.one("spectrum")
+        jostle.plot.spectrum(table, ax=self.ax)
+        lines = self.drawn()
+        np.testing.assert_array_equal(lines[0][:, 1], table["density"])
+        if np.isfinite(table["slope"]):
+            steps = np.diff(np.log(lines[-1]), axis=0)
+            np.testing.assert_allclose(steps[:, 1] / steps[:, 0], table["slope"])
+        self.ax.clear()
+        table = self.open(made(LOOP)).tables.one("hysteresis")
+        jostle.plot.hysteresis(table, ax=self.ax)
+        up, down = (line for line in self.drawn() if len(line) > 2)
+        np.testing.assert_array_equal(up[:, 1], table["mean_height"][table["branch"] == 0])
+        self.assertEqual(down[0].tolist(), up[-1].tolist())  # the turn belongs to both
+        self.ax.clear()
+        table = self.open(made(BELL)).tables.one("sweep")
+        jostle.plot.sweep(table, ax=self.ax)
+        np.testing.assert_array_equal(self.drawn()[0][:, 1], table["mean_height"])
+
+    def test_heights_and_profiles(self):
+        results = self.open(made(BED))
+        jostle.plot.height_histogram(results, taps=[64], layers=False, ax=self.ax)
+        (line,) = self.drawn()
+        histogram = results.points[0].snapshots["height_histogram"]
+        np.testing.assert_allclose(line[:, 1], histogram[1].mean(axis=0))
+        self.ax.clear()
+        table = results.tables.one("profile")
+        jostle.plot.profile(table, ax=self.ax)
+        np.testing.assert_array_equal(self.drawn()[0][:, 1], table["phi"][0])
+        with self.assertRaisesRegex(jostle.NotThere, "no histogram of tap 3; kept: 0, 64"):
+            jostle.plot.height_histogram(results, taps=[3], ax=self.ax)
+
+    def test_a_slice_has_the_discs_of_the_plane(self):
+        results = self.open(made(BED))
+        jostle.plot.packing_slice(results, normal="z", at=1.0, ax=self.ax)
+        self.drawn()
+        discs = self.ax.collections[0].get_paths()
+        area = sum(np.prod(disc.get_extents().size) * np.pi / 4 for disc in discs)
+        below = np.abs(results.positions()[:, 2] - 1) < 0.5
+        self.assertGreaterEqual(len(discs), below.sum())  # and images beyond periodic sides
+        fully = np.pi * (0.25 - (results.positions()[below, 2] - 1) ** 2).sum()
+        self.assertGreaterEqual(area, fully * (1 - 1e-9))
+        with self.assertRaisesRegex(ValueError, "one of x, y, z"):
+            jostle.plot.packing_slice(results, normal="w", ax=self.ax)
+
+    def test_what_cannot_be_drawn_says_why(self):
+        with self.assertRaisesRegex(jostle.NotThere, "this draws tables of jostle fit"):
+            jostle.plot.fit(self.open(made(BED)).tables.one("spectrum"), ax=self.ax)
+
+
+class Student(unittest.TestCase):
+    def test_factors_are_those_of_the_tables(self):
+        """docs/analysis.md; scipy.stats.t.ppf((1 + 0.6827) / 2, dof)."""
+        for dof, expected in ((1, 1.8373), (2, 1.3213), (9, 1.0592), (1000, 1.0005)):
+            self.assertAlmostEqual(factor(dof), expected, places=3)
+        self.assertEqual(factor(float("inf")), 1)
+        self.assertTrue(np.isnan(factor(0)))
+        np.testing.assert_allclose(half_width([[1.0, 2.0]], [1, 2]), [[factor(1), 2 * factor(2)]])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,177 @@
+"""What the package reads, number by number against h5py."""
+
+import json
+import shutil
+import unittest
+
+import h5py
+import jostle
+import numpy as np
+
+from support import TINY, Case, changed, made
+
+
+class Read(Case):
+    def setUp(self):
+        super().setUp()
+        self.path = made(TINY)
+        self.results = self.open(self.path)
+        self.raw = h5py.File(self.path)
+        self.addCleanup(self.raw.close)
+
+    def test_points_have_the_stored_numbers(self):
+        self.assertEqual(len(self.results.points), 4)
+        for number, point in enumerate(self.results.points):
+            name = f"point_{number:04}"
+            self.assertEqual(point.label, self.raw["sweep/label"].asstr()[number])
+            self.assertEqual(point.observables, ["mean_height", "bottom_fraction", "sweeps", "acceptance",
+                                                 "capped", "dropped_offsets"])
+            for column in point.observables:
+                stored = self.raw[f"observables/{name}/{column}"][()]
+                np.testing.assert_array_equal(point.series[column], stored)
+                self.assertEqual(stored.shape, (41, 3))
+                for fold in ("mean", "sigma", "error", "count"):
+                    np.testing.assert_array_equal(getattr(point, fold)[column],
+                                                  self.raw[f"ensemble/{name}/{column}_{fold}"][()])
+            self.assertEqual(point.tap.tolist(), list(range(41)))
+            self.assertEqual(point.status, ["done"] * 3)
+            self.assertEqual(point.rows.tolist(), [41] * 3)
+            self.assertEqual(point.reasons, {})
+            np.testing.assert_array_equal(point.timing["seconds"], self.raw[f"timing/{name}/seconds"][()])
+            self.assertEqual(point.units("mean_height"), "diameter")
+            self.assertEqual((point.n_spheres, point.planned_taps, point.seed), (48, 40, 4711))
+            self.assertTrue(np.isnan(point.series["acceptance"][0]).all())  # no relaxation before tap 0
+
+    def test_folds_are_those_of_the_series(self):
+        point = self.results.points[2]
+        values = point.series["bottom_fraction"]
+        np.testing.assert_allclose(point.mean["bottom_fraction"], values.mean(axis=1), rtol=1e-14)
+        np.testing.assert_allclose(point.sigma["bottom_fraction"], values.std(axis=1), rtol=1e-9)
+        np.testing.assert_allclose(point.error["bottom_fraction"],
+                                   values.std(axis=1, ddof=1) / 3 ** 0.5, rtol=1e-9)
+
+    def test_positions_snapshots_and_box(self):
+        group = self.raw["particles/point_0003_realization_00002"]
+        self.assertEqual(self.results.points[3].position_taps(2).tolist(), [0, 10, 40])
+        for frame, tap in enumerate((0, 10, 40)):
+            np.testing.assert_array_equal(self.results.positions(3, 2, tap),
+                                          group["position/value"][frame])
+        self.assertEqual(self.results.positions(3, 2).shape, (48, 3))
+        np.testing.assert_array_equal(self.results.positions(3, 2), group["position/value"][2])
+        box = self.results.box(3, 2)
+        self.assertEqual(box.boundary, ("periodic", "periodic", "none"))
+        np.testing.assert_array_equal(box.edges, group["box/edges"][()])
+        snapshots = self.results.points[3].snapshots
+        self.assertEqual(snapshots["coordination"].shape, (3, 3))
+        np.testing.assert_allclose(snapshots["height_histogram"].sum(axis=2), 1, rtol=1e-12)
+        with self.assertRaisesRegex(jostle.NotThere, "tap 3; kept: 0, 10, 40"):
+            self.results.positions(3, 2, 3)
+        with self.assertRaisesRegex(jostle.NotThere, "realization 7; there are those of 0, 1, 2"):
+            self.results.positions(3, 7)
+
+    def test_scene_sweep_and_provenance(self):
+        self.assertEqual(json.loads(self.results.scene_verbatim), TINY)
+        self.assertEqual(self.results.scene["relax"]["max_sweeps"], 1_000_000)
+        self.assertEqual(self.results.points[1].values,
+                         {"/protocol/0/tap/dilate": 0.02, "/container/width": 5})
+        self.assertEqual(self.results.points[1].coordinates, {"dilate": 0.02, "width": 5})
+        scene = self.results.points[2].scene
+        self.assertEqual((scene["protocol"][0]["tap"]["dilate"], scene["container"]["width"]), (0.1, 4))
+        self.assertNotIn("sweep", scene)
+        self.assertEqual(self.results.scene["container"]["width"], 4)  # its own is untouched
+        (process,) = self.results.provenance
+        self.assertEqual(process["version"], jostle.__version__)
+        self.assertIn("run", process["command_line"])
+        self.assertEqual((self.results.state, self.results.shard), ("complete", (1, 1)))
+        self.assertRegex(self.results.run_id, "^[0-9a-f]{32}$")
+        self.assertRegex(self.results.digest(), "^[0-9a-f]{64}$")
+        self.results.verify()
+
+    def test_what_is_not_there_is_answered_with_what_is(self):
+        with self.assertRaisesRegex(jostle.NotThere, "no 'height'; it has mean_height, bottom_fraction"):
+            self.results.points[0].series["height"]
+        with self.assertRaisesRegex(IndexError, "has 4 sweep points"):
+            self.results.points[4]
+        self.assertEqual(self.results.points[-1].index, 3)
+        self.assertEqual([point.index for point in self.results.points[1:3]], [1, 2])
+        with self.assertRaisesRegex(jostle.NotThere, "it has none"):
+            self.results.tables["fits/point_0000/mean_height/kww"]
+
+
+class OtherFiles(Case):
+    def test_a_share_has_points_that_never_begin(self):
+        scene = changed(TINY, realizations=1)
+        results = self.open(made(scene, "--shard", "2/4"))
+        self.assertEqual(results.shard, (2, 4))
+        self.assertEqual([point.begun for point in results.points], [False, True, False, False])
+        absent = results.points[0]
+        self.assertEqual((absent.status, absent.reasons, absent.rows.tolist()), (["missing"], {}, [0]))
+        self.assertEqual(absent.series["mean_height"].shape, (0, 1))
+        self.assertEqual(absent.mean["mean_height"].shape, (0,))
+        with self.assertRaisesRegex(jostle.NotThere, "there are those of none"):
+            absent.positions()
+        np.testing.assert_array_equal(results.box(0).edges, [4, 4, np.inf])
+
+    def test_failed_realizations_say_why(self):
+        # One sweep is not enough to grow to this packing fraction.
+        scene = changed(TINY, sweep=None, observe=[], spheres=400, snapshots={"taps": [0]},
+                        container={"sides": "fully_periodic", "width": 8, "height": 8},
+                        start={"grow": {"max_sweeps": 1}}, protocol=[],
+                        relax={"metropolis": {}, "stop": {"sweeps": 5}})
+        with self.assertRaises(jostle.RealizationsFailed) as raised:
+            jostle.run(scene, "failed.h5")
+        self.assertEqual(raised.exception.exit_code, 3)
+        results = raised.exception.results
+        self.addCleanup(results.close)
+        point = results.points[0]
+        self.assertEqual(point.status, ["failed"] * 3)
+        self.assertEqual(sorted(point.reasons), [0, 1, 2])
+        self.assertTrue(all(point.reasons.values()))
+
+    def test_what_fitting_did_to_a_pour(self):
+        scene = changed(TINY, sweep=None, container={"sides": "walls", "width": 4},
+                        start={"pour": "fitted"}, protocol=[], snapshots={"taps": [0]})
+        point = self.open(made(scene)).points[0]
+        self.assertIn("spheres_moved", point.fitting)
+        self.assertEqual(point.fitting["spheres_moved"].shape, (3,))
+        self.assertEqual(point.box().boundary, ("none",) * 3)
+
+
+class BadFiles(Case):
+    def refused(self, pattern, path="bad.h5", **keywords):
+        with self.assertRaisesRegex(jostle.ResultsError, pattern):
+            jostle.open(path, **keywords)
+
+    def test_what_is_no_results_file_is_refused(self):
+        self.refused("none.h5: cannot read it: No such file", "none.h5")
+        self.refused("not a file", ".")
+        (self.folder / "bad.h5").write_text("{}")
+        self.refused("bad.h5: not an HDF5 file")
+        with h5py.File("bad.h5", "w") as file:
+            file["a"] = range(100)
+        self.refused("not written by jostle")
+
+    def test_what_was_damaged_or_changed_is_refused(self):
+        whole = made(TINY).read_bytes()
+        (self.folder / "bad.h5").write_bytes(whole[:-1000])
+        self.refused("truncated, changed by another program")
+        (self.folder / "bad.h5").write_bytes(whole[:20])
+        self.refused("truncated")
+        place = whole.index(b"steepest_descent")
+        (self.folder / "bad.h5").write_bytes(whole[:place] + b"S" + whole[place + 1:])
+        self.refused("checksum is wrong", verify=True)
+        results = self.open("bad.h5")
+        with self.assertRaisesRegex(jostle.ResultsError, "checksum is wrong"):
+            results.verify()
+
+    def test_another_layout_is_refused(self):
+        shutil.copy(made(TINY), "bad.h5")
+        with h5py.File("bad.h5", "r+") as file:
+            file.attrs["jostle_format"] = 99
+        data = (self.folder / "bad.h5").read_bytes()
+        (self.folder / "bad.h5").write_bytes(data + b"\njostle-sha256 " + b"0" * 64 + b"\n")
+        self.refused("of layout 99, which is not 1")
+
+
+if __name__ == "__main__":
+    unittest.main()
