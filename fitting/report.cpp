@@ -3,41 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <sstream>
+
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
 
 std::string number(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
-// "0.5841 +- 0.0012", "(2.05 +- 0.74)e-06": two digits of the error, as many decimals of the value.
-std::string with_error(double value, double error) {
-  if (!(error > 0) || !std::isfinite(error)) return number(value, 6);
-  const double size = std::max(std::abs(value), error);
-  const int power = static_cast<int>(std::floor(std::log10(size)));
-  const int last = static_cast<int>(std::floor(std::log10(error))) - 1;  // digit of the error
-  const bool plain = power >= -3 && power <= 5 && last >= -12 && last <= 0;
-  std::ostringstream text;
-  const double scale = plain ? 1 : std::pow(10.0, -power);
-  text << std::fixed << std::setprecision(std::max(plain ? -last : power - last, 0));
-  if (!plain) text << '(';
-  text << value * scale << " +- " << error * scale;
-  if (!plain) text << ")e" << power;
-  return text.str();
-}
-
-std::string ends(const Interval& interval) {
-  if (!std::isfinite(interval.lower) && !std::isfinite(interval.upper)) return "open";
-  const auto end = [](double value) {
-    return std::isfinite(value) ? number(value, 5) : std::string("open");
-  };
-  return end(interval.lower) + " .. " + end(interval.upper);
+  return std::isfinite(value) ? number_text(value, digits) : "-";
 }
 
 // Columns as wide as their longest cell; texts to the left, numbers to the right.
@@ -51,8 +27,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
     for (std::size_t c = 0; c < row.size(); ++c) {
       const int width = static_cast<int>(widths[c]);
       const std::string& header = rows.front()[c];
-      const bool words = c == 0 || header == "meaning" || header == "verdict";
-      text << (c == 0 ? "  " : "   ") << (words ? std::left : std::right);
+      const bool words = c == 0 || header == "verdict";
+      text << "  " << (words ? std::left : std::right);
       text << std::setw(c + 1 < row.size() ? width : 0) << row[c];
     }
     text << '\n';
@@ -66,7 +42,7 @@ std::string value_text(const Estimate& estimate) {
   }
   if (!estimate.has_value()) return "-";
   if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
-  return with_error(estimate.value, estimate.half_width());
+  return value_with_error(estimate.value, estimate.half_width());
 }
 
 const char* verdict_text(Identifiability identifiability) {
@@ -89,24 +65,35 @@ const char* verdict_text(Identifiability identifiability) {
   return "";
 }
 
-std::string parameter_table(const Fit& fit, ReportDetail detail) {
-  const bool full = detail == ReportDetail::full;
-  std::vector<std::vector<std::string>> rows = {{"", "value +- error", "95 %", "verdict"}};
-  if (full) rows[0].insert(rows[0].end(), {"68 %", "linear error"});
-  rows[0].push_back("meaning");
+std::string limits(const Estimate& estimate, std::size_t level) {
+  if (estimate.identifiability <= Identifiability::not_examined) return "-";
+  const Interval& interval = estimate.intervals[level];
+  return limits_text(interval.lower, interval.upper, 5);
+}
+
+std::vector<Estimate> shown_estimates(const Fit& fit) {
   std::vector<Estimate> shown = fit.estimates;
   shown.insert(shown.end(), fit.combinations.begin(), fit.combinations.end());
-  for (const Estimate& e : shown) {
-    const bool examined = e.identifiability > Identifiability::not_examined;
-    rows.push_back({e.parameter.name, value_text(e), examined ? ends(e.intervals[1]) : "-",
-                    verdict_text(e.identifiability)});
-    if (full) {
-      rows.back().push_back(examined ? ends(e.intervals[0]) : "-");
-      rows.back().push_back(number(e.standard_error, 2));
-    }
-    rows.back().push_back(e.parameter.meaning);
+  return shown;
+}
+
+std::string parameter_table(const Fit& fit) {
+  std::vector<std::vector<std::string>> rows = {{"", "value", "95 %", "verdict"}};
+  for (const Estimate& e : shown_estimates(fit)) {
+    rows.push_back(
+        {e.parameter.name, value_text(e), limits(e, 1), verdict_text(e.identifiability)});
   }
   return table(rows);
+}
+
+std::string more_of_the_parameters(const Fit& fit) {
+  std::vector<std::vector<std::string>> rows = {{"", "68 %", "linear error"}};
+  std::string meanings;
+  for (const Estimate& e : shown_estimates(fit)) {
+    rows.push_back({e.parameter.name, limits(e, 0), number(e.standard_error, 2)});
+    meanings += (meanings.empty() ? "  " : "; ") + e.parameter.name + ": " + e.parameter.meaning;
+  }
+  return table(rows) + meanings + '\n';
 }
 
 // What the errors rest on.
@@ -140,6 +127,36 @@ std::string statistics(const Fit& fit) {
   return text.str();
 }
 
+bool all_identified(const Fit& fit) {
+  return std::ranges::all_of(fit.estimates, [](const Estimate& estimate) {
+    return estimate.identifiability == Identifiability::identified ||
+           estimate.identifiability == Identifiability::fixed;
+  });
+}
+
+/// "X_inf, tau identified; B wide".
+std::string what_is_identified(const Fit& fit) {
+  if (all_identified(fit)) return "all parameters identified";
+  std::map<Identifiability, std::string> names;
+  for (const Estimate& estimate : fit.estimates) {
+    std::string& listed = names[estimate.identifiability];
+    listed += (listed.empty() ? "" : ", ") + estimate.parameter.name;
+  }
+  std::string text;
+  for (const auto& [what, listed] : names) {
+    text += (text.empty() ? "" : "; ") + listed + " " + verdict_text(what);
+  }
+  return text;
+}
+
+std::vector<const Fit*> best_first(const std::vector<Fit>& fits) {
+  std::vector<const Fit*> order;
+  for (const Fit& fit : fits) order.push_back(&fit);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Fit* a, const Fit* b) { return a->aic < b->aic; });
+  return order;
+}
+
 }  // namespace
 
 std::string describe(const Fit& fit, ReportDetail detail) {
@@ -147,30 +164,43 @@ std::string describe(const Fit& fit, ReportDetail detail) {
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
   text << '\n'
-       << parameter_table(fit, detail) << "  " << basis_of_errors(fit) << "; reduced "
+       << parameter_table(fit) << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
        << number(fit.r2, 4) << '\n';
-  if (detail == ReportDetail::full) text << statistics(fit);
+  if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();
 }
 
 std::string compare(const std::vector<Fit>& fits) {
   if (fits.empty()) return "";
-  std::vector<const Fit*> order;
-  for (const Fit& fit : fits) order.push_back(&fit);
-  std::stable_sort(order.begin(), order.end(),
-                   [](const Fit* a, const Fit* b) { return a->aic < b->aic; });
+  const std::vector<const Fit*> order = best_first(fits);
   std::vector<std::vector<std::string>> rows = {
-      {"model", "free", "reduced chi2", "R2", "AIC", "above best", "BIC", "runs p"}};
+      {"model", "free", "chi2/dof", "AIC", "above best", "BIC", "runs p"}};
   for (const Fit* fit : order) {
     // Likelihoods of X and of ln X are not on one scale.
     rows.push_back({fit->model + (fit->logarithmic ? " (ln X)" : ""), std::to_string(fit->n_free),
-                    number(fit->reduced_chi2, 4), number(fit->r2, 6), number(fit->aic, 6),
+                    number(fit->reduced_chi2, 4), number(fit->aic, 6),
                     number(fit->aic - order.front()->aic, 3), number(fit->bic, 6),
                     number(fit->runs.p, 2)});
   }
   return table(rows);
+}
+
+std::string verdict(const std::vector<Fit>& fits) {
+  if (fits.empty()) return "";
+  const std::vector<const Fit*> order = best_first(fits);
+  std::string text = order.front()->model;
+  if (order.size() > 1) {
+    text += " has the least AIC (" + order[1]->model + ": " +
+            number(order[1]->aic - order.front()->aic, 3) + " above)";
+  }
+  text += ": " + what_is_identified(*order.front());
+  for (const Fit* fit : order) {
+    if (fit != order.front() && all_identified(*fit))
+      text += "; " + fit->model + ": all identified";
+  }
+  return text;
 }
 
 }  // namespace jostle::inline fitting

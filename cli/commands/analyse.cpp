@@ -83,7 +83,7 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
   require_files(arguments);
   const Provenance by = provenance_of_this_run("");
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
-  ShownTables shown(arguments.output, Detail::full);
+  ShownTables shown(arguments.output);
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
     {
@@ -115,7 +115,7 @@ int run_sweep(const AnalyseArguments& arguments) {
     for (const ResultsFile& file : files) all.push_back(&file);
     tables = sweep_tables(all, {}, requests(arguments, settings));
   }
-  ShownTables shown(arguments.output, Detail::full);
+  ShownTables shown(arguments.output);
   std::string names;
   for (const std::string& input : arguments.inputs) {
     names.append(names.empty() ? "" : ", ").append(input);

@@ -12,6 +12,8 @@
 #include "cli/reports/durations.hpp"
 #include "cli/reports/effects.hpp"
 #include "cli/reports/text_table.hpp"
+#include "cli/reports/wrapped.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -44,9 +46,10 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
 void print_size(const LoadedScene& loaded, const Study& study) {
   std::uint64_t taps = 0;
   for (const auto& point : study.points) taps += point.taps * study.realizations;
-  print(fmt::format("size\n  {} x {}, {}, {} in all\n", counted(study.points.size(), "sweep point"),
-                    counted(study.realizations, "realization"),
-                    counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
+  print_wrapped(fmt::format("size\n  {} x {}, {}, {} in all\n",
+                            counted(study.points.size(), "sweep point"),
+                            counted(study.realizations, "realization"),
+                            counted(loaded.scene.n_spheres, "sphere"), counted(taps, "tap")));
   constexpr std::size_t most_labels = 1000;
   std::string labels;
   for (const auto& point :
@@ -56,14 +59,14 @@ void print_size(const LoadedScene& loaded, const Study& study) {
   if (study.points.size() > most_labels) {
     labels += fmt::format("  ... and {} more\n", study.points.size() - most_labels);
   }
-  print(labels);
+  print_wrapped(labels);
   if (!loaded.scene.until.targets.empty()) {
-    print(fmt::format(
+    print_wrapped(fmt::format(
         "  at first: realizations are added until the target precision is reached, at most {}\n",
         loaded.scene.until.at_most));
   }
-  print(fmt::format("  disk: at most {}, parts and results together\n",
-                    format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
+  print_wrapped(fmt::format("  disk: at most {}, parts and results together\n",
+                            format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
 }
 
 void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
@@ -74,7 +77,7 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   if (estimate.n_strengths > 1) {
     pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
   }
-  print(fmt::format(
+  print_wrapped(fmt::format(
       "  {}{}{}, {} {} at {} {}/s: {} {:.0f} {} a tap, {} {} a realization\n", plan.label,
       plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
       unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
@@ -94,7 +97,7 @@ void print_grains(const LoadedScene& loaded) {
     if (!known.insert(block).second) continue;
     text += fmt::format("  {}{}{}\n", plan.label, plan.label.empty() ? "" : "\n  ", block);
   }
-  if (!text.empty()) print("discrete elements\n" + text);
+  if (!text.empty()) print_wrapped("discrete elements\n" + text);
 }
 
 PilotEstimate tried(const Plan& plan, std::uint64_t budget) {
@@ -125,21 +128,40 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t turns = (realizations + threads - 1) / threads;
   const char* const about = settled ? "about" : "at least";
-  print(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
-                    format_duration(mean * static_cast<double>(turns)), counted(threads, "thread"),
-                    mean.count() * static_cast<double>(realizations) / 3600));
-  print(fmt::format("  memory: about {}\n",
-                    format_bytes(process_bytes + static_cast<double>(threads * bytes))));
+  print_wrapped(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
+                            format_duration(mean * static_cast<double>(turns)),
+                            counted(threads, "thread"),
+                            mean.count() * static_cast<double>(realizations) / 3600));
+  print_wrapped(fmt::format("  memory: about {}\n",
+                            format_bytes(process_bytes + static_cast<double>(threads * bytes))));
+}
+
+/// With its description a line at a time, which a scene may have.
+void print_scene(const std::string& resolved) {
+  constexpr std::size_t around_a_line = 8;  // its indent, quotes and comma
+  Json scene = Json::parse(resolved);
+  const std::size_t width = screen().width - around_a_line;
+  if (scene.contains("description") && scene.at("description").text().size() > width) {
+    const std::string lines = wrapped(scene.at("description").text(), width);
+    Json description = Json::array();
+    for (std::size_t start = 0; start < lines.size();) {
+      const std::size_t end = std::min(lines.find('\n', start), lines.size());
+      description.push_back(lines.substr(start, end - start));
+      start = end + 1;
+    }
+    scene["description"] = description;
+  }
+  print(scene.dump(2) + "\n\n");
 }
 
 void check(const CheckArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene);
-  print(fmt::format("{}\n\n", loaded.resolved));
-  print(effects_text(Json::parse(loaded.resolved)));
+  print_scene(loaded.resolved);
+  print_wrapped(effects_text(Json::parse(loaded.resolved)));
   print_grains(loaded);
   print_size(loaded, study_of(loaded));
   const std::vector<std::string> warnings = scene_warnings(loaded);
-  if (!warnings.empty()) print(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));
+  if (!warnings.empty()) print_wrapped(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));
   if (arguments.no_pilot) return;
   try {
     print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());

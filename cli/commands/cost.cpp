@@ -13,6 +13,7 @@
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "study/available_cpus.hpp"
@@ -32,6 +33,7 @@ struct CostArguments {
   std::uint64_t taps = 0;
   int threads = 0;
   bool resume = false, force = false, no_progress = false;
+  Layout layout;
 };
 
 /// Nothing that is written may replace what is read, nor one another.
@@ -53,7 +55,7 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
   });
   const std::optional<double> target =
       arguments.target > 0 ? std::optional(arguments.target) : std::nullopt;
-  print(cost_text(study, *cost, scene.realizations, target));
+  print_report(cost_text(study, *cost, scene.realizations, target, arguments.layout));
   const std::vector<Table> tables = study.tables(scene.realizations);
   if (!arguments.csv.empty()) {
     std::string csv;
@@ -163,6 +165,7 @@ void add_cost(Command& app, int& code) {
   command.add_option("--csv", a.csv, "Also write the tables to this file").file_to_write();
   command.add_option("--figure", a.figure, "Also write a gnuplot script to this file")
       .file_to_write();
+  add_wide(command, a.layout);
   command.add_flag("--no-progress", a.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");
   command.footer(

@@ -11,6 +11,7 @@
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
@@ -32,7 +33,8 @@ struct FitArguments {
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
   int threads = 0;
-  bool json = false, force = false, not_stored = false, verbose = false;
+  bool json = false, force = false, not_stored = false;
+  Layout layout;
   bool realizations = false;  // columns of a curve file
   Live live = Live::no;
   bool resampling_asked_for = false;
@@ -136,7 +138,6 @@ int run_fits(const FitArguments& arguments) {
   }
   const FitManner manner = manner_of(arguments);
   const Provenance by = provenance_of_this_run("");
-  const ReportDetail detail = arguments.verbose ? ReportDetail::full : ReportDetail::brief;
   bool any = false;
   std::vector<Table> tables;
   Json curves = Json::array();
@@ -148,7 +149,7 @@ int run_fits(const FitArguments& arguments) {
     if (arguments.json) {
       curves.push_back(source_json(fitted));
     } else {
-      print(fits_text(fitted, detail));
+      print_report(fits_text(fitted, arguments.layout));
     }
     if (source.point) {
       const auto fits = fit_tables(fitted, manner);
@@ -198,8 +199,10 @@ void add_fit(Command& app, int& code) {
                            .between(2, 1000000);
   const Option seed = command.add_option("--seed", a.seed, "Of the bootstrap (default 1)");
   command.add_threads(a.threads);
-  command.add_flag("--verbose", a.verbose,
-                   "Also linear errors, 68 % intervals and the statistics of each fit");
+  a.layout.width = screen().width;
+  command.add_flag(
+      "--wide,--verbose", [arguments] { arguments->layout.columns = Columns::all; },
+      "Also 68 % intervals, linear errors, meanings and the statistics of each fit");
   command.add_flag("--json", a.json, "Print JSON, for programs");
   command.add_option("--csv", a.csv, "Also write the curve with its fits to this file")
       .file_to_write();

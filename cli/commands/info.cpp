@@ -8,6 +8,8 @@
 #include "cli/commands/commands.hpp"
 #include "cli/reports/effects.hpp"
 #include "cli/reports/report.hpp"
+#include "cli/reports/wrapped.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
 #include "results/live_run.hpp"
@@ -120,7 +122,7 @@ std::string counts(const ResultsFile& file, const RunStatus& status) {
   return text + fmt::format("; {} of {} taps", rows, all_rows);
 }
 
-std::string info_text(const ResultsFile& file, const RunStatus& status) {
+std::string info_text(const ResultsFile& file, const RunStatus& status, const Layout& layout) {
   const Study& study = file.study();
   const Json scene = stored_scene(file);
   std::string text =
@@ -149,17 +151,18 @@ std::string info_text(const ResultsFile& file, const RunStatus& status) {
   try {
     const ResultsFile live = live_results(file.path(), Content::without_snapshots);
     if (status.parts_bytes > 0) line("curves", "so far, with the last checkpoints");
-    curves = report(live);
+    curves = report(live, layout);
   } catch (const ResultsError& error) {  // no room for a temporary file, for one
     line("curves", fmt::format("of the last stop, without checkpoints: {}", error.what()));
-    curves = report(file);
+    curves = report(file, layout);
   }
-  return text + effects_text(scene) + "\n" + curves;
+  return wrapped(text + effects_text(scene), layout.width) + "\n" + curves;
 }
 
 struct InfoArguments {
   std::string file;
   bool digest = false, json = false;
+  Layout layout;
 };
 
 void info(const InfoArguments& arguments) {
@@ -173,7 +176,7 @@ void info(const InfoArguments& arguments) {
     if (arguments.json) {
       print_json(info_json(file, status));
     } else {
-      print(info_text(file, status));
+      print_report(info_text(file, status, arguments.layout));
     }
   } catch (const JsonError&) {
     throw ResultsError(arguments.file,
@@ -192,6 +195,7 @@ void add_info(Command& app, int& code) {
       command.add_flag("--digest", arguments->digest,
                        "Print the SHA-256 of the data alone, the same for equal runs");
   command.add_flag("--json", arguments->json, "Print the summary as JSON").excludes(digest);
+  add_wide(command, arguments->layout);
   command.footer(
       "Examples:\n"
       "  jostle info quickstart.h5            what was run, how far it is, its curves\n"

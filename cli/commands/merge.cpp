@@ -8,6 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/reports/tables_display.hpp"
 #include "cli/terminal/output_file.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/merge.hpp"
@@ -70,7 +71,7 @@ void add_merge(Command& app, int& code) {
     ignore_sigpipe();
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
-    TablesDisplay display(Quiet::no);
+    TablesDisplay display(Quiet::no, {.width = screen().width});
     store_scene_tables(ResultsFile(arguments->output), available_cpus(), display);
     code = exit_ok;
   });

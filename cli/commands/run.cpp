@@ -13,10 +13,12 @@
 #include "cli/reports/durations.hpp"
 #include "cli/reports/report.hpp"
 #include "cli/reports/tables_display.hpp"
+#include "cli/reports/wrapped.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -38,6 +40,7 @@ struct RunArguments {
   Seconds checkpoint_every{60};
   Shard shard;
   bool quiet = false, no_progress = false;
+  Layout layout;
 };
 
 Shard parse_shard(std::string_view text) {
@@ -139,9 +142,10 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const auto began = std::chrono::steady_clock::now();
   const bool stopped = !run.compute_until_precise();
   if (!arguments.quiet) {
-    print(report(run.results()) +
-          process_line(run.progress(), std::chrono::steady_clock::now() - began, settings.threads,
-                       run.results().study().points.front().unit));
+    print_report(report(run.results(), arguments.layout) +
+                 wrapped(process_line(run.progress(), std::chrono::steady_clock::now() - began,
+                                      settings.threads, run.results().study().points.front().unit),
+                         arguments.layout.width));
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);
@@ -153,7 +157,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const ResultsFile file = run.close();
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
-    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no);
+    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout);
     const auto stored = store_scene_tables(file, settings.threads, display);
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
@@ -224,6 +228,7 @@ void add_options(Command& command, RunArguments& arguments) {
           "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
           "Run share i/n of the realizations; jostle merge joins the files")
       .environment("JOSTLE_SHARD");
+  add_wide(command, arguments.layout);
   command.add_flag("--quiet", arguments.quiet, "Print errors only").environment("JOSTLE_QUIET");
   command.add_flag("--no-progress", arguments.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");

@@ -103,7 +103,7 @@ int measure_structure(const StructureArguments& arguments) {
     }
     tables = structure_of(arguments.inputs, wanted(arguments, {}), arguments.taps, threads);
   }
-  ShownTables shown(arguments.output, Detail::brief);
+  ShownTables shown(arguments.output);
   shown.show(tables, "");
   if (results && arguments.output.stored())
     keep_tables(arguments.inputs.front(), "structure", tables, by);

@@ -8,16 +8,17 @@
 
 #include "cli/reports/durations.hpp"
 #include "cli/reports/text_table.hpp"
+#include "cli/reports/wrapped.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {
 
 namespace {
 
 std::string with_error(double value, double error) {
-  if (!(error > 0)) return fmt::format("{:+.4g}", value);
-  const int decimals = decimals_for(error);
-  return fmt::format("{:+.{}f} +- {:.{}f}", value, decimals, error, decimals);
+  const std::string text = value_with_error(value, error);
+  return value > 0 && text != "0" ? "+" + text : text;
 }
 
 std::string core_time(double seconds) {
@@ -25,22 +26,29 @@ std::string core_time(double seconds) {
   return fmt::format("{:.3g} core-hours", seconds / 3600);
 }
 
-std::string rows(const CostStudy& study, const CostOfObservable& cost) {
-  TextTable table({"setting", "bias", "pairing gains", "sweeps/tap", "s/tap", "realization", ""});
+std::string rows(const CostStudy& study, const CostOfObservable& cost, const Layout& layout) {
+  const bool all = layout.columns == Columns::all;
+  std::vector<std::string> headers{"setting", "bias", "s/tap", "realization", ""};
+  if (all) headers.insert(headers.begin() + 2, {"pairing gains", "sweeps/tap"});
+  TextTable table(headers);
   const auto front = pareto_front(cost.setting_costs);
   for (std::size_t p = 0; p < study.settings().size(); ++p) {
     const PairedBias& bias = cost.biases[p];
     const bool reference = p == study.reference().last;
     const double gain = bias.variance_reduction;
-    table.add({study.settings()[p].name,
-               reference ? "0, the reference" : with_error(bias.bias, bias.error),
-               reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
-               fmt::format("{:.0f}", study.times()[p].sweeps),
-               fmt::format("{:.3g}", study.times()[p].tap_seconds),
-               format_duration(Seconds(study.realization_seconds(p))),
-               front[p] != 0 ? "front" : ""});
+    std::vector<std::string> cells{
+        study.settings()[p].name,
+        reference ? "0, the reference" : with_error(bias.bias, bias.error),
+        fmt::format("{:.3g}", study.times()[p].tap_seconds),
+        format_duration(Seconds(study.realization_seconds(p))), front[p] != 0 ? "front" : ""};
+    if (all) {
+      cells.insert(cells.begin() + 2,
+                   {reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
+                    fmt::format("{:.0f}", study.times()[p].sweeps)});
+    }
+    table.add(std::move(cells));
   }
-  return table.text();
+  return table.text(layout.table_width());
 }
 
 /// What failed, with the first reason of each setting, and the settings of which it is so.
@@ -139,25 +147,26 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
 }  // namespace
 
 std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
-                      std::uint32_t scene_realizations, std::optional<double> target) {
+                      std::uint32_t scene_realizations, std::optional<double> target,
+                      const Layout& layout) {
   const SettingCost& own = cost.setting_costs.front();
   if (std::isnan(own.realization_seconds))
-    return failures(study);  // every replicate of the scene's own
-  std::string text =
-      fmt::format("{}: after {} tap{}, {} replicates, against {}\n{}", cost.label.name,
-                  study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
-                  study.settings()[study.reference().last].name, rows(study, cost));
-  text += fmt::format(
+    return wrapped(failures(study), layout.width);  // every replicate of the scene's own
+  std::string head = target ? advice(study, cost, *target) : "";
+  head += fmt::format(
       "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
       "{} taps.\n",
       with_error(own.bias, own.bias_error),
       own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());
-  text += shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study);
-  text += growth_of_the_bias(study, cost) + other_windows_line(cost);
-  if (target) text += advice(study, cost, *target);
-  return text;
+  head += fmt::format("\n{}: after {} tap{}, {} replicates, against {}\n", cost.label.name,
+                      study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
+                      study.settings()[study.reference().last].name);
+  const std::string below = shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +
+                            failures(study) + growth_of_the_bias(study, cost) +
+                            other_windows_line(cost);
+  return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(below, layout.width);
 }
 
 std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,

@@ -4,9 +4,17 @@
 
 #include <cmath>
 
+#include "cli/reports/wrapped.hpp"
+#include "fitting/report.hpp"
+
 namespace jostle::inline cli {
 
 namespace {
+
+constexpr const char* legend =
+    "\na(b): b, in the last digits of a, is half the 68 % interval; not identifiable: the data set "
+    "no "
+    "limit. docs/fitting.md says what the rest means.\n";
 
 const char* name_of(Identifiability identifiability) {
   switch (identifiability) {
@@ -76,6 +84,29 @@ Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
   return parameters;
 }
 
+/// The report of the fit with the resampled errors under it, or the refusal.
+std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
+  if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
+    return fmt::format("{}: no fit: {}\n", outcome.model, refusal->message);
+  }
+  const Fit& fit = std::get<Fit>(outcome.result);
+  std::string text = describe(fit, detail);
+  if (!outcome.resampled) return text;
+  const ResampledErrors& resampled = *outcome.resampled;
+  text +=
+      fmt::format("  standard errors from {} resamples of the realizations:", resampled.resamples);
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    text += fmt::format("{} {} {:.2g}", j == 0 ? "" : ",", fit.estimates[j].parameter.name,
+                        resampled.errors[j]);
+  }
+  text += "\n";
+  if (resampled.failed > 0) {
+    text += fmt::format("  ! {} of the resamples did not settle and are not counted\n",
+                        resampled.failed);
+  }
+  return text;
+}
+
 }  // namespace
 
 Json fit_json(const FitOutcome& outcome) {
@@ -131,39 +162,23 @@ Json fit_json(const FitOutcome& outcome) {
   return object;
 }
 
-std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
-  if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
-    return fmt::format("{}: no fit: {}\n", outcome.model, refusal->message);
-  }
-  const Fit& fit = std::get<Fit>(outcome.result);
-  std::string text = describe(fit, detail);
-  if (!outcome.resampled) return text;
-  const ResampledErrors& resampled = *outcome.resampled;
-  text +=
-      fmt::format("  standard errors from {} resamples of the realizations:", resampled.resamples);
-  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
-    text += fmt::format("{} {} {:.2g}", j == 0 ? "" : ",", fit.estimates[j].parameter.name,
-                        resampled.errors[j]);
-  }
-  text += "\n";
-  if (resampled.failed > 0) {
-    text += fmt::format("  ! {} of the resamples did not settle and are not counted\n",
-                        resampled.failed);
-  }
-  return text;
-}
-
-std::string fits_text(const FittedCurve& fitted, ReportDetail detail) {
-  std::string text = fitted.source.title + "\n";
+std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
   std::vector<Fit> fits;
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
+  }
+  std::string text = fitted.source.title + "\n";
+  if (!fits.empty()) text += fmt::format("  verdict  {}\n", verdict(fits));
+  const ReportDetail detail =
+      layout.columns == Columns::all ? ReportDetail::full : ReportDetail::brief;
   for (const FitOutcome& outcome : fitted.outcomes) {
     text += '\n';
     text += fit_text(outcome, detail);
-    if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
   }
   if (fits.size() > 1) text.append("\n").append(compare(fits));
+  if (!fits.empty()) text += legend;
   text += '\n';
-  return text;
+  return wrapped(text, layout.width);
 }
 
 std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes) {

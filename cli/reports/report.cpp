@@ -3,86 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 
 #include "cli/reports/durations.hpp"
-#include "cli/reports/text_table.hpp"
+#include "cli/reports/tap_table.hpp"
+#include "cli/reports/wrapped.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "fitting/value_text.hpp"
 #include "study/amounts.hpp"
 
 namespace jostle::inline cli {
 namespace {
-
-/// The columns of a point, and how many realizations have come to each tap.
-struct PointSeries {
-  std::vector<EnsembleSeries> columns;
-  std::vector<std::uint32_t> reached;  // [n_taps]
-};
-
-PointSeries point_series(const ResultsFile& file, std::uint32_t point,
-                         std::span<const RealizationSummary> realizations) {
-  PointSeries series{file.ensemble(point), {}};
-  for (const RealizationSummary& one : realizations) {
-    if (one.rows == 0) continue;
-    series.reached.resize(std::max(series.reached.size(), static_cast<std::size_t>(one.rows)));
-    ++series.reached[one.rows - 1];  // for now, of those that end here
-  }
-  for (std::size_t tap = series.reached.size(); tap-- > 1;) {
-    series.reached[tap - 1] += series.reached[tap];
-  }
-  return series;
-}
-
-/// Decimals that show the smallest error of a column to two digits; -1 where no error is known.
-int decimals_of(const EnsembleSeries& column, const std::vector<std::uint64_t>& taps) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint64_t tap : taps) {
-    if (column.error[tap] > 0) least = std::min(least, column.error[tap]);
-  }
-  return std::isinf(least) ? -1 : decimals_for(least);
-}
-
-std::string cell(double value, int decimals) {
-  if (std::isnan(value)) return "-";
-  return decimals < 0 ? fmt::format("{:.6g}", value) : fmt::format("{:.{}f}", value, decimals);
-}
-
-std::string tap_table(const PointSeries& series) {
-  const auto taps = reported_taps(series.reached.size() - 1);
-  const std::vector<std::uint32_t>& reached = series.reached;
-  const bool partial = std::ranges::any_of(
-      taps, [&](std::uint64_t tap) { return reached[tap] != reached[taps.front()]; });
-  std::vector<std::string> headers{"tap"};
-  if (partial) headers.emplace_back("M");
-  std::vector<int> decimals;
-  for (const auto& column : series.columns) {
-    const Column& label = column.label;
-    decimals.push_back(label.shown == Shown::spread ? decimals_of(column, taps) : label.decimals);
-    if (label.shown == Shown::spread || label.shown == Shown::mean) headers.push_back(label.name);
-    if (label.shown == Shown::spread) headers.insert(headers.end(), {"+- error", "sigma"});
-  }
-  TextTable table(headers);
-  for (const std::uint64_t tap : taps) {
-    std::vector<std::string> row{fmt::to_string(tap)};
-    if (partial) row.push_back(fmt::to_string(reached[tap]));
-    for (std::size_t i = 0; i < series.columns.size(); ++i) {
-      const auto& column = series.columns[i];
-      const Shown shown = column.label.shown;
-      if (shown == Shown::spread || shown == Shown::mean) {
-        row.push_back(cell(column.mean[tap], decimals[i]));
-      }
-      if (shown != Shown::spread) continue;
-      for (const double value : {column.error[tap], column.sigma[tap]}) {
-        row.push_back(cell(value, decimals[i]));
-      }
-    }
-    table.add(std::move(row));
-  }
-  return table.text();
-}
 
 std::string sentence(std::string text, const std::string& number) {
   const auto place = text.find("{}");
@@ -185,28 +118,79 @@ std::string failure_line(const RealizationSummary& failed, const StudyPoint& poi
                      failed.reason);
 }
 
-std::string point_report(const ResultsFile& file, std::uint32_t point,
-                         std::span<const RealizationSummary> realizations) {
-  const StudyPoint& study = file.study().points[point];
+std::string failures_of(const StudyPoint& point, std::span<const RealizationSummary> realizations) {
+  std::string lines;
+  for (const auto& one : realizations) {
+    if (one.status == RealizationStatus::failed) lines += failure_line(one, point);
+  }
+  return lines;
+}
+
+PointCost cost_of(const ResultsFile& file, std::span<const RealizationSummary> realizations) {
   PointCost cost;
-  std::string failures;
   for (const auto& one : realizations) {
     cost.work += one.work;
     if (one.status == RealizationStatus::done) {
       ++cost.done;
     } else if (one.status == RealizationStatus::failed) {
       ++cost.failed;
-      failures += failure_line(one, study);
     } else if (in_share(file.shard(), file.study(), one.id)) {
       ++cost.unfinished;
     }
   }
-  std::string text = study.label.empty() ? "" : study.label + "\n";
+  return cost;
+}
+
+std::string point_report(const ResultsFile& file, std::uint32_t point,
+                         std::span<const RealizationSummary> realizations, const Layout& layout) {
+  const StudyPoint& study = file.study().points[point];
   const PointSeries series = point_series(file, point, realizations);
+  std::string text = study.label.empty() ? "" : wrapped(study.label + "\n", layout.width);
+  std::string sentences_below;
   if (!series.reached.empty()) {
-    text += tap_table(series) + sentences(series) + growth_line(series) + fitting_line(file, point);
+    text += tap_table(series, layout);
+    sentences_below = sentences(series) + growth_line(series) + fitting_line(file, point);
   }
-  return text + cost_line(cost, study.unit) + failures;
+  sentences_below +=
+      cost_line(cost_of(file, realizations), study.unit) + failures_of(study, realizations);
+  return text + wrapped(sentences_below, layout.width);
+}
+
+/// "bottom_fraction 0.5413(20) at tap 0, 0.5591(13) at tap 100".
+std::string change_of(const PointSeries& series) {
+  if (series.reached.empty()) return "";
+  const auto named = [](const EnsembleSeries& one) {
+    return one.label.shown == Shown::spread && one.label.name.ends_with("fraction");
+  };
+  auto shown = std::ranges::find_if(series.columns, named);
+  if (shown == series.columns.end()) shown = series.columns.begin();
+  if (shown == series.columns.end()) return "";
+  const std::size_t last = series.reached.size() - 1;
+  const auto at = [&](std::size_t tap) {
+    return fmt::format("{} at tap {}", value_with_error(shown->mean[tap], shown->error[tap]), tap);
+  };
+  std::string text = fmt::format("; {} {}", shown->label.name, at(0));
+  return last == 0 ? text : text + ", " + at(last);
+}
+
+std::string verdict_line(const ResultsFile& file,
+                         std::span<const RealizationSummary> realizations) {
+  const PointCost cost = cost_of(file, realizations);
+  std::string text = fmt::format("{} of {} done", cost.done,
+                                 counted(cost.done + cost.failed + cost.unfinished, "realization"));
+  const std::size_t n_points = file.study().points.size();
+  if (n_points > 1) text += fmt::format(" at {} sweep points", n_points);
+  if (cost.failed > 0) text += fmt::format(", {} FAILED", cost.failed);
+  if (cost.unfinished > 0) text += fmt::format(", {} unfinished", cost.unfinished);
+  if (n_points == 1) text += change_of(point_series(file, 0, realizations));
+  return text + "\n\n";
+}
+
+/// How numbers are written, and what is not shown.
+std::string legend(const Layout& layout) {
+  std::string text = "a(b): mean over realizations, b its standard error in the last digits of a";
+  return text + (layout.columns == Columns::all ? "; sigma: deviation of realizations, 1/M\n"
+                                                : "; --wide: sigma and all columns\n");
 }
 
 }  // namespace
@@ -221,26 +205,15 @@ std::string failure_lines(const ResultsFile& file) {
   return lines;
 }
 
-std::vector<std::uint64_t> reported_taps(std::uint64_t last) {
-  std::vector<std::uint64_t> taps{0};
-  for (std::uint64_t decade = 1; decade < last; decade *= 10) {
-    for (const std::uint64_t tap : {decade, 2 * decade, 5 * decade}) {
-      if (tap < last) taps.push_back(tap);
-    }
-  }
-  if (last > 0) taps.push_back(last);
-  return taps;
-}
-
-std::string report(const ResultsFile& file) {
+std::string report(const ResultsFile& file, const Layout& layout) {
   const std::vector<RealizationSummary> all = file.realizations();
   const std::size_t a_point = file.study().realizations;
-  std::string text;
+  std::string text = wrapped(verdict_line(file, all), layout.width);
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
-    if (!text.empty()) text += '\n';
-    text += point_report(file, point, std::span(all).subspan(point * a_point, a_point));
+    if (point > 0) text += '\n';
+    text += point_report(file, point, std::span(all).subspan(point * a_point, a_point), layout);
   }
-  return text;
+  return text + wrapped(legend(layout), layout.width);
 }
 
 }  // namespace jostle::inline cli

@@ -1,24 +1,22 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
+#include "cli/reports/layout.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle::inline cli {
 
-/// For every sweep point a table over taps, about three a decade, of mean +- standard error and
-/// sigma of every observable, with the means that the engine has shown beside them, and the number
-/// M of realizations where not all reached every tap; below it what the engine says in sentences
-/// (capped relaxations), cost, and failed
-/// realizations with seed and reason.
-std::string report(const ResultsFile& file);
+/// What a file holds, in one line: how many realizations have ended, and, of a single sweep point,
+/// where its first fraction (or its first observable) went. Then for every sweep point a table over
+/// taps, about three a decade, of the mean of every observable with its standard error, and the
+/// means that the engine has shown beside them where there is room, or, with all columns, sigma and
+/// all of these; the number M of realizations where not all reached every tap. Below it what the
+/// engine says in sentences (capped relaxations), cost, and failed realizations with seed and
+/// reason.
+std::string report(const ResultsFile& file, const Layout& layout = {});
 
 /// A line for every realization that failed, with its seed and reason.
 std::string failure_lines(const ResultsFile& file);
-
-/// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.
-std::vector<std::uint64_t> reported_taps(std::uint64_t last);
 
 }  // namespace jostle::inline cli

@@ -5,18 +5,8 @@
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 
-// Tables of fits and analyses, for people and for programs. A quantity "x" and its "x_error" stand
-// together.
+// Tables of fits and analyses, for programs. A quantity "x" and its "x_error" stand together.
 namespace jostle::inline cli {
-
-enum class Detail {
-  brief,  // notes and single values, short columns; long ones are named
-  full
-};
-
-/// Notes, single values with their errors (with_half_widths), then columns, one block a set of
-/// axes.
-std::string table_text(const Table& table, Detail detail);
 
 /// {"name", "notes": {...}, "axes": {name: quantity}, "quantities": {name: quantity}}, a quantity
 /// being {"values", "axes", "units", "long_name", "source"}: a number or text, or nested lists,

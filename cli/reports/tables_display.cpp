@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include "cli/reports/fit_output.hpp"
-#include "cli/reports/table_output.hpp"
+#include "cli/reports/table_text.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 
 namespace jostle::inline cli {
 
 void TablesDisplay::fitted(const FittedCurve& curve) {
-  if (quiet_ == Quiet::no) print("\n" + fits_text(curve));
+  if (quiet_ == Quiet::no) print_report("\n" + fits_text(curve, layout_));
 }
 
 void TablesDisplay::analysed(const Table& table) {
-  if (quiet_ == Quiet::no) print("\n" + table_text(table, Detail::brief));
+  if (quiet_ == Quiet::no) print_report("\n" + table_text(table, layout_));
 }
 
 void TablesDisplay::without_structure(const std::string& reason) {

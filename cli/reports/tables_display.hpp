@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/reports/layout.hpp"
 #include "study/scenes/scene_tables.hpp"
 
 namespace jostle::inline cli {
@@ -10,13 +11,14 @@ enum class Quiet { no, yes };
 /// on stderr.
 class TablesDisplay : public TablesObserver {
  public:
-  explicit TablesDisplay(Quiet quiet) : quiet_(quiet) {}
+  TablesDisplay(Quiet quiet, const Layout& layout) : quiet_(quiet), layout_(layout) {}
   void fitted(const FittedCurve& curve) override;
   void analysed(const Table& table) override;
   void without_structure(const std::string& reason) override;
 
  private:
   Quiet quiet_;
+  Layout layout_;
 };
 
 }  // namespace jostle::inline cli

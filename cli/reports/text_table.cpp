@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
+#include <numeric>
 
-#include <fmt/format.h>
+#include "cli/reports/wrapped.hpp"
 
 namespace jostle::inline cli {
+namespace {
 
-TextTable::TextTable(std::vector<std::string> headers) {
+constexpr std::size_t gap = 2;
+
+}  // namespace
+
+TextTable::TextTable(std::vector<std::string> headers, std::size_t keys) : keys_(keys) {
   rows_.push_back(std::move(headers));
 }
 
@@ -18,49 +22,46 @@ void TextTable::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
-std::string TextTable::text() const {
-  std::vector<std::size_t> widths(rows_.front().size(), 0);
-  for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
+std::size_t TextTable::width_of_column(std::size_t column) const {
+  std::size_t width = 0;
+  for (const auto& row : rows_) width = std::max(width, width_of(row[column]));
+  return width;
+}
+
+std::string TextTable::rows_of(const std::vector<std::size_t>& columns) const {
+  std::vector<std::size_t> widths;
+  for (const std::size_t column : columns) widths.push_back(width_of_column(column));
   std::string text;
   for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += fmt::format("{}{:>{}}", i == 0 ? "" : "  ", row[i], widths[i]);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string& cell = row[columns[i]];
+      if (i > 0) text.append(gap, ' ');
+      text.append(widths[i] - width_of(cell), ' ').append(cell);
     }
     text += '\n';
   }
   return text;
 }
 
-int decimals_for(double error) {
-  return static_cast<int>(std::clamp(1 - std::floor(std::log10(error)), 0.0, 12.0));
-}
-
-std::string value_and_error(double value, double error, double scale) {
-  constexpr int most_decimals = 6, most_digits = 15;
-  constexpr double largest_plain = 1e7;
-  constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
-  const bool has_error = std::isfinite(error) && error > 0;
-  const double larger = std::max(std::abs(value), has_error ? error : 0.0);
-  if (!std::isfinite(value)) return fmt::format("{:.6g}", value);
-  if (larger < noise * scale) return "0";
-  if (!has_error) return fmt::format("{:.6g}", value);
-  // Of the error as it is printed: 0.00996 has its first digit where 0.010 has it.
-  const auto exponent = [](double number, int digits) {
-    const std::string text = fmt::format("{:.{}e}", number, digits - 1);
-    return std::stoi(text.substr(text.find('e') + 1));
-  };
-  const int decimals = 1 - exponent(error, 2);
-  if (decimals <= most_decimals && larger < largest_plain) {
-    const int shown = std::max(decimals, 0);
-    return fmt::format("{:.{}f} +- {:.{}f}", value, shown, error, shown);
+std::string TextTable::text(std::size_t width) const {
+  std::vector<std::size_t> keys(std::min(keys_, rows_.front().size()));
+  std::iota(keys.begin(), keys.end(), 0);
+  std::size_t width_of_keys = 0;
+  for (const std::size_t key : keys) width_of_keys += width_of_column(key) + gap;
+  std::string text;
+  std::vector<std::size_t> block = keys;
+  std::size_t used = width_of_keys;
+  for (std::size_t column = keys.size(); column < rows_.front().size(); ++column) {
+    const std::size_t needed = width_of_column(column);
+    if (block.size() > keys.size() && (needed > width || used > width - needed)) {
+      text += rows_of(block) + '\n';
+      block = keys;
+      used = width_of_keys;
+    }
+    block.push_back(column);
+    used += needed + gap;
   }
-  const int power = exponent(larger, 2);
-  const double unit = std::pow(10.0, power);
-  const int shown = std::clamp(decimals + power, 0, most_digits);
-  return fmt::format("({:.{}f} +- {:.{}f})e{:+03}", value / unit, shown, error / unit, shown,
-                     power);
+  return text + rows_of(block);
 }
 
 }  // namespace jostle::inline cli

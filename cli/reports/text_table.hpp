@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,24 +9,22 @@ namespace jostle::inline cli {
 /// Columns as wide as their longest cell, numbers flush right, two spaces apart.
 class TextTable {
  public:
-  explicit TextTable(std::vector<std::string> headers);
+  /// The first `keys` columns say which row it is.
+  explicit TextTable(std::vector<std::string> headers, std::size_t keys = 1);
 
   /// One cell a header.
   void add(std::vector<std::string> cells);
-  /// One line a row, the headers first, each ending in a newline.
-  std::string text() const;
+  /// Of a column, in characters.
+  std::size_t width_of_column(std::size_t column) const;
+  /// One line a row, the headers first, each ending in a newline. Columns that find no room beside
+  /// the others stand below them, behind the keys again, after an empty line.
+  std::string text(std::size_t width = std::string::npos) const;
 
  private:
+  std::string rows_of(const std::vector<std::size_t>& columns) const;
+
   std::vector<std::vector<std::string>> rows_;  // [1 + n_rows][n_columns]
+  std::size_t keys_;
 };
-
-/// Decimals that show a positive error to two digits: 4 for 0.0021. At most 12.
-int decimals_for(double error);
-
-/// A value with its error, both to the second digit of the error and with one power of ten:
-/// "0.5683 +- 0.0021", "1240 +- 85", "(2.04873 +- 0.00074)e-06". Where both are rounding noise of
-/// numbers of the size of `scale`, "0". An error that is not above 0 and finite is left out, and
-/// the value has six digits.
-std::string value_and_error(double value, double error, double scale = 1);
 
 }  // namespace jostle::inline cli

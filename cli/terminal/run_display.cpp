@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/terminal/log.hpp"
-#include "cli/terminal/standard_streams.hpp"
+#include "cli/terminal/screen.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/printable.hpp"
 
@@ -29,7 +29,7 @@ void RunDisplay::storing(std::uint64_t done, std::uint64_t of) {
 }
 
 void RunDisplay::compared(const PrecisionStatus& status) {
-  if (prints_targets_) print(precision_line(status));
+  if (prints_targets_) print_wrapped(precision_line(status));
 }
 
 std::string precision_line(const PrecisionStatus& status) {

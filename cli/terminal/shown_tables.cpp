@@ -4,9 +4,12 @@
 
 #include <utility>
 
+#include "cli/reports/table_output.hpp"
+#include "cli/reports/table_text.hpp"
 #include "cli/terminal/exit_codes.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "study/tables/analyse.hpp"
 
@@ -15,6 +18,7 @@ namespace jostle::inline cli {
 void add_table_output(Command& command, TableOutput& output) {
   command.add_flag("--json", output.json, "Print JSON, for programs");
   command.add_option("--csv", output.csv, "Also write the tables to this file").file_to_write();
+  add_wide(command, output.layout);
   command.add_flag("--force", output.force, "Replace the file of --csv if it exists");
   command.add_flag("--no-store", output.not_stored, "Leave the results files as they are");
   add_live(command, output.live);
@@ -32,7 +36,7 @@ void ShownTables::show(std::span<const Table> tables, const std::string& input) 
       if (!input.empty()) listed["file"] = input;
       listed_.push_back(std::move(listed));
     } else {
-      print(fmt::format("{}\n", table_text(table, detail_)));
+      print_report(table_text(table, output_.layout) + "\n");
     }
     if (output_.csv.empty()) continue;
     if (!input.empty()) csv_ += fmt::format("# {}\n", input);

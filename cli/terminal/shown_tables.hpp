@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "cli/options/command.hpp"
-#include "cli/reports/table_output.hpp"
+#include "cli/reports/layout.hpp"
+#include "config/json/json.hpp"
+#include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"
 #include "study/results_input.hpp"
 
@@ -16,19 +18,20 @@ namespace jostle::inline cli {
 struct TableOutput {
   std::string csv;
   bool json = false, force = false, not_stored = false;
+  Layout layout;
   Live live = Live::no;
 
   /// A run that goes on would lose them.
   bool stored() const { return !not_stored && live == Live::no; }
 };
 
-/// --json, --csv, --force, --no-store, --live.
+/// --json, --csv, --wide, --force, --no-store, --live.
 void add_table_output(Command& command, TableOutput& output);
 
 /// Prints tables as they come, and at the end what comes as a whole.
 class ShownTables {
  public:
-  ShownTables(const TableOutput& output, Detail detail) : output_(output), detail_(detail) {}
+  explicit ShownTables(const TableOutput& output) : output_(output) {}
 
   /// A line for people above what follows.
   void heading(const std::string& text);
@@ -39,7 +42,6 @@ class ShownTables {
 
  private:
   const TableOutput& output_;
-  Detail detail_;
   Json listed_ = Json::array();
   std::string csv_;
   bool any_ = false;

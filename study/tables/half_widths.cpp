@@ -54,8 +54,9 @@ Table with_half_widths(Table table) {
     return std::ranges::find(used, quantity.name) != used.end();
   });
   if (!used.empty()) {
-    table.notes.emplace_back("+-",
-                             "half the 68 % interval by Student's t; the file holds errors and "
+    table.notes.emplace_back("a(b)",
+                             "b, in the last digits of a, is half the 68 % interval by Student's "
+                             "t; the file holds errors and "
                              "their degrees of freedom");
   }
   return table;

@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, OK, TINY, Case, changed
+from support import BAD_INPUT, OK, TINY, UNFOLDED, Case, changed
 
 TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 160}])
 
@@ -76,7 +76,7 @@ class Analysed(Case):
         self.assertTrue(band["notes"]["band"].startswith("0.01 to 0.2 per tap"))
         self.assertTrue(math.isfinite(band["quantities"]["slope_error"]["values"]))
         text = self.jostle("analyse", *asked).stdout
-        self.assertRegex(text, r"slope +-?\d+\.\d+ \+- \d")
+        self.assertRegex(text, r"slope +-?\d+\.\d+\(\d")
 
     def test_options_stand_before_the_name_of_an_analysis_too(self):
         self.write(TAPPED)
@@ -97,8 +97,9 @@ class Analysed(Case):
         self.run_scene()
         asked = ["tiny.h5", "steady", "--observable", "mean_height", "--sweep-point", "0"]
         found = self.analyse(*asked)["tables"][0]["quantities"]
-        text = self.jostle("analyse", *asked).stdout
-        printed = float(re.search(r"^  value .* \+- (\S+) diameter", text, re.M).group(1))
+        text = self.jostle("analyse", *asked, environment=UNFOLDED).stdout
+        value, digits = re.search(r"^  value +(\S+)\((\d+)\) diameter", text, re.M).groups()
+        printed = int(digits) * 10.0 ** -len(value.split(".")[1])
         # Student's t of two degrees of freedom at 68.27 %.
         error = found["value_error"]["values"]
         self.assertAlmostEqual(printed / (1.3213 * error), 1, delta=0.05)
@@ -135,7 +136,8 @@ class Analysed(Case):
                              streams == "matched")
             to_one = self.analyse(*asked, "--reference", "0.3")["tables"][0]["quantities"]
             self.assertEqual([round(x, 12) for x in to_one["to"]["values"]], [0.1, 0.2])
-        refused = self.jostle("analyse", *asked, "--reference", "0.25", expect=BAD_INPUT).stdout
+        refused = self.jostle("analyse", *asked, "--reference", "0.25", expect=BAD_INPUT,
+                              environment=UNFOLDED).stdout
         self.assertIn("there are 0.1, 0.2, 0.3", refused)
 
     def test_what_cannot_be_analysed_is_refused_in_words(self):

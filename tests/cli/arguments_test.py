@@ -3,7 +3,7 @@
 import shutil
 import unittest
 
-from support import BAD_INPUT, BROKEN, SOURCE, STOPPED, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, SOURCE, STOPPED, TINY, UNFOLDED, Case, changed
 
 TAPPED = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
                  observe=["mean_height"],
@@ -106,7 +106,8 @@ class Words(Refused):
         done = self.run_scene("--threads", 1)
         self.assertIn("1 realization to do on 1 thread\n", done.stderr)
         self.assertRegex(done.stdout, r"this run: .* on 1 thread[;\n]")
-        self.assertRegex(self.jostle("info", "tiny.h5").stdout, r"made by .*, 1 thread\n")
+        self.assertRegex(self.jostle("info", "tiny.h5", environment=UNFOLDED).stdout,
+                         r"made by .*, 1 thread\n")
         self.assertIn("1 file merged", self.jostle("merge", "tiny.h5", "-o", "one.h5").stdout)
         exported = self.jostle("export", "tiny.h5", "--format", "extxyz").stdout
         self.assertIn("tap 1, 1 sphere\n", exported)
@@ -200,7 +201,7 @@ class Doubtful(Case):
         said = ("theta0 is an angle in radians", "45 degrees are 0.7854",
                 "dilate 2 stretches the bed to 3 times its height; 2 percent are 0.02",
                 "lift 8 drops the bed from 8 diameters")
-        checked = self.jostle("check", "scene.json").stdout
+        checked = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
         logged = self.run_scene().stderr
         for text in said:
             self.assertIn(text, checked)

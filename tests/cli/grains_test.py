@@ -7,7 +7,7 @@ import unittest
 
 import h5py
 
-from support import BAD_INPUT, STOPPED, Case, changed
+from support import BAD_INPUT, STOPPED, UNFOLDED, Case, changed
 
 GRAINS = {
     "name": "grains",
@@ -55,7 +55,7 @@ class Grains(Case):
         self.assertEqual(self.digest("cut.h5"), straight)
 
     def test_what_is_stored_and_shown(self):
-        shown = self.run_scene().stdout
+        shown = self.run_scene("--wide").stdout
         for text in ("sphere steps", "kinetic_energy", "contacts", "seconds"):
             self.assertIn(text, shown)
         for text in ("trials", "sweeps", "ledger_error"):
@@ -70,7 +70,7 @@ class Grains(Case):
         self.assertGreater(info["realizations"][0]["sphere_steps"], 1e6)
 
     def test_check_says_what_the_settings_come_to(self):
-        text = self.jostle("check", "scene.json").stdout
+        text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
         for part in ("contact time 0.000473 s", "Gamma 1.998", "floor speed 0.416 m/s",
                      "sphere steps at", "time steps a tap"):
             self.assertIn(part, text)
@@ -78,14 +78,14 @@ class Grains(Case):
     def test_check_speaks_of_every_point_and_of_what_will_fail(self):
         law = "/engine/discrete_element/contact/walton_braun/"
         self.write(changed(GRAINS, sweep={law + "stiffness": [1e4, 1e6]}))
-        text = self.jostle("check", "scene.json", "--no-pilot").stdout
+        text = self.jostle("check", "scene.json", "--no-pilot", environment=UNFOLDED).stdout
         self.assertIn("contact time 0.0015 s", text)
         self.assertIn("contact time 0.00015 s", text)
         hard = changed(GRAINS, protocol=[{"tap": {"half_sine": {"amplitude": 50}}, "count": 1}])
         hard["engine"] = {"discrete_element": {"contact": {"walton_braun": {"stiffness": 300}},
                                                "rest": {"timed": {"seconds": 9}}}}
         self.write(changed(hard, snapshots={}))
-        text = self.jostle("check", "scene.json", "--no-pilot").stdout
+        text = self.jostle("check", "scene.json", "--no-pilot", environment=UNFOLDED).stdout
         self.assertIn("such overlaps fail: raise the stiffness", text)
         self.assertIn("is capped after 5 s: every tap will be", text)
         self.assertIn("the pilot failed: a sphere left the container, or lies deeper",

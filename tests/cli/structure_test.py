@@ -113,7 +113,7 @@ class Structure(Case):
         self.write(TINY)
         self.run_scene()
         text = self.structure("tiny.h5", "--part", "profile,pair_correlation").stdout
-        self.assertRegex(text, r"\d+ rows of .*r +in --csv FILE and --json: g\n")
+        self.assertRegex(text, r"\d+ rows of .*r +in --wide, --csv FILE and --json: g\n")
         for block in text.strip().split("\n\npoint_")[1:]:
             self.assertRegex(block, r"rows of|\n +\w+ +[\d.-]")
 

@@ -34,6 +34,10 @@ PLAIN = {key: value for key, value in os.environ.items()
          if not key.startswith(("JOSTLE", "SLURM"))}
 
 
+# Sentences in one line each, however long.
+UNFOLDED = {"COLUMNS": "1000"}
+
+
 def changed(scene, **changes):
     return {**copy.deepcopy(scene), **changes}
 

@@ -4,7 +4,7 @@ import unittest
 
 import h5py
 
-from support import BAD_INPUT, STOPPED, TINY, Case, changed
+from support import BAD_INPUT, STOPPED, TINY, UNFOLDED, Case, changed
 
 TARGETS = [{"observable": "mean_height", "taps": [2, 4], "standard_error": 0.012},
            {"observable": "bottom_fraction", "standard_error": 0.004}]
@@ -63,7 +63,7 @@ class TargetPrecision(Case):
     def test_the_limit_is_kept_and_can_be_raised(self):
         sigma = [{"observable": "mean_height", "sigma": 1e-6}]
         self.write(changed(UNTIL, until={"targets": sigma, "at_most": 5}))
-        done = self.run_scene()
+        done = self.run_scene(environment=UNFOLDED)
         self.assertIn("5 realizations: target precision NOT reached, and no more are allowed: sigma of mean_height",
                       done.stdout)
         self.assertEqual(self.spreads()[2], 5)

@@ -49,11 +49,13 @@ TEST_CASE("A report says where taps make a bed grow without end") {
 
 TEST_CASE("A report has the number of realizations a row where not all reached every tap") {
   const std::string partial = report_of(7), whole = report_of(100);
-  CHECK(partial.starts_with("epsilon = 0\ntap  M  mean_height"));
+  CAPTURE(partial, whole);
+  CHECK(partial.starts_with("1 of 2 realizations done, 1 unfinished; "));
+  CHECK(partial.find("\n\nepsilon = 0\ntap  M  mean_height") != std::string::npos);
   CHECK(partial.find("\n  2  2  ") != std::string::npos);
   CHECK(partial.find("\n  5  1  ") != std::string::npos);
   CHECK(partial.find("\n  6  1  ") != std::string::npos);
-  CHECK(whole.starts_with("epsilon = 0\ntap  mean_height"));
+  CHECK(whole.find("\n\nepsilon = 0\ntap   mean_height") != std::string::npos);
 }
 
 TEST_CASE("A report shows the columns of an engine as they ask for") {
@@ -67,18 +69,11 @@ TEST_CASE("A report shows the columns of an engine as they ask for") {
   const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
   synthetic::run_pending(*store, study);
   store->finish();
-  const std::string text = report(ResultsFile(folder / "a.h5"));
+  const std::string text = report(ResultsFile(folder / "a.h5"), {.columns = Columns::all});
   CAPTURE(text);
-  CHECK(text.find("  +- error  sigma  steps  ") != std::string::npos);
-  CHECK(text.find("  step  +- error  sigma\n") != std::string::npos);
+  CHECK(text.find("  sigma  steps  ") != std::string::npos);
+  CHECK(text.find("  step  sigma\n") != std::string::npos);
   CHECK(text.find("  3.0  ") != std::string::npos);
   CHECK(text.find("\nno tap was late\n") != std::string::npos);
   CHECK(text.find("\ntaps lost 43.8 % of it\n") != std::string::npos);
-}
-
-TEST_CASE("Reported taps are about three a decade, with both ends") {
-  CHECK(reported_taps(0) == std::vector<std::uint64_t>{0});
-  CHECK(reported_taps(1) == std::vector<std::uint64_t>{0, 1});
-  CHECK(reported_taps(50) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50});
-  CHECK(reported_taps(400) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50, 100, 200, 400});
 }

@@ -3,9 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "cli/reports/table_text.hpp"
+
 using namespace jostle;
 
 namespace {
+
+constexpr Layout all_columns{.width = 80, .columns = Columns::all};
 
 Table example() {
   const std::vector<std::string> both = {"age", "lag"};
@@ -23,9 +27,9 @@ Table example() {
 }  // namespace
 
 TEST_CASE("A table for people has values with their errors, then columns") {
-  const std::string text = table_text(example(), Detail::full);
+  const std::string text = table_text(example(), all_columns);
   CHECK(text.find("  verdict                it ages\n") != std::string::npos);
-  CHECK(text.find("  tau                    12.35 +- 0.21 taps   (memory)\n") != std::string::npos);
+  CHECK(text.find("  tau                    12.35(21) taps   (memory)\n") != std::string::npos);
   CHECK(text.find("tau_error") == std::string::npos);
   CHECK(text.find("age  lag  a\n  1    2  1\n") != std::string::npos);
   CHECK(text.find(" 10    8  -\n") != std::string::npos);
@@ -38,33 +42,65 @@ TEST_CASE("A table for people has values with their 95 % intervals") {
     table.quantities.push_back(
         {std::string("tau").append(ending), {}, std::vector{value}, "taps", "", ""});
   }
-  const std::string text = table_text(table, Detail::full);
+  const std::string text = table_text(table, all_columns);
   CHECK(text.find("  tau                    12.35 (11.8 to 12.9) taps   (memory)\n") !=
         std::string::npos);
   CHECK(text.find("tau_") == std::string::npos);
   std::get<std::vector<double>>(table.quantities.back().values)[0] = std::nan("");
-  CHECK(table_text(table, Detail::full).find("12.3457 taps") != std::string::npos);
+  CHECK(table_text(table, all_columns).find("12.35 taps") != std::string::npos);
 }
 
 TEST_CASE("A brief table leaves long columns out") {
   Table table = example();
   table.axes[1].values = std::vector<std::uint64_t>(20, 1);
   table.quantities[2].values = std::vector<double>(40, 0.5);
-  const std::string text = table_text(table, Detail::brief);
+  const std::string text = table_text(table, {});
   CHECK(text.find("12.35") != std::string::npos);
   CHECK(text.find("y, z") != std::string::npos);
   CHECK(text.find("0.5") == std::string::npos);
-  CHECK(text.find("  40 rows of age, lag    in --csv FILE and --json: a\n") != std::string::npos);
+  CHECK(text.find("  40 rows of age, lag    in --wide, --csv FILE and --json: a\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("A table says where it has no rows") {
   Table table = example();
   table.axes[1].values = std::vector<std::uint64_t>();
   table.quantities[2].values = std::vector<double>();
-  for (const Detail detail : {Detail::brief, Detail::full}) {
-    CHECK(table_text(table, detail).find("  0 rows of age, lag     none: a\n") !=
+  for (const Columns columns : {Columns::few, Columns::all}) {
+    CHECK(table_text(table, {.columns = columns}).find("  0 rows of age, lag     none: a\n") !=
           std::string::npos);
   }
+}
+
+TEST_CASE("What was found stands first") {
+  Table table = example();
+  table.notes = {{"law", "a logarithm"}, {"verdict", "it ages"}};
+  CHECK(table_text(table, {}).starts_with(
+      "point_0000/ageing\n  verdict                it ages\n  law "));
+}
+
+TEST_CASE("Sentences stand above the numbers, once for all rows that say the same") {
+  Table table = example();
+  const std::string said = "the data set no limit on either side of it";
+  table.quantities.push_back(
+      {"tau_verdict", {"age"}, std::vector<std::string>{said, said}, "", "", ""});
+  CHECK(table_text(table, {}).find("  tau_verdict by age\n    1, 10: " + said +
+                                   "\n\nage  kind\n") != std::string::npos);
+}
+
+TEST_CASE("Few columns are those that have room, and the others are named") {
+  Table table = example();
+  table.quantities.clear();
+  const std::vector<double> ten(22, 10.0);
+  table.axes = {{"n", {"n"}, std::vector<std::uint64_t>(22, 1), "", "", ""}};
+  for (const char* name : {"a_long_name_of_a_column", "another_long_name", "the_last_of_them"})
+    table.quantities.push_back({name, {"n"}, ten, "1", "", ""});
+  const std::string few = table_text(table, {.width = 50}), all = table_text(table, all_columns);
+  CAPTURE(few, all);
+  CHECK(few.find("\nn  a_long_name_of_a_column  another_long_name\n") != std::string::npos);
+  CHECK(few.find("  --wide shows also     the_last_of_them\n") != std::string::npos);
+  CHECK(all.find("another_long_name  the_last_of_them\n") != std::string::npos);
+  CHECK(all.find("--wide") == std::string::npos);
 }
 
 TEST_CASE("Rounding noise is seen beside the column it is in") {
@@ -73,8 +109,8 @@ TEST_CASE("Rounding noise is seen beside the column it is in") {
                  .quantities = {{"x", {"n"}, std::vector{5000.0, 1e-12}, "1", "", ""},
                                 {"x_error", {"n"}, std::vector{2.5, 1e-12}, "1", "", ""}},
                  .notes = {}};
-  const std::string text = table_text(table, Detail::full);
-  CHECK(text.find("5000.0 +- 2.5\n") != std::string::npos);
+  const std::string text = table_text(table, all_columns);
+  CHECK(text.find("5000.0(2.5)\n") != std::string::npos);
   CHECK(text.find(" 0\n") != std::string::npos);
 }
 

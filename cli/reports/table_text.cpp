@@ -1,0 +1,266 @@
+#include "cli/reports/table_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "cli/reports/table_blocks.hpp"
+#include "cli/reports/text_table.hpp"
+#include "cli/reports/wrapped.hpp"
+#include "config/json/json_text.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "fitting/value_text.hpp"
+#include "study/tables/half_widths.hpp"
+
+namespace jostle::inline cli {
+namespace {
+
+constexpr std::size_t most_rows = 24, most_rows_of_many_axes = 12;
+constexpr std::size_t most_words = 1500;  // characters of a column of sentences
+constexpr std::size_t longest_cell = 24;
+
+constexpr const char* interval_endings[] = {"_low_68", "_high_68", "_low_95", "_high_95"};
+
+bool is_probability(const std::string& name) {
+  return name.ends_with("_p") || name.ends_with("_p_corrected");
+}
+
+/// What has no error beside it has four digits, and all those of a whole number.
+std::string plain_number(double number, const std::string& name) {
+  const bool whole = number == std::trunc(number) && std::abs(number) < 1e7;
+  return number_text(number, whole ? 7 : is_probability(name) ? 2 : 4);
+}
+
+std::string cell(const Quantity& quantity, std::size_t index) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&quantity.values)) {
+    return plain_number(numbers->at(index), quantity.name);
+  }
+  if (const auto* counts = std::get_if<std::vector<std::uint64_t>>(&quantity.values)) {
+    return fmt::to_string(counts->at(index));
+  }
+  return std::get<std::vector<std::string>>(quantity.values).at(index);
+}
+
+/// The size of what a quantity measures: its largest value, and at least 1, the size of a sphere.
+double scale_of(const std::vector<double>& numbers) {
+  double scale = 1;
+  for (const double number : numbers) {
+    if (std::isfinite(number)) scale = std::max(scale, std::abs(number));
+  }
+  return scale;
+}
+
+double number_at(const Quantity* quantity, std::size_t index) {
+  const auto* numbers = quantity ? std::get_if<std::vector<double>>(&quantity->values) : nullptr;
+  return numbers ? numbers->at(index) : std::nan("");
+}
+
+const Quantity* beside(const Quantity& quantity, const Block& block, const char* ending) {
+  for (const Quantity* other : block.columns) {
+    if (other->name == quantity.name + ending) return other;
+  }
+  return nullptr;
+}
+
+bool has_interval(const Quantity& quantity, const Block& block) {
+  return beside(quantity, block, "_low_95") != nullptr &&
+         beside(quantity, block, "_high_95") != nullptr;
+}
+
+bool is_shown_beside(const Quantity& quantity, const Block& block) {
+  return std::ranges::any_of(block.columns, [&](const Quantity* other) {
+    if (beside(*other, block, "_error") == &quantity) return true;
+    return has_interval(*other, block) &&
+           std::ranges::any_of(interval_endings, [&](const char* ending) {
+             return beside(*other, block, ending) == &quantity;
+           });
+  });
+}
+
+/// A value with what stands beside it: "2.1 (1.3 to 3.4)" where there is a 95 % interval, else
+/// "2.10(40)".
+std::string shown(const Quantity& quantity, const Block& block, std::size_t index) {
+  if (has_interval(quantity, block)) {
+    const double low = number_at(beside(quantity, block, "_low_95"), index);
+    const double high = number_at(beside(quantity, block, "_high_95"), index);
+    if (!std::isfinite(low) || !std::isfinite(high)) return cell(quantity, index);
+    return fmt::format("{:.4g} ({})", number_at(&quantity, index), limits_text(low, high, 4));
+  }
+  const Quantity* error = beside(quantity, block, "_error");
+  const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
+  const double width = number_at(error, index);
+  if (!numbers || !(width > 0)) return cell(quantity, index);
+  return value_with_error(numbers->at(index), width, scale_of(*numbers));
+}
+
+std::string single_values(const Block& block) {
+  std::string text;
+  for (const Quantity* quantity : block.columns) {
+    if (is_shown_beside(*quantity, block)) continue;
+    const bool unitless = quantity->units.empty() || quantity->units == "1";
+    text += fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0),
+                        unitless ? "" : " " + quantity->units);
+    text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
+  }
+  return text;
+}
+
+/// Sentences have no place among numbers.
+bool holds_sentences(const Quantity& quantity) {
+  const auto* texts = std::get_if<std::vector<std::string>>(&quantity.values);
+  return texts != nullptr && std::ranges::any_of(*texts, [](const std::string& text) {
+           return text.size() > longest_cell;
+         });
+}
+
+/// "waiting_time 0, 1: ...", a line for all rows that say the same.
+std::string sentences(const Table& table, const Block& block, const Quantity& quantity) {
+  const auto& texts = std::get<std::vector<std::string>>(quantity.values);
+  std::vector<std::string> order;
+  std::map<std::string, std::string> rows;
+  for (std::size_t row = 0; row < texts.size(); ++row) {
+    std::string at;
+    for (std::size_t i = 0; const std::size_t index : place(table, block, row)) {
+      at.append(at.empty() ? "" : "/").append(cell(axis_named(table, block.axes[i++]), index));
+    }
+    std::string& listed = rows[texts[row]];
+    if (listed.empty()) order.push_back(texts[row]);
+    listed.append(listed.empty() ? "" : ", ").append(at);
+  }
+  std::string text = fmt::format("  {} by {}\n", quantity.name, joined(block.axes, "/"));
+  for (const std::string& said : order) {
+    if (!said.empty()) text += fmt::format("    {}: {}\n", rows[said], said);
+  }
+  return text;
+}
+
+std::size_t characters(const Quantity& quantity) {
+  std::size_t n = 0;
+  for (const std::string& text : std::get<std::vector<std::string>>(quantity.values))
+    n += text.size();
+  return n;
+}
+
+/// Says which columns are not shown, and where they are.
+std::string left_out(const Block& block, const char* where, const std::vector<std::string>& names) {
+  return fmt::format("  {:<22} {}{}\n",
+                     counted(block.n_rows(), "row") + " of " + joined(block.axes, ", "), where,
+                     joined(names, ", "));
+}
+
+/// The columns of a block as they are shown, and the names of those that are not.
+class BlockText {
+ public:
+  BlockText(const Table& table, const Block& block, const Layout& layout)
+      : table_(table), block_(block), layout_(layout), keys_(block.axes.size()) {
+    for (const Quantity* quantity : block.columns) {
+      if (is_shown_beside(*quantity, block)) continue;
+      (holds_sentences(*quantity) ? said_ : numbers_).push_back(quantity);
+    }
+  }
+
+  std::string text() {
+    if (block_.n_rows() == 0) return wrapped(left_out(block_, "none: ", all_names()), width());
+    const bool brief = layout_.columns == Columns::few;
+    if (brief && block_.n_rows() > (keys_ > 1 ? most_rows_of_many_axes : most_rows)) {
+      return wrapped(left_out(block_, "in --wide, --csv FILE and --json: ", all_names()), width());
+    }
+    std::string text = "\n";
+    std::vector<std::string> hidden;
+    for (const Quantity* quantity : said_) {
+      if (brief && characters(*quantity) > most_words) {
+        hidden.push_back(quantity->name);
+      } else {
+        text += wrapped(sentences(table_, block_, *quantity), width());
+      }
+    }
+    if (!numbers_.empty() && text.size() > 1) text += '\n';
+    if (!numbers_.empty() || said_.empty()) text += columns(hidden);
+    if (hidden.empty()) return text;
+    return text +
+           wrapped(fmt::format("  --wide shows also     {}\n", joined(hidden, ", ")), width());
+  }
+
+ private:
+  std::size_t width() const { return layout_.width; }
+
+  std::vector<std::string> all_names() const {
+    std::vector<std::string> names;
+    for (const auto* list : {&numbers_, &said_}) {
+      for (const Quantity* quantity : *list) names.push_back(quantity->name);
+    }
+    return names;
+  }
+
+  /// Of few columns those from the first on that have room, below one another where rows are few.
+  std::string columns(std::vector<std::string>& hidden) {
+    const TextTable whole = table_of(numbers_);
+    std::size_t width_of_keys = 0;
+    for (std::size_t key = 0; key < keys_; ++key) width_of_keys += whole.width_of_column(key) + 2;
+    std::size_t blocks_left = std::max<std::size_t>(1, most_rows / (block_.n_rows() + 2));
+    std::size_t n = 0, used = width_of_keys;
+    for (; n < numbers_.size(); ++n) {
+      const std::size_t width = whole.width_of_column(keys_ + n);
+      if (used > width_of_keys && used + width > layout_.table_width()) {
+        if (--blocks_left == 0) break;
+        used = width_of_keys;
+      }
+      used += width + 2;
+    }
+    for (std::size_t i = n; i < numbers_.size(); ++i) hidden.push_back(numbers_[i]->name);
+    numbers_.resize(n);
+    return table_of(numbers_).text(layout_.table_width());
+  }
+
+  TextTable table_of(const std::vector<const Quantity*>& quantities) const {
+    std::vector<std::string> headers = block_.axes;
+    for (const Quantity* quantity : quantities) headers.push_back(quantity->name);
+    TextTable text(headers, keys_);
+    for (std::size_t row = 0; row < block_.n_rows(); ++row) {
+      std::vector<std::string> cells;
+      for (std::size_t i = 0; const std::size_t index : place(table_, block_, row)) {
+        cells.push_back(cell(axis_named(table_, block_.axes[i++]), index));
+      }
+      for (const Quantity* quantity : quantities) cells.push_back(shown(*quantity, block_, row));
+      text.add(std::move(cells));
+    }
+    return text;
+  }
+
+  const Table& table_;
+  const Block& block_;
+  const Layout& layout_;
+  std::size_t keys_;
+  std::vector<const Quantity*> numbers_, said_;
+};
+
+/// What was found stands before how.
+bool is_verdict(const std::string& note) {
+  return note.ends_with("verdict") || note == "refused" || note == "maximum";
+}
+
+std::string notes(const Table& table) {
+  std::string text;
+  for (const bool verdicts : {true, false}) {
+    for (const auto& [name, note] : table.notes) {
+      if (is_verdict(name) == verdicts) text += fmt::format("  {:<22} {}\n", name, note);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string table_text(const Table& stored, const Layout& layout) {
+  const Table table = with_half_widths(stored);
+  std::string text = wrapped(fmt::format("{}\n", table.name) + notes(table), layout.width);
+  for (const Block& block : blocks_of(table)) {
+    text += block.axes.empty() ? wrapped(single_values(block), layout.width)
+                               : BlockText(table, block, layout).text();
+  }
+  return text;
+}
+
+}  // namespace jostle::inline cli

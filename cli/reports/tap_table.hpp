@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/reports/layout.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle::inline cli {
+
+/// The columns of a point, and how many realizations have come to each tap.
+struct PointSeries {
+  std::vector<EnsembleSeries> columns;
+  std::vector<std::uint32_t> reached;  // [n_taps]
+};
+
+PointSeries point_series(const ResultsFile& file, std::uint32_t point,
+                         std::span<const RealizationSummary> realizations);
+
+/// A row for about three taps a decade: the observables' means with their standard errors, and what
+/// of the engine's means has room beside them; with all columns, sigma and all of these.
+std::string tap_table(const PointSeries& series, const Layout& layout);
+
+/// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.
+std::vector<std::uint64_t> reported_taps(std::uint64_t last);
+
+}  // namespace jostle::inline cli

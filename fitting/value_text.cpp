@@ -1,0 +1,86 @@
+#include "fitting/value_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace jostle::inline fitting {
+
+namespace {
+
+std::string in_format(double value, std::chars_format format, int precision) {
+  std::array<char, 400> text;  // the largest double has 309 digits before its point
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
+  return {text.data(), end.ptr};
+}
+
+std::string fixed(double value, int decimals) {
+  std::string text = in_format(value, std::chars_format::fixed, decimals);
+  const bool zero = text.find_first_of("123456789") == std::string::npos;
+  return zero && text.starts_with('-') ? text.substr(1) : text;
+}
+
+/// Of the number as it is printed with two digits: 0.00996 has its first digit where 0.010 has it.
+int exponent_of(double number) {
+  const std::string text = in_format(number, std::chars_format::scientific, 1);
+  return std::atoi(text.c_str() + text.find('e') + 1);
+}
+
+std::string power_text(int power) {
+  std::string digits = std::to_string(std::abs(power));
+  if (digits.size() < 2) digits.insert(0, "0");
+  return (power < 0 ? "e-" : "e+") + digits;
+}
+
+/// Both to `decimals` behind the point, or, where these are fewer than none, to a power of ten.
+std::string in_last_digits(double value, double error, int decimals) {
+  if (decimals <= 0) {
+    const double unit = std::pow(10.0, -decimals);
+    const auto rounded = [&](double number) { return fixed(std::round(number / unit) * unit, 0); };
+    return rounded(value) + "(" + rounded(error) + ")";
+  }
+  std::string digits = fixed(error, decimals);
+  if (digits.starts_with("0.")) {  // below 1: the digits alone
+    digits.erase(0, 2);
+    digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size() - 1));
+  }
+  return fixed(value, decimals) + "(" + digits + ")";
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  return in_format(value, std::chars_format::general, digits);
+}
+
+std::string limits_text(double low, double high, int digits) {
+  const bool from = std::isfinite(low), to = std::isfinite(high);
+  if (from && to) return number_text(low, digits) + " to " + number_text(high, digits);
+  if (from) return "> " + number_text(low, digits);
+  return to ? "< " + number_text(high, digits) : "no limit";
+}
+
+std::string value_with_error(double value, double error, double scale) {
+  constexpr int most_digits = 6, most_digits_plain = 10, most_digits_of_a_power = 15;
+  constexpr double smallest_plain = 1e-3, largest_plain = 1e7;
+  constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
+  const bool has_error = error > 0;
+  const double larger = std::max(std::abs(value), has_error ? error : 0.0);
+  if (!std::isfinite(value)) return number_text(value, most_digits);
+  if (larger < noise * scale) return "0";
+  if (!has_error) return number_text(value, most_digits);
+  if (std::isinf(error)) return "no limit";
+  const int decimals = 1 - exponent_of(error);
+  const bool short_enough = decimals <= (larger < smallest_plain ? most_digits : most_digits_plain);
+  if (short_enough && larger < largest_plain) return in_last_digits(value, error, decimals);
+  const int power = exponent_of(larger);
+  if (decimals + power > most_digits_of_a_power) return number_text(value, most_digits_of_a_power);
+  const double unit = std::pow(10.0, power);
+  return in_last_digits(value / unit, error / unit, decimals + power) + power_text(power);
+}
+
+}  // namespace jostle::inline fitting

@@ -1,0 +1,92 @@
+#include "fitting/value_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace jostle {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const double nan = std::nan("");
+
+/// The value and the error that a text says, read as a person reads it.
+std::pair<double, double> read_back(const std::string& text) {
+  const auto open = text.find('('), close = text.find(')');
+  const std::string mantissa = text.substr(0, open);
+  const std::string digits = text.substr(open + 1, close - open - 1);
+  const double power = close + 1 < text.size() ? std::stod("1" + text.substr(close + 1)) : 1;
+  const auto point = mantissa.find('.');
+  const auto decimals = point == std::string::npos ? 0 : mantissa.size() - point - 1;
+  const bool has_point = digits.find('.') != std::string::npos;
+  const double unit = has_point ? 1 : std::pow(10.0, -static_cast<double>(decimals));
+  return {std::stod(mantissa) * power, std::stod(digits) * unit * power};
+}
+
+}  // namespace
+
+TEST_CASE("an error stands in the last digits of its value") {
+  CHECK(value_with_error(0.59131, 0.0012) == "0.5913(12)");
+  CHECK(value_with_error(12.345678, 0.21) == "12.35(21)");
+  CHECK(value_with_error(1239.6, 85.2) == "1240(85)");
+  CHECK(value_with_error(12.34, 4.51) == "12.3(4.5)");
+  CHECK(value_with_error(12345, 1234) == "12300(1200)");
+  CHECK(value_with_error(0.5, 0.00996) == "0.500(10)");  // to its second digit as printed
+  CHECK(value_with_error(2.0487283e-06, 7.4e-07) == "2.05(74)e-06");
+  CHECK(value_with_error(0.593890243, 2.8e-7) == "0.59389024(28)");
+  CHECK(value_with_error(1.25e9, 3e6) == "1.2500(30)e+09");
+}
+
+TEST_CASE("an error may be larger than its value, which may be negative") {
+  CHECK(value_with_error(0.3, 1.2) == "0.3(1.2)");
+  CHECK(value_with_error(-0.31, 0.12) == "-0.31(12)");
+  CHECK(value_with_error(-0.001, 0.12) == "0.00(12)");
+  CHECK(value_with_error(4, 123) == "0(120)");
+  CHECK(value_with_error(3.1e-9, 4.2e-7) == "0.0(4.2)e-07");
+  CHECK(value_with_error(-0.0000123, 0.000045) == "-0.000012(45)");
+}
+
+TEST_CASE("what has no error stands alone, and what has no limit says so") {
+  CHECK(value_with_error(0.123456789, nan) == "0.123457");
+  CHECK(value_with_error(0.123456789, 0) == "0.123457");
+  CHECK(value_with_error(0.123456789, -1) == "0.123457");
+  CHECK(value_with_error(0.123456789, infinity) == "no limit");
+  CHECK(value_with_error(nan, 0.1) == "-");
+  CHECK(value_with_error(infinity, 1) == "inf");
+}
+
+TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
+  CHECK(value_with_error(-8.3e-17, 1.7e-16) == "0");
+  CHECK(value_with_error(3e-15, 2e-15, 100) == "0");
+  CHECK(value_with_error(3e-15, 2e-12) == "0.0(2.0)e-12");
+  CHECK(value_with_error(2.5e-16, 1e-17, 1e-10) == "2.50(10)e-16");
+}
+
+TEST_CASE("over all decades and signs a text says the value and its error to two digits") {
+  for (int power = -280; power <= 280; power += 7) {
+    for (const double ratio : {1e-9, 3.3e-4, 0.0996, 0.5, 0.995, 1.0, 7.7, 99.6, 1e4}) {
+      for (const double mantissa : {1.0, -1.04999, 3.14159, -9.96, 9.99999}) {
+        const double value = mantissa * std::pow(10.0, power), error = std::abs(value) * ratio;
+        const std::string text = value_with_error(value, error, 1e-300);
+        CAPTURE(value, error, text);
+        REQUIRE(text.find('(') != std::string::npos);
+        const auto [read, read_error] = read_back(text);
+        CHECK(std::abs(read_error / error - 1) < 0.051);  // half of the second digit
+        CHECK(std::abs(read - value) < 0.0501 * error + 1e-14 * std::abs(value));
+        CHECK(text.size() <= 25);
+      }
+    }
+  }
+}
+
+TEST_CASE("limits are said in words") {
+  CHECK(limits_text(0.57431, 0.61, 5) == "0.57431 to 0.61");
+  CHECK(limits_text(0.57431, infinity, 5) == "> 0.57431");
+  CHECK(limits_text(-infinity, 0.61, 5) == "< 0.61");
+  CHECK(limits_text(-infinity, infinity, 5) == "no limit");
+  CHECK(limits_text(nan, nan, 5) == "no limit");
+}
+
+}  // namespace jostle
