@@ -24,6 +24,7 @@ constexpr const char* footer =
     "  jostle fit quickstart.h5 --observable bottom_fraction\n"
     "  jostle analyse quickstart.h5 steady --observable mean_height\n"
     "  jostle structure quickstart.h5 --part profile,voronoi\n"
+    "  jostle report quickstart.h5    writes quickstart.html, a page to look at\n"
     "\n"
     "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
     "failed,\n"
@@ -49,6 +50,7 @@ int parse_and_run(int argc, char** argv) {
   add_fit(app, code);
   add_analyse(app, code);
   add_structure(app, code);
+  add_report(app, code);
   add_export(app, code);
   const CommandLine::Outcome outcome = line.parse_and_run(argc, argv);
   print(outcome.asked_for);

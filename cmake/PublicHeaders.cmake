@@ -32,9 +32,9 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/ageing/log_curves.hpp
     ensemble/analysis/ageing/trends.hpp
     ensemble/analysis/analyses.hpp
-    ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/histogram_fit.hpp
     ensemble/analysis/hysteresis.hpp
+    ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/spectra/spectra.hpp
     ensemble/analysis/steady_state.hpp
     ensemble/analysis/structure_fits.hpp
@@ -96,6 +96,7 @@ set(JOSTLE_PUBLIC_HEADERS
     study/merge.hpp
     study/observable_series.hpp
     study/provenance.hpp
+    study/report/page.hpp
     study/results_input.hpp
     study/run.hpp
     study/scenes/scene_file.hpp

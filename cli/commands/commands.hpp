@@ -20,5 +20,6 @@ void add_fit(Command& app, int& code);
 void add_analyse(Command& app, int& code);
 void add_export(Command& app, int& code);
 void add_structure(Command& app, int& code);
+void add_report(Command& app, int& code);
 
 }  // namespace jostle::inline cli

@@ -180,6 +180,7 @@ class Unfinished(Refused):
     commands = (["analyse", "tiny.h5", *STEADY], ["structure", "tiny.h5"],
                 ["analyse", "tiny.h5", "sweep", "--observable", "mean_height"],
                 ["fit", "tiny.h5", "--observable", "mean_height"],
+                ["report", "tiny.h5", "--force"],
                 ["export", "tiny.h5", "--format", "vtp", "--force"])
 
     def test_a_run_that_was_stopped_is_said_to_be_unfinished(self):

@@ -25,6 +25,7 @@ COMMANDS = (["info", "file.h5"], ["info", "file.h5", "--json"], ["info", "file.h
             ["fit", "file.h5", "--observable", "mean_height", "--model", "inverse_log"],
             ["analyse", "file.h5", "steady", "--observable", "mean_height"],
             ["structure", "file.h5", "--part", "profile,order"],
+            ["report", "file.h5", "-o", "page.html", "--force"],
             ["export", "file.h5", "--format", "lammps", "--tap", "all", "--force"],
             ["merge", "file.h5", "-o", "merged.h5", "--force"],
             ["run", "scene.json", "--no-progress", "--resume", "-o", "file.h5"],

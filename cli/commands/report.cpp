@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands/commands.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/live_input.hpp"
+#include "cli/terminal/output_file.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "results/results_file.hpp"
+#include "study/amounts.hpp"
+#include "study/available_cpus.hpp"
+#include "study/provenance.hpp"
+#include "study/report/page.hpp"
+
+namespace jostle::inline cli {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  bool force = false;
+  Live live = Live::no;
+  int threads = 0;
+};
+
+void write_report(const ReportArguments& arguments) {
+  const std::string output =
+      !arguments.output.empty()
+          ? arguments.output
+          : std::filesystem::path(arguments.inputs.front()).stem().string() + ".html";
+  if (output != arguments.output) require_no_link(output);
+  require_text_output("-o", output, arguments.inputs, arguments.force);
+  require_different(arguments.inputs);
+  std::vector<ResultsFile> files;
+  for (const std::string& input : arguments.inputs) {
+    files.push_back(open_to_read(input, arguments.live));
+  }
+  require_different_runs(files);
+  std::vector<PageSource> sources;
+  for (const ResultsFile& file : files) {
+    sources.push_back({file, arguments.live == Live::yes ? "" : digest_of(file.path())});
+  }
+  const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
+  const std::string page = report_page(sources, provenance_of_this_run(""), threads);
+  write_text(output, page);
+  if (!is_stream(output)) {
+    print(fmt::format("{}: {}; open it in a browser\n", output, format_bytes(double(page.size()))));
+  }
+}
+
+}  // namespace
+
+void add_report(Command& app, int& code) {
+  Command command = app.add_command("report", "Write one page that shows results, for a browser");
+  auto arguments = std::make_shared<ReportArguments>();
+  ReportArguments& a = *arguments;
+  command.add_option("file", a.inputs, "Results; several are shown one after another")
+      .required()
+      .existing_file();
+  command
+      .add_option("-o,--output", a.output,
+                  "The page to write (default: the first input's name with .html, in the current "
+                  "folder)")
+      .file_to_write();
+  add_live(command, a.live);
+  command.add_flag("--force", a.force, "Replace a file that exists");
+  command.add_threads(a.threads);
+  command.footer(
+      "Examples:\n"
+      "  jostle report quickstart.h5                      writes quickstart.html\n"
+      "  jostle report weak.h5 strong.h5 -o both.html     two runs on one page\n"
+      "\n"
+      "The page needs nothing but a browser: no network, no other file. It shows what the files\n"
+      "hold: curves, and the tables that fit, analyse, structure and cost have stored; make those\n"
+      "first. Kept packings can be turned and sliced. What it shows: docs/report.md.");
+  command.run([arguments, &code] {
+    write_report(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle::inline cli

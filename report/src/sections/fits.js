@@ -1,0 +1,111 @@
+// Laws fitted to curves: over the data, beside the residuals, and in words.
+import {byPoint, chooser, dataTable, element, figure, number, pair, pointsOf, refusals, rowsOf, section, statement, withError,
+        words} from "../section.js";
+import {axisLabel} from "../format.js";
+
+const lawNames = {inverse_log: "inverse logarithm", inverse_log_height: "inverse logarithm of 1/Z",
+                  two_exponentials: "two exponentials", kww: "stretched exponential"};
+const dashes = [null, "7,4", "2,3", "9,3,2,3"];
+
+export function lawName(table) {
+  return lawNames[table.path.at(-1)] ?? words(table.path.at(-1));
+}
+
+function interval(table, j, level) {
+  const low = table.row("interval_lower", j)[level], high = table.row("interval_upper", j)[level];
+  if (!Number.isFinite(low) && !Number.isFinite(high)) return "no limit";
+  if (!Number.isFinite(high)) return `above ${number(low)}`;
+  if (!Number.isFinite(low)) return `below ${number(high)}`;
+  return `${number(low)} to ${number(high)}`;
+}
+
+function parameters(table) {
+  const names = table.axis("parameter");
+  return dataTable(["parameter", "estimate", "95 % interval", "what the data say of it"], names.map((name, j) => {
+    const value = table.value("value", j);
+    return [name, Number.isFinite(value) ? withError(value, table.value("error", j)) : "not determined", interval(table, j, 1),
+            table.value("statement", j)];
+  }), `Parameters of the ${lawName(table)}`);
+}
+
+/// In words, how many of its parameters a law's data determine.
+function identified(table) {
+  const names = table.axis("parameter");
+  const known = names.filter((_, j) => Number.isFinite(table.value("value", j)) &&
+    Number.isFinite(table.row("interval_lower", j)[1]) && Number.isFinite(table.row("interval_upper", j)[1]));
+  if (known.length === names.length) return "All parameters are limited on both sides.";
+  if (known.length === 0) return "No parameter is limited on both sides: the curve does not identify this law.";
+  const others = names.filter((name) => !known.includes(name));
+  return `${known.join(", ")} ${known.length === 1 ? "is" : "are"} limited on both sides; ${others.join(", ")} ` +
+    `${others.length === 1 ? "is" : "are"} not.`;
+}
+
+function dataFigure(chapter, tables, observable) {
+  const [first] = tables;
+  const t = first.axis("t");
+  return figure({
+    file: chapter.run.file,
+    title: `Fits of ${words(observable)}`,
+    caption: `Mean over realizations (points; bars are standard errors pooled over taps) and the fitted laws, taps ` +
+      `${first.notes.range?.replace(":", " to ") ?? ""}.`,
+    source: tables.map((table) => table.notes.source).filter(Boolean).filter((text, i, all) => all.indexOf(text) === i).join("; "),
+    x: {label: "taps t", type: "tap", short: "tap"}, y: {label: axisLabel(observable, ""), short: words(observable)},
+    series: [
+      {name: "data", ink: true, mark: "dots", symbol: "circle", rows: rowsOf(t, first.values("x"), first.values("x_error"))},
+      ...tables.map((table, i) => ({name: lawName(table), kind: i, dash: dashes[i % dashes.length], width: 2,
+                                    rows: rowsOf(table.axis("t"), table.values("fitted"))})),
+    ],
+  });
+}
+
+function residualFigure(chapter, tables, observable) {
+  const scaled = tables[0].values("x_error").some((error) => error > 0);
+  return figure({
+    file: chapter.run.file,
+    title: `Residuals of ${words(observable)}`,
+    caption: scaled ? "Data less law, in standard errors of the mean. Neighbouring taps are not independent: what matters is a " +
+      "trend, not the single point beyond one." : "Data less law.",
+    x: {label: "taps t", type: "tap", short: "tap"},
+    y: {label: scaled ? "(data \u2212 law) / error" : "data \u2212 law", short: "residual"},
+    rules: [{y: 0}],
+    series: tables.map((table, i) => ({
+      name: lawName(table), kind: i, mark: "line", width: 1.4, dash: dashes[i % dashes.length],
+      rows: table.axis("t").map((t, k) => ({x: t, y: (table.value("x", k) - table.value("fitted", k)) /
+        (scaled ? table.value("x_error", k) : 1)})),
+    })),
+  });
+}
+
+function goodness(tables) {
+  if (tables.length < 2) return null;
+  const least = Math.min(...tables.map((table) => table.value("aic")).filter(Number.isFinite));
+  return dataTable(["law", "formula", "reduced \u03c7\u00b2", "R\u00b2", "AIC above the least", "points", "independent points"], tables.map((table) =>
+    [lawName(table), table.notes.law ?? "", number(table.value("reduced_chi2"), 3), number(table.value("r2"), 5),
+     number(table.value("aic") - least, 3), String(table.axis("t").length), number(table.value("effective_points"), 3)]),
+  "The laws compared. AIC takes all fitted taps for independent: where the independent points are few, its differences say little");
+}
+
+export function fitsSection(chapter) {
+  const tables = chapter.tables.filter((table) => table.group === "fits");
+  if (tables.length === 0) return null;
+  const made = tables.filter((table) => !table.notes.refused && table.has("fitted"));
+  const content = byPoint(chapter, pointsOf(made), (point) => {
+    const here = made.filter((table) => table.point === point);
+    return [...new Set(here.map((table) => table.path[0]))].flatMap((observable) => {
+      const laws = here.filter((table) => table.path[0] === observable);
+      return [
+        pair(dataFigure(chapter, laws, observable), residualFigure(chapter, laws, observable)),
+        goodness(laws),
+        ...laws.map((table) => element("details", {class: "law", open: laws.length === 1},
+          element("summary", {}, element("b", {}, lawName(table)), ` \u2013 ${identified(table)}`),
+          statement("", table.notes.law), parameters(table), statement("Combinations", table.notes.combinations),
+          statement("Remarks", table.notes.remarks))),
+      ].filter(Boolean);
+    });
+  });
+  return section(chapter, "fits", "Fitted laws",
+    "Estimates are given as value(error); \u201cno limit\u201d means that the data allow any value beyond.", made.length > 0 ? content : null,
+    refusals(chapter, tables));
+}
+
+export {chooser};

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "config/json/json.hpp"
+#include "results/results_file.hpp"
+
+namespace jostle::inline study {
+
+/// What of one file has room in a page.
+struct PageRoom {
+  std::size_t curve_values = 0;   // numbers
+  std::size_t table_values = 0;   // numbers and texts
+  std::size_t packing_bytes = 0;  // of text
+};
+
+/// What a page shows of a results file: what was run, curves of the ensemble, snapshot means,
+/// derived tables and packings. docs/report.md names its members. `digest`: of the file, or empty.
+/// Packings are looked at on so many threads. Throws ResultsError.
+Json page_data(const ResultsFile& file, const std::string& digest, const PageRoom& room,
+               int threads);
+
+}  // namespace jostle::inline study

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ensemble/analysis/table.hpp"
+
+// What of long series, tables and sweeps goes into a page, so that it opens at once.
+namespace jostle::inline study {
+
+/// Indices out of 0 .. n - 1, ascending: all where there are at most `most` (>= 1), else so many,
+/// evenly spread, the first and the last among them.
+std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t most);
+
+/// Indices out of 0 .. n - 1, ascending: 0, the last, `per_decade` a decade in equal steps of the
+/// logarithm, and `evenly` in equal steps, so that neither an early nor a late change is lost.
+std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_decade,
+                                                std::size_t evenly);
+
+/// How much of a table's axes is kept.
+struct TableThinning {
+  std::size_t most_taps = 24;     // of the axis `tap`: evenly spread
+  std::size_t most_places = 400;  // of any other, but for `t`
+  std::size_t per_decade = 24;    // of `t`, the taps of a fitted curve
+};
+
+/// The table with its axes thinned, all quantities along them likewise. A quantity that does not
+/// have as many values as its axes give is left out.
+Table thinned(const Table& table, const TableThinning& thinning);
+
+/// Numbers and texts of a table, axes included.
+std::size_t n_values(const Table& table);
+
+}  // namespace jostle::inline study

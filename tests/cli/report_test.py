@@ -1,0 +1,270 @@
+"""The page of jostle report, without a browser: its parts, that its data are those of the file, what
+hostile texts do in it, and what it may be written to."""
+
+import base64
+import hashlib
+import html.parser
+import json
+import os
+import re
+import unittest
+
+import h5py
+import numpy
+
+from support import BAD_INPUT, BROKEN, STOPPED, TINY, Case, changed
+
+EVERYTHING = changed(
+    TINY, name="everything", description="A bed of 48 spheres.", realizations=3, streams="matched",
+    protocol=[{"tap": {"dilate": 0.05}, "count": 60}], snapshots={"taps": [0, 7, 60]},
+    sweep={"/protocol/0/tap/dilate": [0.02, 0.05, 0.1]},
+    fits=[{"observable": "bottom_fraction", "model": "all"}],
+    analyse={"steady": [{"observable": "mean_height", "last": 40}],
+             "spectrum": [{"observable": "mean_height", "last": 40}],
+             "ageing": [{"observable": "mean_height"}],
+             "sweep": [{"observable": "mean_height"}]},
+    structure={"region": {"heights": [0.5, 2]}, "profile": {}, "pair_correlation": {}, "order": {},
+               "voronoi": {"cut_cells": True}, "layers": {}})
+
+HOSTILE = ('</script><script>document.title="x"</script><img src=x onerror=alert(1)>'
+           '<!--\u2028\u2029\u202e&amp;{{7*7}}"\'`')
+
+
+class Elements(html.parser.HTMLParser):
+    """The elements of a page with their attributes, and the text of its scripts."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.elements, self.scripts, self.inside = [], [], False
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        self.inside = tag == "script"
+        if self.inside:
+            self.scripts.append("")
+
+    def handle_endtag(self, tag):
+        self.inside = False
+
+    def handle_data(self, data):
+        if self.inside:
+            self.scripts[-1] += data
+
+
+def number(value):
+    return {None: numpy.nan, "inf": numpy.inf, "-inf": -numpy.inf}.get(value, value)
+
+
+class Report(Case):
+    def page(self, *inputs, output="page.html", **keywords):
+        done = self.jostle("report", *inputs, "-o", output, "--force", **keywords)
+        return (self.folder / output).read_text(), done
+
+    def data(self, page):
+        scripts = Elements(page).scripts
+        self.assertEqual(len(scripts), 2)
+        return json.loads(scripts[0])
+
+
+
+class Page(Report):
+    def setUp(self):
+        super().setUp()
+        self.write(TINY)
+        self.run_scene()
+
+    def test_it_is_one_file_that_fetches_nothing_and_runs_its_own_script_alone(self):
+        page, done = self.page("tiny.h5")
+        self.assertRegex(done.stdout, r"^page.html: \d+\.\d KiB; open it in a browser\n$")
+        found = Elements(page)
+        for tag, attributes in found.elements:
+            with self.subTest(tag=tag):
+                self.assertNotIn("src", attributes)
+                self.assertRegex(attributes.get("href", "data:"), r"^data:")
+                self.assertNotEqual(attributes.get("type"), "module")
+                self.assertFalse([key for key in attributes if key.startswith("on")])
+        policy = next(attributes["content"] for tag, attributes in found.elements
+                      if attributes.get("http-equiv") == "Content-Security-Policy")
+        script = base64.b64encode(hashlib.sha256(found.scripts[1].encode()).digest()).decode()
+        self.assertIn("default-src 'none'", policy)
+        self.assertIn(f"script-src 'sha256-{script}';", policy)
+
+    def test_it_says_what_was_run(self):
+        page, _ = self.page("tiny.h5")
+        data = self.data(page)
+        run = data["files"][0]
+        self.assertIn("<title>tiny.h5</title>", page)
+        self.assertEqual(data["made"]["command_line"].split()[1:],
+                         ["report", "tiny.h5", "-o", "page.html", "--force"])
+        self.assertEqual(run["digest"], self.digest("tiny.h5"))
+        self.assertEqual((run["state"], run["file"], run["realizations_a_point"]),
+                         ("complete", "tiny.h5", 3))
+        self.assertEqual(run["realizations"]["done"], 6)
+        self.assertEqual([point["label"] for point in run["points"]],
+                         ["dilate = 0.02", "dilate = 0.1"])
+        self.assertEqual(run["points"][0]["seed"], "4711")
+        self.assertEqual(run["scene"]["spheres"], 48)
+        self.assertEqual((run["left_out"], run["tables"]), ([], []))
+
+    def test_several_files_stand_on_one_page(self):
+        self.write(changed(TINY, name="other", seed=1))
+        self.run_scene()
+        data = self.data(self.page("tiny.h5", "other.h5")[0])
+        self.assertEqual([run["file"] for run in data["files"]], ["tiny.h5", "other.h5"])
+        done = self.jostle("report", "tiny.h5", "./tiny.h5", "-o", "twice.html", expect=BAD_INPUT)
+        self.assertIn("given twice", done.stderr)
+
+    def test_an_existing_page_is_kept_and_no_input_is_replaced(self):
+        self.jostle("report", "tiny.h5")
+        before = (self.folder / "tiny.html").read_bytes()
+        done = self.jostle("report", "tiny.h5", expect=BAD_INPUT)
+        self.assertIn("tiny.html exists and is kept", done.stderr)
+        self.assertEqual((self.folder / "tiny.html").read_bytes(), before)
+        self.jostle("report", "tiny.h5", "--force")
+        self.assertNotEqual((self.folder / "tiny.html").read_bytes(), before)  # the command line
+        results = (self.folder / "tiny.h5").read_bytes()
+        done = self.jostle("report", "tiny.h5", "-o", "tiny.h5", "--force", expect=BAD_INPUT)
+        self.assertIn("works with that file", done.stderr)
+        self.assertEqual((self.folder / "tiny.h5").read_bytes(), results)
+        self.jostle("report", "tiny.h5", "-o", "missing/page.html", expect=BROKEN)
+        (self.folder / "tiny.html").unlink()
+        (self.folder / "tiny.html").symlink_to("elsewhere.html")
+        self.jostle("report", "tiny.h5", expect=BROKEN)
+        self.assertFalse((self.folder / "elsewhere.html").exists())
+
+    def test_what_is_no_results_file_is_refused(self):
+        done = self.jostle("report", "scene.json", expect=None)
+        self.assertIn(done.returncode, (BAD_INPUT, BROKEN))
+        self.assertIn("scene.json", done.stderr)
+        self.assertFalse((self.folder / "scene.html").exists())
+
+    def test_the_page_can_go_to_a_stream(self):
+        done = self.jostle("report", "tiny.h5", "-o", "/dev/stdout")
+        self.assertTrue(done.stdout.startswith("<!doctype html>"))
+        self.assertTrue(done.stdout.endswith("</html>\n"))
+
+
+class Unfinished(Report):
+    def test_a_stopped_run_is_shown_as_far_as_it_is(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 100000}],
+                           snapshots={"taps": [0]}))
+        self.run_scene("--time-limit", "1s", expect=STOPPED)
+        page, done = self.page("tiny.h5")
+        self.assertIn("its run is unfinished", done.stderr)
+        run = self.data(page)["files"][0]
+        self.assertEqual(run["state"], "interrupted")
+        self.assertGreater(run["realizations"]["unfinished"], 0)
+
+
+class Data(Report):
+    def setUp(self):
+        super().setUp()
+        self.write(EVERYTHING)
+        self.run_scene("-o", "everything.h5")
+        self.run_data = self.data(self.page("everything.h5")[0])["files"][0]
+
+    def test_the_data_are_those_of_the_file(self):
+        for look in (self.curves, self.tables, self.packings, self.snapshots):
+            with self.subTest(look.__name__):
+                look()
+
+    def curves(self):
+        curves = self.run_data["curves"]
+        self.assertEqual([curve["point"] for curve in curves], [0, 1, 2])
+        with h5py.File(self.folder / "everything.h5") as file:
+            for curve in curves:
+                stored = file[f"ensemble/point_{curve['point']:04}"]
+                taps = curve["taps"]
+                self.assertEqual(taps[:4] + taps[-1:], [0, 1, 2, 3, 60])
+                self.assertEqual([column["name"] for column in curve["columns"]][:4],
+                                 ["mean_height", "bottom_fraction", "sweeps", "acceptance"])
+                for column in curve["columns"]:
+                    for key in ("mean", "error", "sigma", "count"):
+                        values = [number(value) for value in column[key]]
+                        numpy.testing.assert_allclose(
+                            values, stored[f"{column['name']}_{key}"][()][taps], rtol=1e-6,
+                            err_msg=column["name"])
+
+    def tables(self):
+        tables = {f"{table['group']}/{table['name']}": table for table in self.run_data["tables"]}
+        groups = {name.split("/")[0] for name in tables}
+        self.assertEqual(groups, {"fits", "analysis", "structure"})
+        compared = 0
+        with h5py.File(self.folder / "everything.h5") as file:
+            for name, table in tables.items():
+                stored = file[name]
+                lengths = {axis["name"]: len(axis["values"]) for axis in table["axes"]}
+                for quantity in table["quantities"]:
+                    dataset = stored[quantity["name"]]
+                    self.assertEqual(len(quantity["values"]),
+                                     numpy.prod([lengths[axis] for axis in quantity["axes"]], dtype=int))
+                    if dataset.dtype.kind not in "fu" or len(quantity["values"]) != dataset.size:
+                        continue  # texts, and what is thinned
+                    numpy.testing.assert_allclose([number(value) for value in quantity["values"]],
+                                                  dataset[()].ravel(), rtol=1e-6, err_msg=name)
+                    compared += 1
+                for key, value in table["notes"].items():
+                    self.assertEqual(value, stored.attrs[f"note_{key}"])
+        self.assertGreater(compared, 500)
+        self.assertEqual(set(tables), set(self.info("everything.h5")["tables"]))
+
+    def packings(self):
+        packings = self.run_data["packings"]
+        self.assertEqual([(one["point"], one["realization"], one["tap"]) for one in packings],
+                         [(p, r, tap) for p in range(3) for r in range(3) for tap in (0, 7, 60)])
+        with h5py.File(self.folder / "everything.h5") as file:
+            for one in packings:
+                group = file[f"particles/point_{one['point']:04}_realization_{one['realization']:05}"]
+                step = list(group["position/step"][()]).index(one["tap"])
+                stored = group["position/value"][()][step]
+                words = numpy.frombuffer(base64.b64decode(one["position"]), "<u2").reshape(-1, 3)
+                size = numpy.array(one["upper"])
+                numpy.testing.assert_allclose(words / 65535 * size, stored, atol=size.max() / 65535)
+                columns = {key: numpy.frombuffer(base64.b64decode(one[key]), numpy.uint8)
+                           for key in ("coordination", "structure", "q6", "local_fraction")}
+                taps = list(file[f"snapshots/point_{one['point']:04}/tap"][()])
+                coordination = file[f"snapshots/point_{one['point']:04}/coordination"][()]
+                self.assertAlmostEqual(columns["coordination"].mean(),
+                                       coordination[taps.index(one["tap"]), one["realization"]])
+                self.assertLessEqual(columns["structure"].max(), 2)
+                self.assertTrue(0.2 < columns["q6"].mean() / 255 < 0.7)
+                self.assertTrue(0.3 < columns["local_fraction"].mean() / 255 < 0.75)
+
+    def snapshots(self):
+        snapshots = self.run_data["snapshots"]
+        self.assertEqual([one["point"] for one in snapshots], [0, 1, 2])
+        with h5py.File(self.folder / "everything.h5") as file:
+            for one in snapshots:
+                stored = file[f"snapshots/point_{one['point']:04}"]
+                self.assertEqual(one["taps"], [0, 7, 60])
+                numpy.testing.assert_allclose(one["coordination"],
+                                              stored["coordination"][()].mean(axis=1), rtol=1e-6)
+                for k, heights in enumerate(one["heights"]):
+                    mean = stored["height_histogram"][()][k].mean(axis=0)[:len(heights["n"])]
+                    numpy.testing.assert_allclose(heights["n"], mean, rtol=1e-6, atol=1e-12)
+
+
+class Hostile(Report):
+    def test_hostile_texts_are_data(self):
+        """Of a scene, of a file's name, and of what a forged file keeps."""
+        self.write(changed(TINY, description=HOSTILE + "\x01\x1b[31m"))
+        self.run_scene()
+        clean = Elements(self.page("tiny.h5")[0]).elements
+        name = "a<script>alert(1)</script>&.h5".replace("/", "\u2215")
+        os.rename(self.folder / "tiny.h5", self.folder / name)
+        page, _ = self.page(name)
+        self.assertEqual(Elements(page).elements, clean)
+        run = self.data(page)["files"][0]
+        self.assertEqual(run["file"], name)
+        description = run["scene"]["description"]
+        self.assertIn("</script><script>", description)
+        self.assertIn("\\x01\\x1b[31m", description)
+        self.assertIn("\\xe2\\x80\\xae", description)  # it would turn the text
+        start = page.index("report-data")
+        json_text = page[start:page.index("</script>", start)]
+        self.assertFalse(re.search("[\u2028\u2029<&\x00-\x08\x0b-\x1f]", json_text.split(">", 1)[1]))
+
+
+if __name__ == "__main__":
+    unittest.main()
