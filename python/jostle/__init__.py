@@ -22,6 +22,7 @@ from .point import Box, Point
 from .program import program_path
 from .results import Results, open
 from .scenes import Checked, check, schema
+from .student import half_width
 from .tables import Quantity, Table, Tables
 
 __version__ = "0.1.0"
@@ -29,7 +30,7 @@ __version__ = "0.1.0"
 __all__ = ["Box", "Checked", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
            "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
            "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun", "analyse", "check", "cost",
-           "export", "fit", "open", "plot", "program_path", "run", "schema", "structure"]
+           "export", "fit", "half_width", "open", "plot", "program_path", "run", "schema", "structure"]
 
 
 def __getattr__(name: str) -> object:

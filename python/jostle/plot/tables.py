@@ -27,8 +27,9 @@ def fit(table: Table, *, ax: Axes | None = None) -> Axes:
     t = table["t"]
     observable = table.notes.get("observable", "X")
     dof = float(table.notes.get("realizations", np.inf)) - 1
-    errorbars(ax, t, table["x"], half_width(table["x_error"], dof), color="0.6", zorder=1,
-              label=observable.replace("_", " "))
+    half = half_width(table["x_error"], dof)
+    ax.fill_between(t, table["x"] - half, table["x"] + half, color="0.85", linewidth=0)
+    ax.plot(t, table["x"], "o", color="0.4", markersize=3, label=observable.replace("_", " "))
     ax.plot(t, table["fitted"], color="C3", zorder=2,
             label=f"{table.name.rsplit('/', 1)[-1]}: {table.notes.get('law', '')}")
     if t[0] >= 0 and "observable" in table.notes:
@@ -45,7 +46,7 @@ def ageing(table: Table, *, scaled: bool = False, ax: Axes | None = None) -> Axe
     _require(table, f"waiting_time lag {names}", "jostle analyse ageing")
     ax = axes_or_current(ax)
     if scaled and not np.isfinite(table["scaled_a"]).any():
-        raise NotThere(f"{table.name} has no scaled curves: {'; '.join(map(str, table['shared_verdict']))}")
+        raise NotThere(f"{table.name} has no scaled curves: {table['shared_verdict'][0]}")
     for i, waited in enumerate(table["waiting_time"]):
         if scaled:
             x, y = table["scaled_lag"][i], table["scaled_a"][i]
