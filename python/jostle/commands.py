@@ -26,12 +26,23 @@ def scene_file(scene: Scene | Path) -> Iterator[str]:
     if not isinstance(scene, Mapping):
         yield os.fspath(scene)
         return
-    text = json.dumps(scene, indent=1)
+    text = scene_text(scene)
     beside = os.getcwd() if '"file"' in text else None
     with tempfile.NamedTemporaryFile("w", dir=beside, prefix=".scene-", suffix=".json") as file:
         file.write(text)
         file.flush()
         yield file.name
+
+
+def scene_text(scene: Scene) -> str:
+    return json.dumps(scene, indent=1, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of numpy as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a scene has JSON values alone, and {value!r} is none")
 
 
 def _options(**values: object) -> list[object]:
@@ -53,10 +64,10 @@ def _output(scene: Scene | Path, output: Path | None) -> Path:
     if isinstance(scene, Mapping):
         named = scene.get("name", "scene")
     else:
-        with open(scene, encoding="utf-8") as file, contextlib.suppress(ValueError):
+        named = "scene"  # what cannot be read is refused by the program, in its words
+        with contextlib.suppress(OSError, ValueError), open(scene, encoding="utf-8") as file:
             read = json.load(file)
-            return f"{read.get('name', 'scene') if isinstance(read, dict) else 'scene'}.h5"
-        named = "scene"
+            named = read.get("name", named) if isinstance(read, dict) else named
     return f"{named}.h5"
 
 

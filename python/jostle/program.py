@@ -9,7 +9,9 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
+import threading
 from collections.abc import Iterator, Sequence
 
 from .errors import Fault, ProgramError, ProgramMissing, SceneError
@@ -34,33 +36,50 @@ def call(arguments: Sequence[object], program: Path | None = None, folder: Path 
          show: bool = False, accept: Sequence[int] = (OK,)) -> subprocess.CompletedProcess[str]:
     """Runs the program to its end; an exit code not in `accept` raises what `refusal` makes of it.
 
-    show: its stderr (progress) goes to this process' stderr. A KeyboardInterrupt is handed on as SIGINT,
-    once: the program stores what it has and ends, and the interrupt goes on from here.
+    show: what it says on stderr (progress) is shown as it comes. A KeyboardInterrupt is handed on as
+    SIGINT, once: the program stores what it has and ends, and the interrupt goes on from here.
     """
     command = [program_path(program), *map(os.fspath, map(_word, arguments))]
     # A group of its own: Ctrl-C reaches it through here alone, and so once.
     process = subprocess.Popen(command, cwd=folder, text=True, errors="replace", stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=None if show else subprocess.PIPE,
-                               start_new_session=True)
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
     try:
-        out, err = _communicate(process)
+        out, err = _output_of(process, show)
     finally:
         if process.poll() is None:
             process.kill()
-            process.communicate()
-    done = subprocess.CompletedProcess(command, process.returncode, out, err or "")
+            process.wait()
+    done = subprocess.CompletedProcess(command, process.returncode, out, err)
     if done.returncode not in accept:
         raise refusal(done)
     return done
 
 
-def _communicate(process: subprocess.Popen[str]) -> tuple[str, str]:
+def _output_of(process: subprocess.Popen[str], show: bool) -> tuple[str, str]:
+    """stdout and stderr, when both have ended."""
+    said: dict[str, list[str]] = {"stdout": [], "stderr": []}
+
+    def listen(name: str) -> None:
+        with getattr(process, name) as stream:
+            for line in stream:
+                said[name].append(line)
+                if show and name == "stderr":
+                    print(line, end="", file=sys.stderr, flush=True)
+
+    listeners = [threading.Thread(target=listen, args=(name,), daemon=True) for name in said]
+    for listener in listeners:
+        listener.start()
     try:
-        return process.communicate()
+        process.wait()
     except KeyboardInterrupt:
         process.send_signal(signal.SIGINT)
-        process.communicate()  # a second interrupt ends it at once
+        process.wait()  # a second interrupt ends it at once
         raise
+    finally:
+        if process.poll() is not None:
+            for listener in listeners:
+                listener.join()
+    return "".join(said["stdout"]), "".join(said["stderr"])
 
 
 def _word(argument: object) -> str:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from .commands import Scene, scene_file
+from .commands import Scene, scene_file, scene_text
 from .errors import Fault, JostleError, ProgramMissing, SceneError
 from .program import Path, call
 
@@ -67,7 +67,7 @@ def _check_by_schema(scene: Scene | Path, missing: ProgramMissing) -> Checked:
         raise missing from None
     try:
         if isinstance(scene, Mapping):
-            value = json.loads(json.dumps(scene))
+            value = json.loads(scene_text(scene))
         else:
             value = json.loads(pathlib.Path(os.fspath(scene)).read_text(encoding="utf-8"))
     except ValueError as error:

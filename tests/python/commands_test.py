@@ -1,5 +1,7 @@
 """The program from Python: runs, what is derived from them, errors, interrupts, live runs."""
 
+import contextlib
+import io
 import json
 import os
 import pathlib
@@ -42,6 +44,16 @@ class Run(Case):
         self.assertEqual(grown.n_realizations, 4)
         self.assertEqual(grown.digest(), self.open(made(longer)).digest())
 
+    def test_numbers_of_numpy_are_numbers_of_the_scene(self):
+        scene = changed(SHORT, realizations=np.int64(1), seed=np.uint64(2 ** 64 - 1),
+                        snapshots={"taps": np.array([0, 2])}, spheres=np.float64(30),
+                        protocol=[{"tap": {"dilate": np.float64(0.05)}, "count": 2}])
+        results = self.run_scene(scene, progress=False)
+        self.assertEqual((results.points[0].seed, results.points[0].n_spheres), (2 ** 64 - 1, 30))
+        self.assertEqual(results.points[0].position_taps().tolist(), [0, 2])
+        with self.assertRaisesRegex(TypeError, "JSON values alone"):
+            jostle.check(changed(SHORT, seed=object()))
+
     def test_a_packing_is_named_from_the_current_folder(self):
         before = self.run_scene(SHORT, "before.h5")
         after = self.run_scene(changed(SHORT, realizations=1, protocol=[], snapshots={"taps": [0]},
@@ -58,6 +70,9 @@ class Run(Case):
             self.assertIn('Did you mean "dilate"', error.faults[-1].message)
             self.assertEqual(error.exit_code, 2)
             self.assertEqual(len(str(error).splitlines()), 5)
+        with self.assertRaises(jostle.SceneError), contextlib.redirect_stderr(io.StringIO()) as shown:
+            jostle.run(BAD, progress=True)
+        self.assertIn("/spheres: 0 is out of range", shown.getvalue())
         pathlib.Path("broken.json").write_text('{"a":')
         with self.assertRaises(jostle.SceneError) as raised:
             jostle.run("broken.json")
@@ -68,7 +83,7 @@ class Run(Case):
         self.run_scene(SHORT)
         for ask, code, pattern in (
                 (lambda: jostle.run(SHORT), 2, "tiny.h5 exists and is kept"),
-                (lambda: jostle.run("none.json", "a.h5"), 2, "cannot read the scene: none.json"),
+                (lambda: jostle.run("none.json"), 2, "cannot read the scene: none.json"),
                 (lambda: jostle.fit("tiny.h5", "height"), 2, "there is none; tiny.h5 has mean_height"),
                 (lambda: jostle.run(SHORT, "no/such/folder.h5"), 4, "no/such")):
             with self.subTest(pattern=pattern), self.assertRaisesRegex(jostle.ProgramError, pattern) as raised:

@@ -126,6 +126,25 @@ class Ensemble(Case):
         self.assertEqual(len(results.to_pandas()), 6)
 
 
+class Grains(Case):
+    def test_columns_are_those_of_the_engine(self):
+        scene = changed(TINY, realizations=1, relax=None, snapshots=None, spheres=24,
+                        engine={"discrete_element": {}},
+                        container={"sides": "periodic", "width": 3},
+                        protocol=[{"tap": {"lift": 0.1}, "count": 1}],
+                        sweep={"/engine/discrete_element/contact/walton_braun/friction": [0.1, 0.5]})
+        results = self.open(made(scene))
+        stored = [name for name in results.file["observables/point_0000"]
+                  if name not in ("tap", "realization", "status", "rows", "reason", "trial_key")]
+        self.assertIn("kinetic_energy", stored)
+        self.assertNotIn("acceptance", stored)
+        self.assertEqual(sorted(results.points[1].observables), sorted(stored))
+        self.assertEqual(results.ensemble["kinetic_energy_mean"].dims, ("friction", "tap"))
+        np.testing.assert_array_equal(results.ensemble["kinetic_energy_mean"].sel(friction=0.5),
+                                      results.points[1].mean["kinetic_energy"])
+        self.assertEqual(len(results.to_pandas()), 4)
+
+
 class Frames(Case):
     def test_the_ensemble_is_a_table(self):
         results = self.open(made(TINY))
