@@ -1,6 +1,10 @@
 # The Python package: pure Python, installed with the metadata by which xarray finds engine="jostle".
 set(JOSTLE_PYTHON_DIR lib/python3/dist-packages
     CACHE STRING "Where the Python package goes, below the prefix")
+file(GLOB of_other_versions ${PROJECT_BINARY_DIR}/python/*.dist-info)
+if(of_other_versions)
+  file(REMOVE_RECURSE ${of_other_versions})
+endif()
 set(metadata ${PROJECT_BINARY_DIR}/python/jostle-${PROJECT_VERSION}.dist-info)
 file(WRITE ${metadata}/METADATA "Metadata-Version: 2.1\nName: jostle\nVersion: ${PROJECT_VERSION}\n"
                                 "Summary: ${PROJECT_DESCRIPTION}\n")

@@ -14,7 +14,7 @@
 It needs numpy and h5py; xarray, pandas, matplotlib and jsonschema for what is named after them.
 """
 
-from .commands import analyse, cost, export, fit, run, structure
+from .commands import analyse, cost, export, fit, report, run, structure
 from .errors import (Fault, JostleError, NotThere, ProgramError, ProgramMissing, RealizationsFailed,
                      ResultsError, RunStopped, SceneError, UnfinishedRun)
 from .fits import Fit, FittedCurve, Parameter
@@ -30,7 +30,7 @@ __version__ = "0.1.0"
 __all__ = ["Box", "Checked", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
            "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
            "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun", "analyse", "check", "cost",
-           "export", "fit", "half_width", "open", "plot", "program_path", "run", "schema", "structure"]
+           "export", "fit", "half_width", "open", "plot", "program_path", "report", "run", "schema", "structure"]
 
 
 def __getattr__(name: str) -> object:

@@ -182,6 +182,15 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
     return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
 
 
+def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool = False,
+           force: bool = False, threads: int | None = None, program: Path | None = None) -> Path:
+    """Writes one page for a browser that shows all that results hold; docs/report.md says what. Returns
+    `output`."""
+    call(["report", *_paths(results), "-o", output, *_options(live=live, force=force, threads=threads)],
+         program)
+    return output
+
+
 def export(results: Results | Path, output: Path, *, format: str, point: int | None = None,
            realization: int | None = None, tap: Sequence[int] | str | None = None, live: bool = False,
            force: bool = False, program: Path | None = None) -> Path:

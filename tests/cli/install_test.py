@@ -4,10 +4,11 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import unittest
 
 from public_headers_test import public_headers
-from support import SOURCE, TINY, Case, changed
+from support import PLAIN, SOURCE, TINY, Case, changed
 
 BUILD = pathlib.Path(os.environ["BUILD"])
 
@@ -50,6 +51,19 @@ class Install(Case):
         self.assertTrue(3.2 < height < 4.5, height)
         self.assertIn("power_approach: X = X_inf", self.command("consumer/own_model"))
         self.run_own_sink(program)
+        self.import_the_package(prefix)
+
+    def import_the_package(self, prefix):
+        """From where it was installed, with the program that stands beside it, and as xarray's engine."""
+        script = ("import jostle, xarray\n"
+                  "assert jostle.__file__.startswith(%r), jostle.__file__\n"
+                  "ensemble = xarray.open_dataset('tiny.h5', engine='jostle')\n"
+                  "assert ensemble.sizes['dilate'] == 2\n"
+                  "print(jostle.open('tiny.h5').digest())" % str(prefix))
+        done = subprocess.run([sys.executable, "-c", script], cwd=self.folder, text=True,
+                              capture_output=True, env={**PLAIN, "PATH": f"{prefix}/bin:{PLAIN['PATH']}",
+                                                        "PYTHONPATH": f"{prefix}/lib/python3/dist-packages"})
+        self.assertEqual(done.stdout.strip(), self.digest("tiny.h5"), done.stderr)
 
     def run_own_sink(self, program):
         """What is run into memory is analysed and fitted to the numbers of the program."""

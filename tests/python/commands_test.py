@@ -250,6 +250,12 @@ class Derive(Case):
         centres = np.array([line.split()[1:4] for line in lines[2:50]], float)
         np.testing.assert_array_equal(centres, self.results.positions(0, 2, 0))
 
+    def test_a_page_is_written(self):
+        self.assertEqual(jostle.report(self.results, "page.html"), "page.html")
+        self.assertIn("<html", pathlib.Path("page.html").read_text()[:1000])
+        with self.assertRaisesRegex(jostle.ProgramError, "page.html exists"):
+            jostle.report([self.results], "page.html")
+
     def test_cost_is_studied(self):
         scene = changed(SHORT, protocol=[{"tap": {"dilate": 0.05}, "count": 2}], snapshots=None)
         results, report = jostle.cost(scene, replicates=2, observable="mean_height")
