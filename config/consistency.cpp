@@ -22,7 +22,9 @@ class Check {
   void start_suits_container() {
     if (!all_sound({"/start", "/container", "/spheres"})) return;
     const Start start = engine_start(scene_.start);
-    if (const auto fault = start_fault(start, scene_.container)) {
+    if (const auto overlapping = engine_start_fault(engine_of(scene_), start)) {
+      note("/start/" + key_of(scene_.start) + "/overlap", *overlapping);
+    } else if (const auto fault = start_fault(start, scene_.container)) {
       // Without gravity hardly any start does: the fault is not that of one.
       const bool of_one = has_gravity(scene_.container);
       note(of_one ? "/start/" + key_of(scene_.start) : "/start", *fault);

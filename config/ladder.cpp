@@ -7,6 +7,7 @@
 
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
+#include "config/sweep.hpp"
 
 namespace jostle::inline config {
 
@@ -26,11 +27,134 @@ std::uint64_t raised(std::uint64_t sweeps, double factor) {
                                                     : most_sweeps;
 }
 
+/// What of an engine's settings a ladder varies.
+struct Written {
+  Json operator()(const MonteCarlo& engine) const { return written(engine.relax); }
+  Json operator()(const DiscreteElement& engine) const { return written_engine(engine); }
+};
+
+/// What every ladder has.
 class LadderMaker {
  public:
   explicit LadderMaker(const Scene& scene) : scene_(scene) {
-    add(PilotSetting::Part::scene, "as the scene", scene.relax);
+    add(PilotSetting::Part::scene, "as the scene", engine_of(scene));
   }
+
+ protected:
+  void half_the_spheres() {
+    const bool fills = std::holds_alternative<SteepestDescentPour>(scene_.start) ||
+                       std::holds_alternative<FittedPour>(scene_.start) ||
+                       std::holds_alternative<RandomSettle>(scene_.start);
+    Container half = scene_.container;
+    auto* periodic = std::get_if<PeriodicBox>(&half);
+    auto* walled = std::get_if<WalledBox>(&half);
+    if (!fills || (!periodic && !walled) || scene_.n_spheres < 2) return;
+    double& width = periodic ? periodic->width_x : walled->width_x;
+    width *= 0.5;
+    if (width < narrowest_half) return;
+    add(PilotSetting::Part::spheres, "half the footprint", engine_of(scene_));
+    settings_.back().n_spheres /= 2;
+    settings_.back().container = half;
+  }
+
+  void add(PilotSetting::Part part, std::string name, const EngineSettings& engine) {
+    const bool known = part != PilotSetting::Part::spheres && part != PilotSetting::Part::start &&
+                       std::ranges::any_of(settings_, [&](const PilotSetting& setting) {
+                         return setting.engine == engine;
+                       });
+    if (known) return;
+    settings_.push_back(
+        {part, std::move(name), engine, scene_.n_spheres, scene_.container, scene_.start});
+  }
+
+  const Scene& scene_;
+  std::vector<PilotSetting> settings_;
+};
+
+class GrainLadder : LadderMaker {
+ public:
+  explicit GrainLadder(const Scene& scene) : LadderMaker(scene), grains_(*scene.grains) {}
+
+  std::vector<PilotSetting> make() {
+    std::visit([&](const auto& rest) { rests(rest); }, grains_.rest);
+    time_steps();
+    stiffnesses();
+    half_the_spheres();
+    return std::move(settings_);
+  }
+
+ private:
+  void rests(const QuietRest& rest) {
+    for (const double factor : {100.0, 10.0}) {
+      QuietRest other = rest;
+      other.kinetic_energy = rounded(rest.kinetic_energy * factor);
+      if (other.kinetic_energy > 1) continue;
+      ended_by(other, fmt::format("quiet below {:.3g} m g d", other.kinetic_energy));
+    }
+    for (const double factor : {5.0, 25.0}) {
+      QuietRest other = rest;
+      other.seconds = rounded(rest.seconds * factor);
+      ended_by(other, fmt::format("quiet for {:.3g} s", other.seconds));
+    }
+  }
+
+  void rests(const TimedRest& rest) {
+    for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
+      const TimedRest other{rounded(rest.seconds * factor)};
+      ended_by(other, fmt::format("{:.3g} s after the floor", other.seconds));
+    }
+  }
+
+  template <class AnyRest>
+  void ended_by(const AnyRest& rest, std::string name) {
+    if (rest.seconds > most_seconds) return;
+    DiscreteElement other = grains_;
+    other.rest = rest;
+    // The cap must leave as much time before the rest as the scene's does.
+    const double own = std::visit([](const auto& one) { return one.seconds; }, grains_.rest);
+    const double more = std::max(0.0, rest.seconds - own);
+    other.most_seconds = rounded(std::min(grains_.most_seconds + more, most_seconds));
+    add(PilotSetting::Part::stop, std::move(name), other);
+  }
+
+  void time_steps() {
+    for (const double factor : {0.5, 2.0, 4.0}) {
+      DiscreteElement other = grains_;
+      other.steps_per_contact = rounded(grains_.steps_per_contact * factor);
+      if (other.steps_per_contact < 40 || other.steps_per_contact > 1e6) continue;
+      add(PilotSetting::Part::step, fmt::format("{:g} steps a contact", other.steps_per_contact),
+          other);
+    }
+  }
+
+  void stiffnesses() {
+    for (const double factor : {0.1, 10.0}) {
+      bool allowed = true;
+      const auto scale = [&](ContactLaw& law) {
+        std::visit(
+            [&](auto& springs) {
+              springs.stiffness = rounded(springs.stiffness * factor);
+              allowed = allowed && springs.stiffness >= 1 && springs.stiffness <= 1e12;
+            },
+            law);
+      };
+      DiscreteElement other = grains_;
+      scale(other.spheres);
+      if (other.floor) scale(*other.floor);
+      if (other.sides) scale(*other.sides);
+      if (!allowed) continue;
+      add(PilotSetting::Part::stiffness, factor < 1 ? "ten times softer" : "ten times stiffer",
+          other);
+    }
+  }
+
+  static constexpr double most_seconds = 1e5;
+  const DiscreteElement& grains_;
+};
+
+class RelaxationLadder : LadderMaker {
+ public:
+  using LadderMaker::LadderMaker;
 
   std::vector<PilotSetting> make() {
     std::visit([&](const auto& rule) { stops(rule); }, scene_.relax.stop.rule);
@@ -138,22 +262,6 @@ class LadderMaker {
     adapted("fixed delta", std::nullopt);
   }
 
-  void half_the_spheres() {
-    const bool fills = std::holds_alternative<SteepestDescentPour>(scene_.start) ||
-                       std::holds_alternative<FittedPour>(scene_.start) ||
-                       std::holds_alternative<RandomSettle>(scene_.start);
-    Container half = scene_.container;
-    auto* periodic = std::get_if<PeriodicBox>(&half);
-    auto* walled = std::get_if<WalledBox>(&half);
-    if (!fills || (!periodic && !walled) || scene_.n_spheres < 2) return;
-    double& width = periodic ? periodic->width_x : walled->width_x;
-    width *= 0.5;
-    if (width < narrowest_half) return;
-    add(PilotSetting::Part::spheres, "half the footprint", scene_.relax);
-    settings_.back().n_spheres /= 2;
-    settings_.back().container = half;
-  }
-
   void other_pour() {
     const auto* box = std::get_if<WalledBox>(&scene_.container);
     if (box == nullptr || scene_.relax_start) return;
@@ -168,23 +276,15 @@ class LadderMaker {
   }
 
   void add(PilotSetting::Part part, std::string name, const Relaxation& relax) {
-    const bool known = part != PilotSetting::Part::spheres && part != PilotSetting::Part::start &&
-                       std::ranges::any_of(settings_, [&](const PilotSetting& setting) {
-                         return setting.relax == relax;
-                       });
-    if (known) return;
-    settings_.push_back(
-        {part, std::move(name), relax, scene_.n_spheres, scene_.container, scene_.start});
+    LadderMaker::add(part, std::move(name), MonteCarlo{relax, scene_.relax_start});
   }
-
-  const Scene& scene_;
-  std::vector<PilotSetting> settings_;
 };
 
 }  // namespace
 
 std::vector<PilotSetting> ladder(const Scene& scene) {
-  return LadderMaker(scene).make();
+  if (scene.grains) return GrainLadder(scene).make();
+  return RelaxationLadder(scene).make();
 }
 
 MostComplete most_complete(const std::vector<PilotSetting>& settings) {
@@ -242,19 +342,22 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
     if (count > 0) out.protocol.push_back({stage.tap, std::nullopt, count});
     taps -= count;
   }
-  const MonteCarlo engine{scene.relax, scene.relax_start};
-  if (const auto* relaxation = relaxation_of_start(engine, engine_start(scene.start)))
-    out.relax_start = *relaxation;
+  const EngineSettings engine = engine_of(scene);
+  const auto* monte_carlo = std::get_if<MonteCarlo>(&engine);
+  if (monte_carlo != nullptr) {
+    if (const auto* relaxation = relaxation_of_start(*monte_carlo, engine_start(scene.start)))
+      out.relax_start = *relaxation;
+  }
   for (const OtherWindow& other : other_windows(scene)) out.observables.push_back(other.observable);
   SweepAxis axis;
-  axis.columns = {{"/relax", {}}, {"/spheres", {}}, {"/container", {}}};
+  axis.columns = {{monte_carlo ? "/relax" : "/engine", {}}, {"/spheres", {}}, {"/container", {}}};
   // The values of a point are part of its random streams: without another start, none is named.
   const bool starts_differ = std::ranges::any_of(settings, [](const PilotSetting& setting) {
     return setting.part == PilotSetting::Part::start;
   });
   if (starts_differ) axis.columns.push_back({"/start", {}});
   for (const PilotSetting& setting : settings) {
-    axis.columns[0].second.push_back(written(setting.relax));
+    axis.columns[0].second.push_back(std::visit(Written{}, setting.engine));
     axis.columns[1].second.push_back(setting.n_spheres);
     axis.columns[2].second.push_back(written(setting.container));
     if (starts_differ) axis.columns[3].second.push_back(written(setting.start));

@@ -9,10 +9,10 @@ namespace jostle::inline config {
 
 /// One setting of a scene's accuracy, everything else as the scene has it.
 struct PilotSetting {
-  enum class Part { scene, stop, interval, step, adaptation, spheres, start };
+  enum class Part { scene, stop, interval, step, adaptation, stiffness, spheres, start };
   Part part = Part::scene;
   std::string name;  // "eta = 1e-06"
-  Relaxation relax;
+  EngineSettings engine;
   std::uint32_t n_spheres = 0;
   Container container;
   StartChoice start;
@@ -24,6 +24,9 @@ struct PilotSetting {
 /// of polar moves; of Metropolis moves the published adaptation, this project's, and none; half the
 /// spheres on half the footprint, where the start fills any; between walls the other of the two
 /// pours, fitted or direct, unless the start is relaxed. Caps on sweeps are raised with the stops.
+/// Of discrete elements: a tenfold and a hundredfold kinetic energy that counts as rest, and five
+/// and twenty-five times the time it is to last (of a fixed time a quarter to four times of it);
+/// time steps half, twice and four times as many; springs ten times softer and stiffer.
 std::vector<PilotSetting> ladder(const Scene& scene);
 
 /// The settings whose stops are most complete. The last is what the others are compared with; the
@@ -46,8 +49,9 @@ std::vector<OtherWindow> other_windows(const Scene& scene);
 
 /// The scene without its sweep, cut to `taps` taps, as a sweep over the settings in their order,
 /// with matched streams, and with starts relaxed as the scene has it: so that realization m begins
-/// at every setting from the same bed, but where the setting is another start. Observes
-/// other_windows(), too. Keeps no snapshots.
+/// at every setting from the same bed, but where the setting is another start. (Discrete elements
+/// come to rest from the same start, each with its own setting.) Observes other_windows(), too.
+/// Keeps no snapshots.
 Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings,
                    std::uint64_t taps);
 

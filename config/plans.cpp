@@ -32,7 +32,7 @@ class StartMaker {
       throw StartError(fmt::format("{} holds {}, the scene {}: set \"spheres\" to {}", file.path,
                                    counted(centres->size(), "sphere"), n_spheres, centres->size()));
     }
-    return GivenPacking{centres};
+    return GivenPacking{centres, file.overlap};
   }
 
   const PackingLoader& load_;

@@ -28,6 +28,7 @@ struct PackingFile {
   std::uint32_t realization = 0;
   std::optional<std::uint64_t> tap;    // a snapshot of the earlier run; absent: its last
   std::optional<std::uint64_t> frame;  // counted from 0; absent: the last
+  double overlap = 0;                  // the deepest that is accepted, diameters
   auto operator<=>(const PackingFile&) const = default;
 };
 

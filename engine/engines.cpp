@@ -5,9 +5,17 @@ namespace jostle::inline engine {
 namespace {
 
 std::optional<std::string> motion_fault(const DiscreteElement& grains, const Tap& tap) {
-  constexpr double least_steps = 20;
+  constexpr double least_steps = 20, largest_amplitude = 100;
+  const double gravity = grains.gravity / grains.diameter;
   const auto* half_sine = std::get_if<HalfSine>(&tap);
-  const double frequency = half_sine ? half_sine->frequency : std::get<Vibration>(tap).frequency;
+  const auto* vibration = std::get_if<Vibration>(&tap);
+  const double amplitude =
+      half_sine ? floor_amplitude(*half_sine, gravity) : floor_amplitude(*vibration, gravity);
+  if (amplitude > largest_amplitude)
+    return "at this acceleration and frequency the floor moves by " + std::to_string(amplitude) +
+           " diameters, " + std::to_string(static_cast<int>(largest_amplitude)) +
+           " at most: raise the frequency, or lower the acceleration";
+  const double frequency = half_sine ? half_sine->frequency : vibration->frequency;
   if (grains.spheres.index() != grains.floor.value_or(grains.spheres).index() ||
       grains.spheres.index() != grains.sides.value_or(grains.spheres).index())
     return std::nullopt;  // a fault of its own
@@ -31,12 +39,24 @@ std::optional<std::string> engine_tap_fault(const EngineSettings& settings, cons
          "{\"discrete_element\": {}}, or tap by dilate, dilate_floor_held, lift or shake";
 }
 
+std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start) {
+  const auto* given = std::get_if<GivenPacking>(&start);
+  if (given == nullptr || given->most_overlap == 0 ||
+      std::holds_alternative<DiscreteElement>(settings))
+    return std::nullopt;
+  return "trials move hard spheres: a packing that overlaps can be given to discrete elements only";
+}
+
 const char* unit_name(const EngineSettings& settings) {
   return std::holds_alternative<MonteCarlo>(settings) ? "trials" : "sphere steps";
 }
 
 const char* round_name(const EngineSettings& settings) {
   return std::holds_alternative<MonteCarlo>(settings) ? "sweeps" : "time steps";
+}
+
+const char* work_column(const EngineSettings& settings) {
+  return std::holds_alternative<MonteCarlo>(settings) ? sweeps_column : seconds_column;
 }
 
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,

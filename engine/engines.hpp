@@ -23,10 +23,18 @@ std::vector<Column> columns(const EngineSettings& settings);
 /// that moves; a displacement both can make.
 std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap);
 
+/// Why the engine cannot begin from this start; nothing if it can. Only discrete elements may
+/// overlap.
+std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start);
+
 /// What reports call a unit of the engine, and as many units as there are spheres: "trials" and
 /// "sweeps", "sphere steps" and "time steps".
 const char* unit_name(const EngineSettings& settings);
 const char* round_name(const EngineSettings& settings);
+
+/// Of what the engine records, what the work of a tap grows with: "sweeps", or "seconds" of
+/// simulated time.
+const char* work_column(const EngineSettings& settings);
 
 /// The mechanics of one realization, before anything is loaded.
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,

@@ -113,8 +113,8 @@ struct StrengthOf {
   double& operator()(DilateFloorHeld& tap) const { return tap.delta; }
   double& operator()(Lift& tap) const { return tap.gamma; }
   double& operator()(Shake& tap) const { return tap.lambda; }
-  double& operator()(HalfSine& tap) const { return tap.amplitude; }
-  double& operator()(Vibration& tap) const { return tap.amplitude; }
+  double& operator()(HalfSine& tap) const { return tap.strength; }
+  double& operator()(Vibration& tap) const { return tap.strength; }
 };
 
 struct ControlOf {
@@ -126,9 +126,10 @@ struct ControlOf {
   }
   Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
   Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
-  Control operator()(const HalfSine& tap) const { return {"amplitude", "diameter", tap.amplitude}; }
-  Control operator()(const Vibration& tap) const {
-    return {"amplitude", "diameter", tap.amplitude};
+  template <class FloorTap>
+  Control operator()(const FloorTap& tap) const {
+    if (tap.kind == FloorStrength::acceleration) return {"Gamma", "1", tap.strength};
+    return {"amplitude", "diameter", tap.strength};
   }
 };
 

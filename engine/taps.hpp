@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -39,11 +40,16 @@ struct Shake {
   bool operator==(const Shake&) const = default;
 };
 
+/// What the strength of a floor's motion a sin(2 pi f t) is: its amplitude a, in diameters, or its
+/// acceleration Gamma = a (2 pi f)^2 / g.
+enum class FloorStrength : std::uint32_t { amplitude, acceleration };
+
 /// The floor rises and falls as a sin(2 pi f t) for half a period, then rests: Rosato et al. 2010,
 /// sec. III. Discrete elements only.
 struct HalfSine {
-  double amplitude = 0.4413;  // a, diameters
-  double frequency = 7.5;     // f, Hz
+  double strength = 0.4413;
+  double frequency = 7.5;  // f, Hz
+  FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const HalfSine&) const = default;
 };
 
@@ -53,22 +59,33 @@ inline constexpr std::uint64_t most_cycles = 1'000'000;
 /// The floor vibrates as a sin(2 pi f t) for whole periods: Rosato et al. 2010, fig. 15. Discrete
 /// elements only.
 struct Vibration {
-  double amplitude = 0.1;  // a, diameters
-  double frequency = 30;   // f, Hz
+  double strength = 0.1;
+  double frequency = 30;  // f, Hz
   std::uint64_t cycles = 10;
+  FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const Vibration&) const = default;
 };
 
 using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake, HalfSine, Vibration>;
 
+/// The amplitude of the floor, diameters, where `gravity` is in diameters / s^2.
+template <class FloorTap>
+double floor_amplitude(const FloorTap& tap, double gravity) {
+  if (tap.kind == FloorStrength::amplitude) return tap.strength;
+  const double angular = 2 * std::numbers::pi * tap.frequency;
+  return tap.strength * gravity / (angular * angular);
+}
+
 /// Taps of a protocol, at most.
 inline constexpr std::uint64_t most_taps = 1'000'000'000;
 
-/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda, a.
+/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda, a
+/// or Gamma.
 double& strength(Tap& tap);
 
 /// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
-/// of a lift (Rosato et al. 2010), lambda of a shake, a of a floor that moves.
+/// of a lift (Rosato et al. 2010), lambda of a shake, a or Gamma of a floor that
+/// moves.
 struct Control {
   std::string name;  // "sqrt_epsilon"
   std::string units;

@@ -26,10 +26,16 @@ std::string core_time(double seconds) {
   return fmt::format("{:.3g} core-hours", seconds / 3600);
 }
 
+/// Sweeps are whole numbers by the thousand, simulated seconds are few.
+std::string work_text(const CostStudy& study, std::size_t setting) {
+  const double work = study.times()[setting].work;
+  return work >= 100 ? fmt::format("{:.0f}", work) : fmt::format("{:.3g}", work);
+}
+
 std::string rows(const CostStudy& study, const CostOfObservable& cost, const Layout& layout) {
   const bool all = layout.columns == Columns::all;
   std::vector<std::string> headers{"setting", "bias", "s/tap", "realization", ""};
-  if (all) headers.insert(headers.begin() + 2, {"pairing gains", "sweeps/tap"});
+  if (all) headers.insert(headers.begin() + 2, {"pairing gains", study.work_name() + "/tap"});
   TextTable table(headers);
   const auto front = pareto_front(cost.setting_costs);
   for (std::size_t p = 0; p < study.settings().size(); ++p) {
@@ -44,7 +50,7 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost, const Lay
     if (all) {
       cells.insert(cells.begin() + 2,
                    {reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
-                    fmt::format("{:.0f}", study.times()[p].sweeps)});
+                    work_text(study, p)});
     }
     table.add(std::move(cells));
   }
@@ -70,17 +76,20 @@ std::string failures(const CostStudy& study) {
 
 /// A reference that ends its relaxations before a rougher setting does is none.
 std::string doubt_of_the_reference(const CostStudy& study) {
-  const double sweeps = study.times()[study.reference().last].sweeps;
+  const std::size_t reference = study.reference().last;
   for (std::size_t p = 0; p < study.settings().size(); ++p) {
     const PilotSetting& setting = study.settings()[p];
     if (setting.part != PilotSetting::Part::scene && setting.part != PilotSetting::Part::stop)
       continue;
-    if (!(study.times()[p].sweeps > 1.1 * sweeps)) continue;
+    if (!(study.times()[p].work > 1.1 * study.times()[reference].work)) continue;
+    const bool grains = std::holds_alternative<DiscreteElement>(setting.engine);
     return fmt::format(
-        "DOUBTFUL: the reference takes {:.0f} sweeps a tap, and \"{}\" takes {:.0f}. It does not "
-        "relax more completely, and biases against it mean little: does its step die away "
-        "(\"reset_each_tap\": false), or are relaxations capped (\"max_sweeps\")?\n",
-        sweeps, setting.name, study.times()[p].sweeps);
+        "DOUBTFUL: the reference takes {} {} a tap, and \"{}\" takes {}. It does not relax more "
+        "completely, and biases against it mean little: {}\n",
+        work_text(study, reference), study.work_name(), setting.name, work_text(study, p),
+        grains ? "are taps capped (\"most_seconds\")?"
+               : "does its step die away (\"reset_each_tap\": false), or are relaxations capped "
+                 "(\"max_sweeps\")?");
   }
   return "";
 }

@@ -97,28 +97,39 @@ Json written_shake(const Shake& tap, const StrengthWriter& strength) {
           {"retries", tap.retries}};
 }
 
-constexpr Range amplitudes = between(0, 100);      // diameters
-constexpr Range frequencies = between(1e-3, 1e6);  // Hz
+constexpr Range floor_strengths = between(0, 100);  // diameters, or Gamma
+constexpr Range frequencies = between(1e-3, 1e6);   // Hz
 
 template <class FloorTap>
 void read_floor_motion(const Reader& in, const StrengthReader& strength, FloorTap& tap) {
-  if (const auto amplitude = in.find("amplitude")) {
-    tap.amplitude = strength(*amplitude, amplitudes, Rooted::no);
+  const auto amplitude = in.find("amplitude"), acceleration = in.find("acceleration");
+  if (amplitude && acceleration) in.fault("expected only one of the keys acceleration, amplitude");
+  if (acceleration) tap.kind = FloorStrength::acceleration;
+  if (const auto& given = acceleration ? acceleration : amplitude) {
+    tap.strength = strength(*given, floor_strengths, Rooted::no);
   } else if (strength.ramp) {
     in.missing("amplitude", "the ramp of a floor that moves is an object here");
   }
   in.read("frequency", tap.frequency, frequencies);
 }
 
+template <class FloorTap>
+Json written_floor_motion(const FloorTap& tap, const StrengthWriter& strength) {
+  const bool by_amplitude = tap.kind == FloorStrength::amplitude;
+  return {{by_amplitude ? "amplitude" : "acceleration", strength(tap.strength)},
+          {"frequency", plain_number(tap.frequency)}};
+}
+
 Tap read_half_sine(const Reader& in, const StrengthReader& strength) {
   HalfSine tap;
-  if (in.is_object_of({"amplitude", "frequency"})) read_floor_motion(in, strength, tap);
+  if (in.is_object_of({"amplitude", "acceleration", "frequency"}))
+    read_floor_motion(in, strength, tap);
   return tap;
 }
 
 Tap read_vibration(const Reader& in, const StrengthReader& strength) {
   Vibration tap;
-  if (!in.is_object_of({"amplitude", "frequency", "cycles"})) return tap;
+  if (!in.is_object_of({"amplitude", "acceleration", "frequency", "cycles"})) return tap;
   read_floor_motion(in, strength, tap);
   in.read_whole("cycles", tap.cycles, 1, most_cycles);
   return tap;
@@ -143,14 +154,11 @@ constexpr TableOf<TapEntry, Tap>::Type taps{
      },
      [](const Lift& tap, const StrengthWriter& strength) { return strength(tap.gamma); }},
     {"shake", read_shake, written_shake},
-    {"half_sine", read_half_sine,
-     [](const HalfSine& tap, const StrengthWriter& strength) -> Json {
-       return {{"amplitude", strength(tap.amplitude)}, {"frequency", plain_number(tap.frequency)}};
-     }},
+    {"half_sine", read_half_sine, written_floor_motion<HalfSine>},
     {"vibration", read_vibration, [](const Vibration& tap, const StrengthWriter& strength) -> Json {
-       return {{"amplitude", strength(tap.amplitude)},
-               {"frequency", plain_number(tap.frequency)},
-               {"cycles", tap.cycles}};
+       Json settings = written_floor_motion(tap, strength);
+       settings["cycles"] = tap.cycles;
+       return settings;
      }}};
 
 Tap read_tap(const Reader& in, const StrengthReader& strength) {

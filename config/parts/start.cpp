@@ -86,8 +86,8 @@ StartChoice read_file(const Reader& in) {
     check_path(in, file.path);
     return file;
   }
-  const std::vector<std::string> of_results{"path", "point", "realization", "tap"};
-  const std::vector<std::string> of_xyz{"path", "frame"};
+  const std::vector<std::string> of_results{"path", "point", "realization", "tap", "overlap"};
+  const std::vector<std::string> of_xyz{"path", "frame", "overlap"};
   const auto path = in.find("path");
   if (path) {
     file.path = path->text().value_or("");
@@ -95,10 +95,10 @@ StartChoice read_file(const Reader& in) {
   }
   const bool known = path && path->sound();
   const bool xyz = known && ends_with_one_of(file.path, {".xyz", ".extxyz"});
-  if (!in.is_object_of(
-          xyz     ? of_xyz
-          : known ? of_results
-                  : std::vector<std::string>{"path", "point", "realization", "tap", "frame"})) {
+  if (!in.is_object_of(xyz     ? of_xyz
+                       : known ? of_results
+                               : std::vector<std::string>{"path", "point", "realization", "tap",
+                                                          "frame", "overlap"})) {
     return file;
   }
   if (!path) in.missing("path", "the file of a saved packing, from the folder of the scene");
@@ -107,6 +107,7 @@ StartChoice read_file(const Reader& in) {
   in.read_whole("realization", file.realization, 0, most);
   read_last_or(in, "tap", file.tap);
   read_last_or(in, "frame", file.frame);
+  in.read("overlap", file.overlap, between(0, deepest_given_overlap));
   return file;
 }
 
@@ -119,13 +120,16 @@ Json written_crystal(const Crystal& crystal) {
 }
 
 Json written_file(const PackingFile& file) {
+  Json out{{"path", file.path}};
   if (ends_with_one_of(file.path, {".xyz", ".extxyz"})) {
-    return {{"path", file.path}, {"frame", number_or_last(file.frame)}};
+    out["frame"] = number_or_last(file.frame);
+  } else {
+    out["point"] = file.point;
+    out["realization"] = file.realization;
+    out["tap"] = number_or_last(file.tap);
   }
-  return {{"path", file.path},
-          {"point", file.point},
-          {"realization", file.realization},
-          {"tap", number_or_last(file.tap)}};
+  if (file.overlap > 0) out["overlap"] = plain_number(file.overlap);
+  return out;
 }
 
 constexpr Kinds<StartChoice> kinds{
@@ -154,7 +158,7 @@ Start engine_start(const StartChoice& choice) {
   return std::visit(
       [](const auto& start) -> Start {
         if constexpr (std::is_same_v<std::decay_t<decltype(start)>, PackingFile>) {
-          return GivenPacking{};
+          return GivenPacking{nullptr, start.overlap};
         } else {
           return start;
         }

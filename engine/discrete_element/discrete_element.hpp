@@ -77,6 +77,9 @@ struct ContactTimes {
 };
 ContactTimes contact_times(const DiscreteElement& settings);
 
+/// Simulated time of a tap.
+inline constexpr const char* seconds_column = "seconds";
+
 /// What is recorded of every tap, and of the start.
 std::vector<Column> columns(const DiscreteElement& settings);
 

@@ -17,15 +17,16 @@ struct MotionOf {
   double seconds;  // of the unit of time
 
   FloorMotion operator()(const HalfSine& tap) const {
-    return {tap.amplitude, tap.frequency * seconds, 1};
+    return {floor_amplitude(tap, gravity()), tap.frequency * seconds, 1};
   }
   FloorMotion operator()(const Vibration& tap) const {
-    return {tap.amplitude, tap.frequency * seconds, 2 * tap.cycles};
+    return {floor_amplitude(tap, gravity()), tap.frequency * seconds, 2 * tap.cycles};
   }
   template <class Displacement>
   FloorMotion operator()(const Displacement&) const {
     return {};
   }
+  double gravity() const { return 1 / (seconds * seconds); }  // diameters / s^2
 };
 
 class GrainDynamics final : public Dynamics {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -32,16 +33,16 @@ std::string in_diameters(double depth) {
   throw StartError("given packing: " + why);
 }
 
-void check_overlaps(const Packing& packing) {
+void check_overlaps(const Packing& packing, double most_overlap) {
   const Overlap worst = deepest_overlap(packing);
-  if (worst.depth <= overlap_bound(packing)) return;
+  if (worst.depth <= std::max(overlap_bound(packing), most_overlap)) return;
   const std::string with = worst.second < 0 ? "the floor or a side of the container"
                                             : "sphere " + std::to_string(worst.second);
   refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
          in_diameters(worst.depth) +
          ", the deepest overlap of the packing; check that its lengths are in diameters and that "
          "it was made in this container, and that no digits were dropped when it was written; "
-         "packings of discrete elements overlap, and cannot be given");
+         "packings of discrete elements overlap, and say how deep (\"overlap\")");
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
     }
     packing.centres.push_back(r);
   }
-  check_overlaps(packing);
+  check_overlaps(packing, given.most_overlap);
   return packing.centres;
 }
 

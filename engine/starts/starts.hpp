@@ -65,9 +65,11 @@ struct Grow {
 };
 
 /// A packing read from a file: [n_spheres] centres, brought into the box where it is periodic.
-/// Overlaps beyond overlap_bound, with each other or the container, are an error.
+/// Overlaps beyond overlap_bound and `most_overlap`, with each other or the container, are an
+/// error.
 struct GivenPacking {
   std::shared_ptr<const std::vector<Vec3>> centres;
+  double most_overlap = 0;  // diameters; above 0 for discrete elements alone
   bool operator==(const GivenPacking&) const = default;
 };
 
@@ -76,6 +78,8 @@ using Start =
 
 /// Solids fraction up to which random places that do not overlap are found one after another.
 inline constexpr double densest_dilution = 0.25;
+/// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
+inline constexpr double deepest_given_overlap = 0.1;
 /// Spheres that grow without order jam beyond this solids fraction.
 inline constexpr double densest_growth = 0.64;
 

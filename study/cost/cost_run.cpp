@@ -21,13 +21,8 @@ Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
   std::vector<Fault> faults;
   Scene scene =
       scene_at(resolved(loaded.scene), sweep_points(loaded.scene.sweep).at(point), faults);
-  if (scene.grains) {
-    throw BadInput(
-        "/engine: cost varies the relaxation of Monte Carlo; of discrete elements compare "
-        "steps_per_contact, stiffness and rest by a sweep over them");
-  }
   if (total_taps(scene.protocol) == 0) {
-    throw BadInput("/protocol: there is no tap whose relaxation could cost anything");
+    throw BadInput("/protocol: there is no tap that could cost anything");
   }
   if (scene.observables.empty()) throw BadInput("/observe: there is nothing to be accurate in");
   if (!has_gravity(scene.container)) {

@@ -32,6 +32,8 @@ std::string part_name(PilotSetting::Part part) {
       return "step";
     case PilotSetting::Part::adaptation:
       return "adaptation";
+    case PilotSetting::Part::stiffness:
+      return "stiffness";
     case PilotSetting::Part::spheres:
       return "spheres";
     case PilotSetting::Part::start:
@@ -94,19 +96,24 @@ void CostStudy::read_times(const ResultsFile& file) {
   }
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
   for (std::uint32_t p = 0; p < settings_.size(); ++p) {
-    const std::vector<double> sweeps =
-        file.block(p, sweeps_column, {1, pilot_taps_ + 1}, {0, file.study().realizations});
+    const std::vector<double> work_by_tap = file.block(
+        p, work_column(settings_[p].engine), {1, pilot_taps_ + 1}, {0, file.study().realizations});
     Moments all, late;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-      all.add(sweeps[i]);
-      if (1 + i / replicates_ >= first) late.add(sweeps[i]);
+    for (std::size_t i = 0; i < work_by_tap.size(); ++i) {
+      all.add(work_by_tap[i]);
+      if (1 + i / replicates_ >= first) late.add(work_by_tap[i]);
     }
     const double of_a_tap =
         (work[p].seconds - work[p].start_seconds) / (static_cast<double>(pilot_taps_) * done[p]);
     times_.push_back({.start_seconds = work[p].start_seconds / done[p],
                       .tap_seconds = of_a_tap * late.mean() / all.mean(),
-                      .sweeps = late.mean()});
+                      .work = late.mean()});
   }
+}
+
+std::string CostStudy::work_name() const {
+  const bool sweeps = std::holds_alternative<MonteCarlo>(settings_.front().engine);
+  return sweeps ? "sweeps" : "simulated seconds";
 }
 
 double CostStudy::realization_seconds(std::size_t setting) const {
@@ -169,15 +176,17 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
   std::vector<std::string> names, parts;
   std::vector<std::uint64_t> taps(pilot_taps_);
   for (std::uint64_t t = 0; t < pilot_taps_; ++t) taps[t] = t + 1;
-  std::vector<double> tap_seconds, start_seconds, sweeps, core_hours;
+  std::vector<double> tap_seconds, start_seconds, work, core_hours;
   for (std::size_t p = 0; p < settings_.size(); ++p) {
     names.push_back(settings_[p].name);
     parts.push_back(part_name(settings_[p].part));
     tap_seconds.push_back(times_[p].tap_seconds);
     start_seconds.push_back(times_[p].start_seconds);
-    sweeps.push_back(times_[p].sweeps);
+    work.push_back(times_[p].work);
     core_hours.push_back(realization_seconds(p) * scene_realizations / 3600);
   }
+  std::string work_quantity = work_name() + "_per_tap";
+  std::ranges::replace(work_quantity, ' ', '_');
   std::vector<Table> tables;
   const std::vector<std::string> setting = {"setting"}, by_tap = {"setting", "tap"};
   for (const CostOfObservable& cost : observables_) {
@@ -206,7 +215,7 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
         {"variance_reduction", setting, reduction, "1", "by pairing, of the difference", ""},
         {"sigma", setting, sigma, units, "deviation between realizations", ""},
         {"statistical_error", setting, statistical, units, "with the scene's realizations", ""},
-        {"sweeps_per_tap", setting, sweeps, "1", "sweeps of a late tap of the pilot", ""},
+        {work_quantity, setting, work, "1", work_name() + " of a late tap of the pilot", ""},
         {"tap_seconds", setting, tap_seconds, "s", "core time of such a tap", ""},
         {"start_seconds", setting, start_seconds, "s", "core time of a start", ""},
         {"core_hours", setting, core_hours, "h", "of the scene's realizations, all taps", ""},

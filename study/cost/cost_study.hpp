@@ -15,7 +15,7 @@ namespace jostle::inline study {
 struct SettingTime {
   double start_seconds = 0,
          tap_seconds = 0;  // of one realization; a tap of the pilot's second half
-  double sweeps = 0;       // of such a tap
+  double work = 0;         // of such a tap: sweeps, or simulated seconds
 };
 
 /// A bulk fraction read through another window less itself: at the scene's own setting, on the same
@@ -53,6 +53,8 @@ class CostStudy {
   std::uint64_t middle_tap() const { return pilot_taps_ / 2; }
   std::uint64_t taps() const { return taps_; }
   const std::vector<SettingTime>& times() const { return times_; }
+  /// What the work of a tap is counted in: "sweeps", or "simulated seconds".
+  std::string work_name() const;
   /// Realizations that failed, which are in no number of the study.
   const std::vector<RealizationSummary>& failed() const { return failed_; }
   const std::vector<CostOfObservable>& observables() const { return observables_; }

@@ -18,11 +18,14 @@ struct Floor {
   double amplitude = 0, frequency = 1, seconds = 0;
 };
 struct FloorOf {
+  double gravity;  // diameters / s^2
+
   std::optional<Floor> operator()(const HalfSine& tap) const {
-    return Floor{tap.amplitude, tap.frequency, 0.5 / tap.frequency};
+    return Floor{floor_amplitude(tap, gravity), tap.frequency, 0.5 / tap.frequency};
   }
   std::optional<Floor> operator()(const Vibration& tap) const {
-    return Floor{tap.amplitude, tap.frequency, static_cast<double>(tap.cycles) / tap.frequency};
+    return Floor{floor_amplitude(tap, gravity), tap.frequency,
+                 static_cast<double>(tap.cycles) / tap.frequency};
   }
   template <class Displacement>
   std::optional<Floor> operator()(const Displacement&) const {
@@ -42,7 +45,7 @@ std::vector<std::string> grain_summary(const Plan& plan) {
   const double stiffness =
       std::visit([](const auto& law) { return law.stiffness; }, engine->spheres);
   for (const Stage& stage : plan.protocol) {
-    const auto floor = std::visit(FloorOf{}, stage.tap);
+    const auto floor = std::visit(FloorOf{engine->gravity / engine->diameter}, stage.tap);
     if (!floor || stage.count == 0) continue;
     const double omega = 2 * std::numbers::pi * floor->frequency;
     const double gamma = floor->amplitude * engine->diameter * omega * omega / engine->gravity;

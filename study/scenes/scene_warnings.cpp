@@ -74,12 +74,13 @@ class Warnings {
     add(fmt::format("/protocol: lift {:g} drops the bed from {:g} diameters above the floor",
                     tap.gamma, tap.gamma));
   }
-  void look_at_tap(const HalfSine& tap) { look_at_floor("half_sine", tap.amplitude); }
-  void look_at_tap(const Vibration& tap) { look_at_floor("vibration", tap.amplitude); }
-  void look_at_floor(const char* name, double amplitude) {
-    if (amplitude <= largest_lift) return;
+  void look_at_tap(const HalfSine& tap) { look_at_floor("half_sine", tap); }
+  void look_at_tap(const Vibration& tap) { look_at_floor("vibration", tap); }
+  template <class FloorTap>
+  void look_at_floor(const char* name, const FloorTap& tap) {
+    if (tap.kind != FloorStrength::amplitude || tap.strength <= largest_lift) return;
     add(fmt::format("/protocol: {}: the amplitude is in diameters, and {:g} are many", name,
-                    amplitude));
+                    tap.strength));
   }
   void look_at_stretch(const char* name, double strength) {
     if (strength < largest_stretch) return;

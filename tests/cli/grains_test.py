@@ -95,9 +95,41 @@ class Grains(Case):
         self.write(changed(GRAINS, relax={"polar": {}}))
         self.assertIn("/relax: trials are of Monte Carlo",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
-        self.write(GRAINS)
-        self.assertIn("cost varies the relaxation of Monte Carlo",
-                      self.jostle("cost", "scene.json", expect=BAD_INPUT).stderr)
+
+    def test_what_their_accuracy_costs(self):
+        self.write(changed(GRAINS, snapshots={}))
+        said = self.jostle("cost", "scene.json", "--replicates", "2", "--taps", "1",
+                           "--observable", "bulk_fraction", "--no-progress", "--wide").stdout
+        for text in ("simulated seconds/tap", "80 steps a contact", "ten times softer",
+                     "against quiet for 0.5 s"):
+            self.assertIn(text, said)
+        self.assertNotIn("sweeps", said)
+        with h5py.File(self.folder / "grains-cost.h5") as file:
+            table = file["analysis/cost/bulk_fraction"]
+            seconds = dict(zip(table["setting"].asstr()[:], table["simulated_seconds_per_tap"][:]))
+        # Rest that is to last 0.48 s longer, to what is looked at every fiftieth of a time unit.
+        longer = seconds["quiet for 0.5 s"] - seconds["as the scene"]
+        self.assertAlmostEqual(longer, 0.48, delta=0.02)
+
+    def test_a_bed_of_grains_begins_another_run(self):
+        self.run_scene("-o", "poured.h5")
+        start = {"file": {"path": "poured.h5", "realization": 1, "overlap": 0.01}}
+        again = changed(GRAINS, name="again", realizations=1, start=start)
+        self.write(again)
+        self.run_scene()
+        with h5py.File(self.folder / "again.h5") as file:
+            began = file["observables/point_0000/mean_height"][0, 0]
+        with h5py.File(self.folder / "poured.h5") as file:
+            ended = file["observables/point_0000/mean_height"][-1, 1]
+        self.assertAlmostEqual(began, ended, delta=1e-3)
+        self.write(changed(again, start={"file": {"path": "poured.h5", "realization": 1}}))
+        self.assertIn('say how deep ("overlap")',
+                      self.jostle("run", "scene.json", "-o", "hard.h5", expect=BAD_INPUT).stderr)
+        hard = changed(again, engine={"monte_carlo": {}}, relax={"polar": {}},
+                       protocol=[{"tap": {"lift": 0.1}, "count": 1}])
+        self.write(hard)
+        self.assertIn("/start/file/overlap: trials move hard spheres",
+                      self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 
     def test_a_sweep_over_the_engine(self):
         scene = changed(GRAINS, realizations=1, protocol=[], snapshots={}, sweep={

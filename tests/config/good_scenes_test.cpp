@@ -109,10 +109,13 @@ TEST_CASE("The settings of discrete elements and of a floor that moves are read"
                                          .steps_per_contact = 50,
                                          .rest = TimedRest{0.5},
                                          .most_seconds = 4});
-  REQUIRE(scene.protocol.size() == 4);
+  REQUIRE(scene.protocol.size() == 6);
   CHECK(scene.protocol[0].tap == Tap{HalfSine{0.4, 12}});
   CHECK(scene.protocol[1].tap == Tap{Vibration{0.05, 60, 4}});
   CHECK(scene.protocol[2].ramp == Ramp{0.1, 0.3, 0.1});
+  CHECK(scene.protocol[4].tap == Tap{HalfSine{2, 7.5, FloorStrength::acceleration}});
+  CHECK(std::get<Vibration>(scene.protocol[5].tap).kind == FloorStrength::acceleration);
+  CHECK(scene.protocol[5].ramp == Ramp{1, 3, 1});
   CHECK(engine_of(scene) == EngineSettings{*scene.grains});
   CHECK(scene_of(resolved(scene).dump()) == scene);
 }
@@ -166,9 +169,9 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(laws["linear_spring_dashpot"]["properties"]["tangential_damping"]["default"] ==
         LinearSpringDashpot{}.tangential_damping);
   const auto& taps = definitions["tap"]["properties"];
-  CHECK(taps["half_sine"]["properties"]["amplitude"]["default"] == HalfSine{}.amplitude);
+  CHECK(taps["half_sine"]["properties"]["amplitude"]["default"] == HalfSine{}.strength);
   CHECK(definitions["floor_frequency"]["default"] == HalfSine{}.frequency);
-  CHECK(taps["vibration"]["properties"]["amplitude"]["default"] == Vibration{}.amplitude);
+  CHECK(taps["vibration"]["properties"]["amplitude"]["default"] == Vibration{}.strength);
   CHECK(taps["vibration"]["properties"]["frequency"]["default"] == Vibration{}.frequency);
   CHECK(definitions["floor_cycles"]["default"] == Vibration{}.cycles);
   CHECK(definitions["floor_cycles"]["maximum"] == most_cycles);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "config/grids.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/monte_carlo_plan.hpp"
 
@@ -13,6 +14,10 @@ namespace {
 
 Scene shipped(const std::string& name) {
   return scene_of(text_of(std::filesystem::path(SOURCE_ROOT) / "config" / "scenes" / name));
+}
+
+const Relaxation& relax_of(const PilotSetting& setting) {
+  return std::get<MonteCarlo>(setting.engine).relax;
 }
 
 std::set<std::string> names(const std::vector<PilotSetting>& settings) {
@@ -27,7 +32,7 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
   const Scene scene = shipped("quickstart.json");
   const std::vector<PilotSetting> settings = ladder(scene);
   CHECK(settings.front().part == PilotSetting::Part::scene);
-  CHECK(settings.front().relax == scene.relax);
+  CHECK(relax_of(settings.front()) == scene.relax);
   CHECK(names(settings) == std::set<std::string>{"as the scene", "eta = 0.001", "eta = 0.0001",
                                                  "eta = 1e-06", "eta = 1e-07",
                                                  "test every 10 sweeps", "test every 1000 sweeps",
@@ -36,7 +41,7 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
   const MostComplete best = most_complete(settings);
   CHECK(settings[best.last].name == "eta = 1e-07");
   CHECK(settings[best.before].name == "eta = 1e-06");
-  const Stop& complete = settings[best.last].relax.stop;
+  const Stop& complete = relax_of(settings[best.last]).stop;
   CHECK(std::get<MeanHeightStop>(complete.rule).eta == 1e-7);
   CHECK(complete.max_sweeps == 100 * scene.relax.stop.max_sweeps);
 }
@@ -103,24 +108,63 @@ TEST_CASE("A ladder of an absolute stop goes up and down from the scene's change
   CHECK(settings[most_complete(settings).last].name == "change = 1e-05 d");
 }
 
+TEST_CASE("A ladder of discrete elements varies their rest, time step and stiffness") {
+  Scene scene = shipped("rosato-dybenko-2010/fig10.json");
+  scene.grains = DiscreteElement{};
+  scene.grains->floor = WaltonBraun{.stiffness = 2e5};
+  std::vector<PilotSetting> settings = ladder(scene);
+  CHECK(names(settings) == std::set<std::string>{"as the scene", "quiet below 0.005 m g d",
+                                                 "quiet below 0.0005 m g d", "quiet for 0.1 s",
+                                                 "quiet for 0.5 s", "80 steps a contact",
+                                                 "160 steps a contact", "ten times softer",
+                                                 "ten times stiffer", "half the footprint"});
+  CHECK(settings[most_complete(settings).last].name == "quiet for 0.5 s");
+  for (const PilotSetting& setting : settings) {
+    const auto& grains = std::get<DiscreteElement>(setting.engine);
+    if (setting.name == "ten times softer") {
+      CHECK(std::get<WaltonBraun>(grains.spheres).stiffness == 1e4);
+      CHECK(std::get<WaltonBraun>(*grains.floor).stiffness == 2e4);
+    }
+    if (setting.name == "quiet for 0.5 s") CHECK(grains.most_seconds == Approx(5.48));
+  }
+  // A fixed time, more steps than the fewest, and springs that cannot be softer.
+  scene.grains = DiscreteElement{};
+  scene.grains->rest = TimedRest{0.4};
+  scene.grains->steps_per_contact = 100;
+  scene.grains->spheres = LinearSpringDashpot{.stiffness = 5};
+  settings = ladder(scene);
+  const auto all = names(settings);
+  for (const char* name :
+       {"0.1 s after the floor", "0.2 s after the floor", "0.8 s after the floor",
+        "1.6 s after the floor", "50 steps a contact", "ten times stiffer"}) {
+    CAPTURE(name);
+    CHECK(all.contains(name));
+  }
+  CHECK_FALSE(all.contains("ten times softer"));
+  CHECK(settings[most_complete(settings).last].name == "1.6 s after the floor");
+}
+
 TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from the same beds") {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(
            std::filesystem::path(SOURCE_ROOT) / "config" / "scenes")) {
     if (entry.path().extension() != ".json") continue;
     INFO(entry.path());
     const Scene scene = scene_of(text_of(entry.path()));
-    if (scene.grains) continue;  // which has none
     const std::vector<PilotSetting> settings = ladder(scene);
     const Scene pilot = scene_of(resolved(ladder_scene(scene, settings, 7)).dump());
     const std::vector<Plan> plans = make_plans(pilot, {});
     REQUIRE(plans.size() == settings.size());
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      CHECK(monte_carlo(plans[i]).relax == settings[i].relax);
+      if (scene.grains) {
+        CHECK(plans[i].engine == settings[i].engine);
+      } else {
+        CHECK(monte_carlo(plans[i]).relax == relax_of(settings[i]));
+        CHECK(monte_carlo(plans[i]).relax_start.value_or(scene.relax) ==
+              scene.relax_start.value_or(scene.relax));
+      }
       CHECK(plans[i].streams == Streams::matched);
-      CHECK(total_taps(plans[i]) == 7);
+      CHECK(total_taps(plans[i]) == std::min<std::uint64_t>(7, total_taps(scene.protocol)));
       CHECK(plans[i].snapshots.taps.empty());
-      CHECK(monte_carlo(plans[i]).relax_start.value_or(scene.relax) ==
-            scene.relax_start.value_or(scene.relax));
       const bool another = settings[i].part == PilotSetting::Part::start;
       CHECK((plans[i].start == plans[0].start) != another);
       CHECK(plans[i].observables.size() == scene.observables.size() + other_windows(scene).size());

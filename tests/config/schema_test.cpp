@@ -71,6 +71,8 @@ const std::vector<std::string> cross_field_messages{
     "the contacts with floor and sides have the law",
     "the floor moves under discrete elements only",
     "half a period of the floor takes",
+    "at this acceleration and frequency",
+    "trials move hard spheres: a packing that overlaps",
     "nothing settles",
     "this start is at rest",
     "skipping needs trials that only fall",

@@ -9,7 +9,6 @@ namespace jostle::inline engine::JOSTLE_KERNELS {
 namespace {
 
 using Row8 = double __attribute__((vector_size(64)));
-using Row8Index = std::int64_t __attribute__((vector_size(64)));
 
 [[gnu::always_inline]] inline const Row8& row8(const Row& row) {
   return *reinterpret_cast<const Row8*>(row.of);
@@ -22,14 +21,16 @@ using Row8Index = std::int64_t __attribute__((vector_size(64)));
 template <class Law>
 [[gnu::always_inline]] inline void read_history(Law& law, const ContactArrays& contacts,
                                                 std::size_t at) {
-  law.each_of_history([&](int k, Wide& value)
-                          [[gnu::always_inline]] { value = Wide::at(contacts.history[k] + at); });
+  law.each_of_history([&](int k, Wide& value) __attribute__((always_inline)) {
+    value = Wide::at(contacts.history[k] + at);
+  });
 }
 template <class Law>
 [[gnu::always_inline]] inline void write_history(Law& law, const ContactArrays& contacts,
                                                  std::size_t at) {
-  law.each_of_history([&](int k, Wide& value)
-                          [[gnu::always_inline]] { value.store(contacts.history[k] + at); });
+  law.each_of_history([&](int k, Wide& value) __attribute__((always_inline)) {
+    value.store(contacts.history[k] + at);
+  });
 }
 
 [[gnu::always_inline]] inline void write_action(const ContactArrays& contacts, std::size_t at,
@@ -161,6 +162,14 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
   keep_deepest(contacts, deepest);
 }
 
+// Forces and torques where a row has velocities and spins; velocities where it has positions.
+[[gnu::always_inline]] inline Row8 at_velocities(const Row8& action) {
+  return __builtin_shufflevector(action, action, 0, 0, 0, 0, 1, 2, 3, 4);
+}
+[[gnu::always_inline]] inline Row8 at_positions(const Row8& row) {
+  return __builtin_shufflevector(row, row, 3, 4, 5, 3, 3, 3, 3, 3);
+}
+
 // A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
 // step back, go a step on, and then the positions. Moment of inertia 1/10.
 template <bool spin, bool full_step>
@@ -168,8 +177,6 @@ void advance(const SphereArrays& spheres, Advance& step) {
   constexpr Row8 sign_of[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {-1, -1, -1, 1, 1, 1, 1, 1}};
   const double dt = step.time_step, turn = 10 * dt;
   const Row8 kick = {0, 0, 0, dt, dt, dt, turn, turn}, move = {dt, dt, dt, 0, 0, 0, 0, 0};
-  constexpr Row8Index forces_to_velocities = {0, 0, 0, 0, 1, 2, 3, 4};
-  constexpr Row8Index velocities_to_positions = {3, 4, 5, 3, 3, 3, 3, 3};
   const Row8 weight = {0, 0, -step.gravity, 0, 0, 0, 0, 0};
   double fastest = 0;
   for (std::size_t i = 0; i < spheres.n; ++i) {
@@ -178,18 +185,18 @@ void advance(const SphereArrays& spheres, Advance& step) {
       const std::uint32_t slot = spheres.slot[s];
       sum += sign_of[slot & 1] * row8(spheres.action[slot >> 1]);
     }
-    const Row8 kicked = __builtin_shuffle(sum, forces_to_velocities) * kick;
+    const Row8 kicked = at_velocities(sum) * kick;
     Row8& row = row8(spheres.rows[i]);
     if constexpr (full_step) {
       Row8& half = row8(spheres.half_rows[i]);
       half += kicked;
-      const Row8 moved = row + __builtin_shuffle(half, velocities_to_positions) * move;
+      const Row8 moved = row + at_positions(half) * move;
       const Row8 predicted = half + 0.5 * kicked;
       row = Row8{moved[0],     moved[1],     moved[2],     predicted[3],
                  predicted[4], predicted[5], predicted[6], predicted[7]};
     } else {
       row += kicked;
-      row += __builtin_shuffle(row, velocities_to_positions) * move;
+      row += at_positions(row) * move;
     }
     if constexpr (spin) {
       const double turned = turn * sum[5];

@@ -15,6 +15,19 @@ Packing given(std::vector<Vec3> centres, const Container& container, std::uint32
 
 }  // namespace
 
+TEST_CASE("A given packing may overlap as deep as is said, with spheres and with the floor") {
+  const PeriodicBox box{5, 5};
+  RandomStream random(StreamKey{});
+  const auto overlapping = [&](double most) {
+    const std::vector<Vec3> centres{{1, 1, 0.495}, {1, 1, 1.49}};  // 0.005 deep in both
+    return make_start(GivenPacking{std::make_shared<const std::vector<Vec3>>(centres), most}, box,
+                      2, random);
+  };
+  CHECK_THROWS_AS(overlapping(0), StartError);
+  CHECK_THROWS_AS(overlapping(0.0049), StartError);
+  CHECK(overlapping(0.0051).centres.size() == 2);
+}
+
 TEST_CASE("A given packing is taken as it is, brought into the box") {
   const Packing packing = given({{1, 1, 0.5}, {-0.5, 5, 0.5}, {17, 2.5, 3}}, PeriodicBox{8, 4}, 3);
   CHECK(packing.centres == std::vector<Vec3>{{1, 1, 0.5}, {7.5, 1, 0.5}, {1, 2.5, 3}});

@@ -32,6 +32,12 @@ TEST_CASE("What grains come to is what one works out by hand") {
   CHECK_THAT(lines[1], Contains("overlap up to 0.0033 d") && !Contains("stiffness"));
 }
 
+TEST_CASE("An acceleration is the amplitude that it asks for") {
+  const auto lines = grain_summary(grains({{HalfSine{2, 7.5, FloorStrength::acceleration}, 10}}));
+  // 2 * 9.81 m/s^2 / (2 pi 7.5 Hz)^2 / 0.02 m.
+  CHECK_THAT(lines.at(1), Contains("a = 0.4418 d, f = 7.5 Hz: Gamma 2.000"));
+}
+
 TEST_CASE("Equal taps are told of once, too many are counted, too fast ones warned of") {
   CHECK(grain_summary(grains({{HalfSine{0.1, 10}, 5}, {Dilate{0.1}, 5}, {HalfSine{0.1, 10}, 7}}))
             .size() == 2);
