@@ -30,9 +30,8 @@ int exponent_of(double number) {
 }
 
 std::string power_text(int power) {
-  std::string digits = std::to_string(std::abs(power));
-  if (digits.size() < 2) digits.insert(0, "0");
-  return (power < 0 ? "e-" : "e+") + digits;
+  const std::string digits = std::to_string(std::abs(power));
+  return (power < 0 ? "e-" : "e+") + std::string(digits.size() < 2 ? "0" : "") + digits;
 }
 
 /// Both to `decimals` behind the point, or, where these are fewer than none, to a power of ten.
