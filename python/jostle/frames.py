@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .errors import NotThere
 from .point import FOLDS
 
 try:
@@ -19,9 +21,13 @@ if TYPE_CHECKING:
     from .tables import Table
 
 
-def ensemble_frame(results: Results) -> pandas.DataFrame:
-    """A row a sweep point and tap that it has come to."""
-    names = [f"{name}_{fold}" for name in results.observables for fold in FOLDS]
+def ensemble_frame(results: Results, observables: Sequence[str]) -> pandas.DataFrame:
+    """A row a sweep point and tap that it has come to; all columns where none is named."""
+    chosen = observables or results.observables
+    unknown = [name for name in chosen if name not in results.observables]
+    if unknown:
+        raise NotThere(f"{results.path} has no {unknown[0]!r}; it has {', '.join(results.observables)}")
+    names = [f"{name}_{fold}" for name in chosen for fold in FOLDS]
     coordinates = list(results.sweep.names.values())
     rows: dict[str, list[np.ndarray]] = {name: [] for name in [*coordinates, "tap", *names]}
     for point in results.points:
@@ -29,11 +35,10 @@ def ensemble_frame(results: Results) -> pandas.DataFrame:
         for name, value in zip(coordinates, _values(results, point.index)):
             rows[name].append(np.full(len(taps), value))
         rows["tap"].append(taps)
-        for name in names:
-            observable, fold = name.rsplit("_", 1)
-            here = observable in point.observables
-            rows[name].append(getattr(point, fold)[observable] if here else
-                              np.full(len(taps), 0 if fold == "count" else np.nan))
+        for fold in FOLDS:
+            columns, absent = getattr(point, fold), np.full(len(taps), 0 if fold == "count" else np.nan)
+            for name in chosen:
+                rows[f"{name}_{fold}"].append(columns[name] if name in columns else absent)
     frame = pandas.DataFrame({name: np.concatenate(parts) for name, parts in rows.items()})
     return frame.set_index([*coordinates, "tap"])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Callable
 
 import h5py
@@ -110,12 +111,12 @@ class Point:
     def n_realizations(self) -> int:
         return self._results.n_realizations
 
-    @property
+    @cached_property
     def tap(self) -> np.ndarray:
         """[tap]: 0 is the start; as far as the farthest realization has come."""
         return self._group("observables")["tap"][()] if self.begun else np.zeros(0, np.uint64)
 
-    @property
+    @cached_property
     def observables(self) -> list[str]:
         """All columns: what the scene observes, then what the engine records of a tap."""
         own = ("tap", "realization", "status", "rows", "reason", "trial_key")

@@ -172,11 +172,12 @@ class Results:
         from .datasets import series
         return series(self)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self, *observables: str) -> pandas.DataFrame:
         """The ensemble as a table: a row a sweep point and tap, indexed by the axes of the sweep and the
-        tap; a column each NAME_mean, NAME_sigma, NAME_error, NAME_count. Needs pandas."""
+        tap; a column each NAME_mean, NAME_sigma, NAME_error, NAME_count, of all or of these. Needs
+        pandas."""
         from .frames import ensemble_frame
-        return ensemble_frame(self)
+        return ensemble_frame(self, observables)
 
     def positions(self, point: int = 0, realization: int = 0, tap: int | None = None) -> np.ndarray:
         """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""

@@ -155,6 +155,11 @@ class Frames(Case):
             np.testing.assert_array_equal(frame.loc[place, "mean_height_mean"],
                                           results.points[number].mean["mean_height"])
         self.assertEqual(frame["mean_height_count"].unique().tolist(), [3])
+        few = results.to_pandas("sweeps")
+        self.assertEqual(list(few), ["sweeps_mean", "sweeps_sigma", "sweeps_error", "sweeps_count"])
+        np.testing.assert_array_equal(few["sweeps_mean"], frame["sweeps_mean"])
+        with self.assertRaisesRegex(jostle.NotThere, "no 'height'; it has mean_height"):
+            results.to_pandas("height")
 
 
 class WithoutThem(Case):
