@@ -27,6 +27,7 @@ class Chapter {
     this.run = run;
     this.id = `file-${index}`;
     this.tables = run.tables.map((table) => new Table(table));
+    this.settings = this.tables.find((table) => table.path[0] === "cost" && table.axis("setting").length === run.n_points);
     for (const curve of run.curves) {
       for (const column of curve.columns) for (const key of ["mean", "error", "sigma"]) column[key] = numbers(column[key]);
     }
@@ -39,7 +40,10 @@ class Chapter {
     this.changesStrength = Array.isArray(stages) && (stages.length > 1 || stages.some((stage) => stage?.ramp));
   }
 
+  /// What a sweep point is called: its swept values; of a study of cost its setting.
   pointLabel(number) {
+    const settings = this.settings?.axis("setting");
+    if (settings && number !== null) return settings[number];
     return this.run.points.find((point) => point.number === number)?.label || (number === null ? "all points" : `point ${number}`);
   }
   titleOf(table) {

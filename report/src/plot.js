@@ -163,7 +163,8 @@ function legend(series, width, colours, theme) {
   const group = element("g", {"aria-hidden": "true", "font-size": 12, "text-anchor": "start", class: "legend"});
   let x = 4, y = 12;
   for (const one of named) {
-    const text = one.name.length > 60 ? `${one.name.slice(0, 59)}\u2026` : one.name;
+    const most = Math.min(60, Math.floor((width - 36) / 6.8));
+    const text = one.name.length > most ? `${one.name.slice(0, most - 1)}\u2026` : one.name;
     const length = 30 + 6.6 * text.length;
     if (x > 4 && x + length > width) {
       x = 4;
@@ -226,10 +227,11 @@ export function drawn(spec, {width, dark, still = false}) {
     marks.push(Plot.tip(rows, Plot.pointer({x: "x", y: "y", title: (at) => hoverText(at, spec), fill: theme.paper,
                                             stroke: theme.faint, textColor: theme.ink, fontSize: 12, pathFilter: null})));
   }
+  const marginBottom = spec.marginBottom ?? 44;
   const marginLeft = 34 + 6.7 * Math.max(3, ...yAxis.ticks.map((value) => String(yAxis.tickFormat(value)).length));
   const svg = Plot.plot({
     width, height: height + key.height, marginLeft, marginRight: 14, marginTop: key.height + 10,
-    marginBottom: spec.marginBottom ?? 44, x: {...xAxis.scale, label: null}, y: {...yAxis.scale, label: null}, marks,
+    marginBottom, x: {...xAxis.scale, label: null}, y: {...yAxis.scale, label: null}, marks,
     style: {background: "transparent", color: theme.ink, fontFamily: "system-ui, sans-serif", overflow: "visible"},
   });
   svg.setAttribute("xmlns", "http://www.w3.org/2000/svg");
@@ -240,13 +242,13 @@ export function drawn(spec, {width, dark, still = false}) {
     element("text", {transform: `translate(13,${key.height + 10 + (height - 54) / 2}) rotate(-90)`, "text-anchor": "middle",
                      fill: theme.ink, "font-size": 12.5}, spec.y.label));
   if (xAxis.hasBreak) {
-    const at = svg.scale("x").apply((zeroPlace) / 2), base = total - (spec.marginBottom ?? 44);
+    const at = svg.scale("x").apply((zeroPlace) / 2), base = total - marginBottom;
     svg.append(element("path", {d: `M${at - 5},${base + 5}l4,-10M${at + 1},${base + 5}l4,-10`, stroke: theme.ink,
                                 "stroke-width": 1.2, fill: "none"}));
   }
-  svg.append(element("line", {x1: marginLeft, x2: width - 14, y1: total - (spec.marginBottom ?? 44),
-                              y2: total - (spec.marginBottom ?? 44), stroke: theme.ink}),
-             element("line", {x1: marginLeft, x2: marginLeft, y1: key.height + 10, y2: total - (spec.marginBottom ?? 44),
+  svg.append(element("line", {x1: marginLeft, x2: width - 14, y1: total - marginBottom,
+                              y2: total - marginBottom, stroke: theme.ink}),
+             element("line", {x1: marginLeft, x2: marginLeft, y1: key.height + 10, y2: total - marginBottom,
                               stroke: theme.ink}));
   if (key.node) svg.append(key.node);
   return svg;

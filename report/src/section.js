@@ -12,8 +12,15 @@ export function section(chapter, id, title, intro, ...content) {
     element("h3", {}, title), intro ? element("p", {class: "intro"}, intro) : null, ...there);
 }
 
+/// Two side by side where there is room; one that is alone is larger.
 export function pair(...figures) {
-  return element("div", {class: "pair"}, figures.filter(Boolean).map((one) => one.node));
+  const there = figures.filter(Boolean);
+  return element("div", {class: there.length === 1 ? "pair single" : "pair"}, there.map((one) => one.node));
+}
+
+/// Many, of one size.
+export function gallery(figures) {
+  return figures.length === 1 ? pair(...figures) : element("div", {class: "pair"}, figures.map((one) => one.node));
 }
 
 /// What was found, in words; several lines each stand alone.

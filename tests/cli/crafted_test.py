@@ -33,6 +33,11 @@ COMMANDS = (["info", "file.h5"], ["info", "file.h5", "--json"], ["info", "file.h
             ["check", "from.json", "--no-pilot"])
 
 
+def sealed(data):
+    """A file's bytes with the last line that jostle looks for."""
+    return data + f"\njostle-sha256 {hashlib.sha256(data).hexdigest()}\n".encode()
+
+
 def replace(file, name, data, **keywords):
     attributes = dict(file[name].attrs) if keywords.pop("keep", False) else {}
     del file[name]
@@ -250,8 +255,7 @@ class Crafted(Case):
         path.write_bytes((self.folder / "good.h5").read_bytes()[:-SEAL])
         with h5py.File(path, "r+") as file:
             change(file)
-        data = path.read_bytes()
-        path.write_bytes(data + f"\njostle-sha256 {hashlib.sha256(data).hexdigest()}\n".encode())
+        path.write_bytes(sealed(path.read_bytes()))
 
     def use(self, command):
         process = subprocess.run([JOSTLE, *command], cwd=self.folder, env=PLAIN, text=True,

@@ -157,6 +157,26 @@ class Unfinished(Report):
         self.assertGreater(run["realizations"]["unfinished"], 0)
 
 
+class Long(Report):
+    def test_long_curves_are_thinned_and_the_page_says_so(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 1500}],
+                           relax={"polar": {}, "stop": {"sweeps": 1}}, realizations=2,
+                           snapshots={"taps": []},
+                           fits=[{"observable": "mean_height", "model": "kww"}]))
+        self.run_scene()
+        page, _ = self.page("tiny.h5")
+        run = self.data(page)["files"][0]
+        self.assertIn("curves are drawn at 40 taps a decade", run["left_out"])
+        taps = run["curves"][0]["taps"]
+        self.assertEqual(taps, sorted(set(taps)))
+        self.assertEqual((taps[:17], taps[-1]), (list(range(17)), 1500))
+        self.assertTrue(100 < len(taps) < 130)
+        (t,) = [axis["values"] for axis in run["tables"][0]["axes"] if axis["name"] == "t"]
+        self.assertEqual((t[0], t[-1]), (1, 1500))
+        self.assertTrue(50 < len(t) < 120)
+        self.assertLess(len(page), 1_000_000)
+
+
 class Data(Report):
     def setUp(self):
         super().setUp()

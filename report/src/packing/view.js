@@ -86,7 +86,7 @@ export class View {
   /// Throws where the browser has no WebGL2.
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = canvas.getContext("webgl2", {antialias: true, alpha: false});
+    const gl = canvas.getContext("webgl2", {antialias: true, alpha: false, preserveDrawingBuffer: true});
     if (!gl) throw new Error("this browser has no WebGL2");
     this.gl = gl;
     this.lost = false;

@@ -1,5 +1,5 @@
 // Two-time functions, as measured and scaled.
-import {byPoint, dataTable, figure, number, ordered, pair, pointsOf, refusals, section, statement, withError, words} from "../section.js";
+import {byPoint, dataTable, figure, number, ordered, gallery, pointsOf, refusals, section, statement, withError, words} from "../section.js";
 
 function series(table, ys, make) {
   const waiting = table.axis("waiting_time");
@@ -72,7 +72,7 @@ export function ageingSection(chapter) {
       const observable = table.path.at(-1);
       const figures = [measured(chapter, table, observable), scaled(chapter, table, observable),
                        correlation(chapter, table, observable)].filter(Boolean);
-      return [pair(...figures), statement("Change with age", table.notes.ageing_verdict),
+      return [gallery(figures), statement("Change with age", table.notes.ageing_verdict),
               statement("Collapse", table.notes.collapse_verdict), laws(table)].filter(Boolean);
     }));
   return section(chapter, "ageing", "Ageing", "How much an observable changes in a lag t, counted from the waiting time t_W.",

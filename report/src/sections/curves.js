@@ -1,5 +1,5 @@
 // Series of the taps: compaction, spread, what the engine records.
-import {figure, pair, section, rowsOf, words} from "../section.js";
+import {figure, gallery, section, rowsOf, words} from "../section.js";
 import {axisLabel} from "../format.js";
 
 /// Logarithmic for a protocol of one strength, which relaxes; even where the strength changes on the way.
@@ -37,13 +37,6 @@ function sentence(text) {
   return text ? text[0].toUpperCase() + text.slice(1) : "";
 }
 
-/// Pairs of figures, and one that is left.
-function pairs(figures) {
-  const rows = [];
-  for (let i = 0; i < figures.length; i += 2) rows.push(pair(figures[i], figures[i + 1]));
-  return rows;
-}
-
 function meanFigure(chapter, name, title) {
   return columnFigure(chapter, name, (column) => ({
     title: title ?? sentence(words(name)),
@@ -67,7 +60,7 @@ function namesOf(chapter, wanted) {
 export function compactionSection(chapter) {
   const names = namesOf(chapter, (column) => column.kind === "observable");
   return section(chapter, "compaction", "Compaction",
-    "How the bed changes from tap to tap, as means over realizations.", pairs(names.map((name) => meanFigure(chapter, name))));
+    "How the bed changes from tap to tap, as means over realizations.", gallery(names.map((name) => meanFigure(chapter, name))));
 }
 
 export function spreadSection(chapter) {
@@ -81,7 +74,7 @@ export function spreadSection(chapter) {
     y: {label: `\u03c3 of ${words(name)}${column.units === "1" ? "" : ` (${column.units})`}`, zero: true, short: "\u03c3"},
     rows: (curve, own) => rowsOf(curve.taps, own.sigma),
   })));
-  return section(chapter, "spread", "Spread over realizations", null, pairs(figures));
+  return section(chapter, "spread", "Spread over realizations", null, gallery(figures));
 }
 
 const energies = /energy|ledger|overlap|contacts|seconds|rest|spin/;
@@ -97,7 +90,7 @@ export function engineSection(chapter) {
     ? "What the integration of the grains recorded of each tap. Energies are in m g d a sphere."
     : "What the relaxation after each tap took.";
   return section(chapter, isGrains && names.some((name) => energies.test(name)) ? "grains" : "relaxation", title, intro,
-    pairs(figures));
+    gallery(figures));
 }
 
 /// Means of what snapshots keep.

@@ -30,6 +30,7 @@ class PackingPanel {
       this.start();
     }, {rootMargin: "200px"}).observe(this.canvas);
     onTheme(() => { if (this.view) this.paint(); });
+    addEventListener("beforeprint", () => this.view ? this.view.draw() : this.start());
   }
 
   series() {
@@ -39,6 +40,7 @@ class PackingPanel {
   packing() { return this.series()[this.index]; }
 
   start() {
+    if (this.centres) return;
     try {
       this.view = new View(this.canvas);
     } catch (error) {

@@ -1,12 +1,13 @@
 // What was run, by whom, how far it is.
 import {element, section, dataTable} from "../section.js";
-import {count, duration, plural, words} from "../format.js";
+import {count, duration, number, plural, words} from "../format.js";
 
 /// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max step 0.1)".
 function inWords(value) {
-  if (value === null || typeof value !== "object") return String(value);
+  if (typeof value === "number") return number(value, 6);
+  if (value === null || typeof value !== "object") return words(String(value));
   if (Array.isArray(value)) return value.map(inWords).join("; ");
-  return Object.entries(value).map(([key, member]) => {
+  return Object.entries(value).filter(([, member]) => !Array.isArray(member) || member.length > 0).map(([key, member]) => {
     if (member === null || typeof member !== "object" || Array.isArray(member)) return `${words(key)} ${inWords(member)}`;
     return Object.keys(member).length === 0 ? words(key) : `${words(key)} (${inWords(member)})`;
   }).join(", ");
@@ -22,11 +23,16 @@ function isOn(part, value) {
 const parts = ["container", "start", "protocol", "engine", "relax", "observe", "snapshots", "sweep", "until", "fits",
                "analyse", "structure"];
 
+const longest = 500;  // characters of a part in words
+
 function effects(scene) {
   const on = parts.filter((part) => isOn(part, scene[part]));
   const off = parts.filter((part) => !on.includes(part) && !(["engine", "relax"].includes(part)));
   if (on.length === 0) return null;
-  const rows = on.map((part) => [words(part), inWords(scene[part])]);
+  const rows = on.map((part) => {
+    const text = inWords(scene[part]);
+    return [words(part), text.length > longest ? `${text.slice(0, longest)}\u2026 (whole below)` : text];
+  });
   if (off.length > 0) rows.push(["not asked for", off.map(words).join(", ")]);
   return element("div", {}, element("h4", {}, "The scene"), definitions(rows, "effects"));
 }

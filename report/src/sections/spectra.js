@@ -1,5 +1,5 @@
 // Power spectra of steady states, with their slopes.
-import {dataTable, figure, pair, refusals, rowsOf, section, statement, withError, words, number} from "../section.js";
+import {dataTable, figure, gallery, refusals, rowsOf, section, statement, withError, words, number} from "../section.js";
 
 /// The line of the slope, through the geometric mean of what it was fitted to.
 function slopeLine(table) {
@@ -48,7 +48,7 @@ export function spectraSection(chapter) {
       withError(table.value("ar1_slope"), table.value("ar1_slope_error")), number(table.value("ar1_slope_p"), 2), table.notes.verdict ?? "",
       table.notes.drift ?? ""]), "Log-log slopes in the band");
   return section(chapter, "spectra", "Spectra", "The frequencies in which an observable fluctuates. Memory alone gives a slope: compare it with that " +
-    "of a process with the same autocorrelation time.", figures.length > 0 ? pair(...figures) : null, slopes, refusals(chapter, tables));
+    "of a process with the same autocorrelation time.", figures.length > 0 ? gallery(figures) : null, slopes, refusals(chapter, tables));
 }
 
 export {statement};

@@ -1,5 +1,5 @@
 // Steady states: value, fluctuation, memory, and whether they are steady at all.
-import {byPoint, dataTable, element, figure, pair, pointsOf, refusals, rowsOf, section, verdict, withError, words} from "../section.js";
+import {byPoint, dataTable, element, figure, gallery, pointsOf, refusals, rowsOf, section, verdict, withError, words} from "../section.js";
 
 function overview(chapter, tables) {
   return dataTable(["observable", "sweep point", "mean", "\u03c3 of single taps", "memory \u03c4 (taps)", "drift", "verdict"],
@@ -25,7 +25,7 @@ export function steadySection(chapter) {
       series: [{name: "", mark: "dots+line", rows: rowsOf(table.axis("block_length"), table.values("block_error"),
                                                           table.values("block_error_error"))}],
     }));
-    return [pair(...figures)];
+    return [gallery(figures)];
   });
   return section(chapter, "steady", "Steady state",
     "Whether the last taps show a drift, and what they are worth. Values are value(standard error); few realizations make " +

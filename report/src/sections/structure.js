@@ -1,5 +1,5 @@
 // What was measured inside the kept packings.
-import {byPoint, dataTable, element, figure, number, ordered, pair, pointsOf, refusals, rowsOf, scalarTable, section, statement, withError,
+import {byPoint, dataTable, element, figure, gallery, number, ordered, pair, pointsOf, refusals, rowsOf, scalarTable, section, statement, withError,
         words} from "../section.js";
 import {spread} from "../table.js";
 import {snapshotSection} from "./curves.js";
@@ -50,7 +50,7 @@ const parts = {
   },
   pair_correlation: {
     title: "Pair correlation",
-    plots: [{y: "g", x: "r", title: "Pair correlation g(r)", xLabel: "distance r (diameters)", yLabel: "g(r)", rule: 1, wide: true, zero: true}],
+    plots: [{y: "g", x: "r", title: "Pair correlation g(r)", xLabel: "distance r (diameters)", yLabel: "g(r)", rule: 1, zero: true}],
     scalars: [],
   },
   order: {
@@ -88,7 +88,7 @@ const parts = {
   void_probability: {
     title: "Void probability",
     plots: [{y: "p0", x: "sigma", title: "Void probability", xLabel: "radius of the random sphere (R)", yLabel: "P\u2080", log: true, beside: "p0_gotoh",
-             besideName: "Gotoh, Percus-Yevick fluid", wide: true}],
+             besideName: "Gotoh, Percus-Yevick fluid"}],
     scalars: ["phi"],
   },
   holes: {title: "Bernal's holes", plots: [], scalars: ["unclassified"]},
@@ -133,8 +133,8 @@ function holesContent(chapter, table) {
     file: chapter.run.file, title,
     caption: `${sentence(table.longName(quantity))}; means over realizations with standard errors, beside the published share.`,
     source: table.source(quantity) || "Philippe & Bideau 2001, table I",
-    x: {label: "Bernal's canonical holes", type: "names", names: names.map((name) => words(name).replace("half-", "\u00bd "))},
-    y: {label: "share", zero: true},
+    x: {label: "Bernal's canonical holes", type: "names", rotate: -22, names: names.map(words)},
+    y: {label: "share", zero: true}, marginBottom: 84,
     series: [...places.map((i, k) => ({
       name: `tap ${taps[i]}`, colour: ordered(k, places.length), mark: "dots",
       rows: names.map((name, j) => ({x: j + (k - (places.length - 1) / 2) * 0.09, label: words(name), y: table.row(quantity, i)[j],
@@ -167,8 +167,7 @@ function partContent(chapter, table) {
   const drawn = [...figures, ...trends(chapter, table, part.trends ?? part.scalars.map((name) => [name]))];
   const rows = [];
   if (table.path[0] === "holes") rows.push(...holesContent(chapter, table));
-  if (figures.length === 1 && part.plots[0]?.wide && drawn.length === 1) rows.push(figures[0].node);
-  else for (let i = 0; i < drawn.length; i += 2) rows.push(pair(drawn[i], drawn[i + 1]));
+  if (drawn.length > 0) rows.push(gallery(drawn));
   const numbers = scalarTable(table, part.scalars, part.title);
   if (numbers) rows.push(element("details", {}, element("summary", {}, "Numbers by tap"), numbers));
   rows.push(element("p", {class: "small"}, table.notes.region ? `Counted ${table.notes.region}.` : ""));

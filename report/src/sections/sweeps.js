@@ -4,6 +4,11 @@ import {axisLabel} from "../format.js";
 
 const branchDashes = [null, "6,3", "2,3"];
 
+/// Branches are counted from 1.
+function branchNumber(table, branch) {
+  return branch - Math.min(...table.values("branch")) + 1;
+}
+
 function loopFigure(chapter, table) {
   const observable = table.notes.observable ?? table.path.at(-1);
   const control = table.notes.control;
@@ -21,7 +26,7 @@ function loopFigure(chapter, table) {
       const places = steps.map((_, i) => i).filter((i) => table.value("branch", i) === branch ||
         (b > 0 && i + 1 < steps.length && table.value("branch", i + 1) === branch && table.value("branch", i) === branches[b - 1]));
       const up = table.value(control, places.at(-1)) > table.value(control, places[0]);
-      return {name: `branch ${Number(branch) + (branches[0] === 0 ? 1 : 0)}, ${up ? "upwards" : "downwards"}`, kind: b, mark: "dots+line",
+      return {name: `branch ${branchNumber(table, branch)}, ${up ? "upwards" : "downwards"}`, kind: b, mark: "dots+line",
               dash: branchDashes[b % 3],
               rows: places.map((i) => ({x: table.value(control, i), y: table.value(observable, i),
                                         error: errorName ? table.value(errorName, i) : NaN}))};
@@ -37,7 +42,7 @@ function controlLabel(name, units) {
 function areas(table) {
   if (table.axis("loop").length === 0) return null;
   return dataTable(["branches", "over strengths", "area", "p", "verdict"], table.axis("loop").map((_, i) =>
-    [`${table.value("earlier_branch", i)} and ${table.value("later_branch", i)}`,
+    [`${branchNumber(table, table.value("earlier_branch", i))} and ${branchNumber(table, table.value("later_branch", i))}`,
      `${number(table.value("lowest_strength", i))} to ${number(table.value("highest_strength", i))}`,
      withError(table.value("area", i), table.value("area_error", i)), number(table.value("area_p_corrected", i), 2),
      table.value("area_verdict", i) || "\u2013"]), "Area between branches, later less earlier");
