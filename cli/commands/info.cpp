@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/commands/commands.hpp"
@@ -122,7 +123,7 @@ std::string counts(const ResultsFile& file, const RunStatus& status) {
   return text + fmt::format("; {} of {} taps", rows, all_rows);
 }
 
-std::string info_text(const ResultsFile& file, const RunStatus& status, const Layout& layout) {
+void print_info(const ResultsFile& file, const RunStatus& status, const Layout& layout) {
   const Study& study = file.study();
   const Json scene = stored_scene(file);
   std::string text =
@@ -147,16 +148,16 @@ std::string info_text(const ResultsFile& file, const RunStatus& status, const La
                                 process.git_revision, process.host, process.started,
                                 process.threads, process.threads == "1" ? "" : "s"));
   }
-  std::string curves;
+  std::optional<ResultsFile> live;
   try {
-    const ResultsFile live = live_results(file.path(), Content::without_snapshots);
+    live.emplace(live_results(file.path(), Content::without_snapshots));
     if (status.parts_bytes > 0) line("curves", "so far, with the last checkpoints");
-    curves = report(live, layout);
   } catch (const ResultsError& error) {  // no room for a temporary file, for one
     line("curves", fmt::format("of the last stop, without checkpoints: {}", error.what()));
-    curves = report(file, layout);
   }
-  return wrapped(text + effects_text(scene), layout.width) + "\n" + curves;
+  const ResultsFile& curves = live ? *live : file;
+  print_report(wrapped(text + effects_text(scene), layout.width) + "\n" + report(curves, layout));
+  print_curves(curves);
 }
 
 struct InfoArguments {
@@ -176,7 +177,7 @@ void info(const InfoArguments& arguments) {
     if (arguments.json) {
       print_json(info_json(file, status));
     } else {
-      print_report(info_text(file, status, arguments.layout));
+      print_info(file, status, arguments.layout);
     }
   } catch (const JsonError&) {
     throw ResultsError(arguments.file,

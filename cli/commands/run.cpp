@@ -11,6 +11,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/reports/durations.hpp"
+#include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
 #include "cli/reports/tables_display.hpp"
 #include "cli/reports/wrapped.hpp"
@@ -28,6 +29,7 @@
 #include "study/provenance.hpp"
 #include "study/run.hpp"
 #include "study/scenes/scene_warnings.hpp"
+#include "study/scenes/stored_scene.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -136,6 +138,19 @@ void say_which_tables_are_gone(const std::vector<std::string>& before,
                   output, lines));
 }
 
+/// The curve that was computed, and the commands that go on from it.
+void print_end(const ResultsFile& file, const RunSettings& settings) {
+  print_curves(file);
+  if (settings.shard.count > 1) return;  // jostle merge knows the other shards' files
+  std::string text = "\nnext:\n";
+  for (std::vector<std::string> words :
+       next_commands(file.study(), stored_scene(file), settings.output)) {
+    words.insert(words.begin(), command_line().front());
+    text += fmt::format("  {}\n", shell_words(words));
+  }
+  print(text);
+}
+
 /// From the first realization to the last table. Returns the exit code.
 int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& settings,
                const StopRequest& stop) {
@@ -162,6 +177,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
   say_which_tables_are_gone(before, tables, settings.output);
+  if (!arguments.quiet) print_end(file, settings);
   const std::string failures = failure_lines(file);
   if (arguments.quiet) print_to_standard_error(failures);
   return failures.empty() ? exit_ok : exit_failed_realizations;

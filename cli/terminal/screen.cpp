@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "cli/reports/curves.hpp"
 #include "cli/reports/wrapped.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/export/printable.hpp"
@@ -96,6 +97,14 @@ void add_wide(Command& command, Layout& layout) {
   command.add_flag(
       "--wide", [&layout] { layout.columns = Columns::all; },
       "Print all columns, lines as long as they are");
+}
+
+void print_curves(const ResultsFile& file) {
+  const Screen now = screen();
+  if (!now.draws) return;
+  const std::string curves =
+      compaction_curves(file, now.width, now.unicode ? Glyphs::unicode : Glyphs::ascii);
+  if (!curves.empty()) print("\n" + curves);
 }
 
 void print_wrapped(std::string_view text) {

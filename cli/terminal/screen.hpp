@@ -5,6 +5,7 @@
 
 #include "cli/options/command.hpp"
 #include "cli/reports/layout.hpp"
+#include "results/results_file.hpp"
 
 namespace jostle::inline cli {
 
@@ -21,6 +22,10 @@ Screen screen();
 
 /// --wide; and the layout gets the width of the screen.
 void add_wide(Command& command, Layout& layout);
+
+/// Prints the compaction curves of a file where the screen draws: in braille, or plainly where the
+/// locale is not UTF-8.
+void print_curves(const ResultsFile& file);
 
 /// Prints as print() what is no table, with lines folded to the width of the screen.
 void print_wrapped(std::string_view text);

@@ -1,0 +1,71 @@
+#include "cli/reports/next_commands.hpp"
+
+#include <algorithm>
+
+namespace jostle::inline cli {
+namespace {
+
+constexpr std::size_t most_commands = 2;
+constexpr std::size_t least_points = 3;  // of a sweep curve
+constexpr std::uint64_t least_taps_to_fit = 30;
+constexpr std::uint64_t least_taps_to_age = 300;
+constexpr std::uint32_t least_realizations_to_age = 3;
+
+/// Whether the scene asks for this itself.
+bool asked_for(const Json& scene, std::string_view part, std::string_view kind = "") {
+  const Json* found = scene.find(part);
+  if (found != nullptr && !kind.empty()) found = found->is_object() ? found->find(kind) : nullptr;
+  return found != nullptr && !found->empty();
+}
+
+/// The first fraction, which compaction is about, or else the first observable.
+std::string fraction_of(const StudyPoint& point) {
+  const auto found = std::ranges::find_if(
+      point.observables, [](const Column& column) { return column.name.ends_with("fraction"); });
+  return found != point.observables.end() ? found->name : point.observables.front().name;
+}
+
+/// Ramps that follow one another may turn.
+bool goes_up_and_down(const Json& scene) {
+  const Json* protocol = scene.find("protocol");
+  if (protocol == nullptr || !protocol->is_array()) return false;
+  std::size_t ramps = 0;
+  for (const Json& stage : protocol->elements()) ramps += stage.contains("ramp") ? 1 : 0;
+  return ramps > 1;
+}
+
+bool has_one_stage(const Json& scene) {
+  const Json* protocol = scene.find("protocol");
+  return protocol != nullptr && protocol->is_array() && protocol->size() == 1 &&
+         !protocol->elements().begin()->contains("ramp");
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> next_commands(const Study& study, const Json& scene,
+                                                    const std::string& file) {
+  const StudyPoint& point = study.points.front();
+  if (point.observables.empty()) return {{"info", file}};
+  const std::string observable = fraction_of(point);
+  const bool kept = point.snapshots.positions && !point.snapshots.taps.empty();
+  std::vector<std::vector<std::string>> commands;
+  const auto propose = [&](bool makes_sense, std::vector<std::string> words) {
+    if (makes_sense && commands.size() < most_commands) commands.push_back(std::move(words));
+  };
+  propose(study.points.size() >= least_points && !asked_for(scene, "analyse", "sweep"),
+          {"analyse", file, "sweep", "--observable", observable});
+  propose(goes_up_and_down(scene) && !asked_for(scene, "analyse", "hysteresis"),
+          {"analyse", file, "hysteresis", "--observable", observable});
+  propose(has_one_stage(scene) && point.taps >= least_taps_to_fit && !asked_for(scene, "fits"),
+          {"fit", file, "--observable", observable});
+  propose(has_one_stage(scene) && point.taps >= least_taps_to_age &&
+              study.realizations >= least_realizations_to_age &&
+              !asked_for(scene, "analyse", "ageing"),
+          {"analyse", file, "ageing", "--observable", observable});
+  propose(kept && !asked_for(scene, "structure"), {"structure", file});
+  propose(kept, {"export", file, "--format", "extxyz"});
+  propose(true, {"info", file});
+  return commands;
+}
+
+}  // namespace jostle::inline cli
