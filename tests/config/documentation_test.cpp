@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <regex>
+#include <set>
 
+#include "config/json/json.hpp"
 #include "engine/monte_carlo/rejection_free/directions.hpp"
 #include "tests/config/scene_files.hpp"
 
@@ -27,7 +30,61 @@ std::string power_of_ten(std::uint64_t value) {
   return fmt::format("1e{}", zeros);
 }
 
+/// The keys of objects and the words that a value may be, wherever the schema has them.
+void add_words(const Json& schema, std::set<std::string>& words) {
+  if (schema.is_array()) {
+    for (const Json& element : schema.elements()) add_words(element, words);
+  }
+  if (!schema.is_object()) return;
+  for (const auto& [key, member] : schema.members()) {
+    if (key == "properties") {
+      for (const auto& [name, unused] : member.members()) words.insert(name);
+    }
+    if (key == "const" && member.is_string()) words.insert(member.text());
+    if (key == "enum") {
+      for (const Json& value : member.elements()) {
+        if (value.is_string()) words.insert(value.text());
+      }
+    }
+    add_words(member, words);
+  }
+}
+
+/// What a page of Markdown writes as code.
+std::set<std::string> words_of_code(const std::string& page) {
+  const std::regex code("```[^`]*```|`[^`]*`"), word("[A-Za-z0-9_$]+");
+  std::set<std::string> words;
+  for (std::sregex_iterator found(page.begin(), page.end(), code), end; found != end; ++found) {
+    const std::string text = found->str();
+    for (std::sregex_iterator one(text.begin(), text.end(), word); one != end; ++one)
+      words.insert(one->str());
+  }
+  return words;
+}
+
 }  // namespace
+
+TEST_CASE("The reference of scenes has every key and every word of the schema") {
+  const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
+  const Json schema = Json::parse(text_of(SOURCE_ROOT "/config/scene.schema.json"));
+  const std::set<std::string> quoted = words_of_code(page);
+  std::set<std::string> words;
+  add_words(schema, words);
+  CHECK(words.size() > 150);
+  for (const std::string& word : words) {
+    INFO(word);
+    CHECK(quoted.contains(word));
+  }
+  // The keys of a scene have a row each, and no row is of a key that there is not.
+  const std::string rows =
+      page.substr(page.find("## Keys"), page.find("### container") - page.find("## Keys"));
+  std::set<std::string> listed, known;
+  const std::regex row("\n\\| `([^`]+)` \\|");
+  for (std::sregex_iterator found(rows.begin(), rows.end(), row), end; found != end; ++found)
+    listed.insert((*found)[1].str());
+  for (const auto& [name, unused] : schema.at("properties").members()) known.insert(name);
+  CHECK(listed == known);
+}
 
 TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
   const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
