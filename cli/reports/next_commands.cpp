@@ -62,6 +62,9 @@ std::vector<std::vector<std::string>> next_commands(const Study& study, const Js
               study.realizations >= least_realizations_to_age &&
               !asked_for(scene, "analyse", "ageing"),
           {"analyse", file, "ageing", "--observable", observable});
+  // The page shows the tables that there are.
+  propose(asked_for(scene, "fits") || asked_for(scene, "analyse") || asked_for(scene, "structure"),
+          {"report", file});
   propose(kept && !asked_for(scene, "structure"), {"structure", file});
   propose(kept, {"export", file, "--format", "extxyz"});
   propose(true, {"info", file});

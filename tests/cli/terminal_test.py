@@ -150,7 +150,7 @@ class Terminal(Case):
                              (changed(BED, name="short", protocol=[], snapshots={"taps": [0]}),
                               ["structure", "export"]),
                              (changed(BED, name="asked", fits=[{"observable": "bulk_fraction", "model": "kww"}],
-                                      structure={"coordination": {}}), ["export", "info"])):
+                                      structure={"coordination": {}}), ["report", "export"])):
             with self.subTest(scene=scene["name"]):
                 said = self.run_bed(scene).split("\nnext:\n")[1].splitlines()
                 commands = [shlex.split(line) for line in said]
