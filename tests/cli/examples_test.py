@@ -1,5 +1,7 @@
-"""Every example of every help text runs, on results as the quickstart scene makes them."""
+"""Every example of every help text and every command of the documentation runs, on results as the
+quickstart scene makes them."""
 
+import json
 import math
 import os
 import pathlib
@@ -8,10 +10,10 @@ import shutil
 import subprocess
 import unittest
 
-from support import JOSTLE, PLAIN, Case, changed
+from support import JOSTLE, PLAIN, SOURCE, Case, changed
 
 COMMANDS = ("new", "run", "check", "cost", "schema", "info", "merge", "bench", "selftest", "fit",
-            "analyse", "structure", "export")
+            "analyse", "structure", "export", "report")
 
 # A hundred taps of a small bed, with everything that quickstart observes and keeps.
 QUICK = {
@@ -38,6 +40,40 @@ INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed -
            "--folder /scratch/me": "--folder .",
            "jostle run quickstart.json": "jostle run small.json --force",
            "jostle merge low.h5 high.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force"}
+
+
+# The same for the documentation. What takes minutes runs on a bed that takes seconds.
+INSTEAD_IN_DOCS = {
+    **INSTEAD,
+    "jostle run config/scenes/quickstart.json": "jostle run config/scenes/quickstart.json --force",
+    "jostle run my-scene.json --resume": "jostle run small.json -o my-scene.h5 --resume",
+    "jostle run mine.json --resume": "jostle run small.json -o mine.h5 --resume",
+    "jostle check my-scene.json": "jostle check my-scene.json --no-pilot",
+    "jostle cost scene.json": "jostle cost scene.json --replicates 2",
+    "jostle cost scene.json --target 0.001 --observable bottom_fraction":
+        "jostle cost scene.json --target 0.001 --observable bottom_fraction --replicates 2 --force",
+    "jostle merge a.h5 b.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
+    "jostle merge part*.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
+    "jostle fit data.csv": "jostle fit measured.csv",
+    "jostle fit data.csv --realizations": "jostle fit experiments.csv --realizations",
+    "jostle fit file.csv --model pore_tail": "jostle fit pores.csv --model pore_tail",
+    "jostle analyse file.h5 hysteresis --observable bulk_fraction --last 1000":
+        "jostle analyse fig4.h5 hysteresis --observable bulk_fraction",
+}
+RESULTS_OF_DOCS = {"file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5",
+                   "weak": "low", "strong": "high"}
+
+
+def documented(page):
+    """The commands of a page: lines of their own, and those in a text that name a file. Words in
+    capitals, brackets and dots stand for others."""
+    found = [re.split(r"\s{2,}", line)[0]
+             for line in re.findall(r"^ {4}((?:jostle|\./dev) .*)$", page, re.M)]
+    found += [" ".join(line.split()) for line in re.findall(r"`((?:jostle|\./dev) [^`]*)`", page)]
+    commands = [re.sub(r"^\./dev", "jostle", command) for command in found]
+    return [command for command in dict.fromkeys(commands)
+            if command.split()[1] in COMMANDS and not re.search(r"\b[A-Z]{2,}\b|\[|\.\.\.", command)
+            and (re.search(r"\.(h5|json|csv|xyz)\b", command) or " new " in command)]
 
 
 def examples(text):
@@ -80,7 +116,7 @@ class Examples(Case):
         self.program.mkdir()
         (self.program / "jostle").symlink_to(JOSTLE)
 
-    def run_all(self, commands, folder):
+    def run_all(self, commands, folder, instead=instead):
         environment = {**PLAIN, "PATH": f"{self.program}:{os.environ['PATH']}"}
         for command in commands:
             done = subprocess.run(["bash", "-c", instead(command)], cwd=folder, env=environment,
@@ -103,6 +139,30 @@ class Examples(Case):
                     shutil.copy(path, folder)
             self.run_all(found, folder)
         self.assertGreater(n, 35)
+
+    def test_every_command_of_the_documentation_runs(self):
+        self.make_files()
+        for name, of in RESULTS_OF_DOCS.items():
+            shutil.copy(self.folder / f"{of}.h5", self.folder / f"{name}.h5")
+        (self.folder / "pores.csv").write_text("t,X\n" + "".join(
+            f"{0.01 * t},{30 * math.exp(-0.1 * t) + 0.01 * math.cos(t * t)}\n" for t in range(20)))
+        n = 0
+        for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))):
+            found = documented(page.read_text())
+            n += len(found)
+            folder = self.folder / f"of_{page.stem}"
+            (folder / "config/scenes").mkdir(parents=True)
+            for path in self.folder.iterdir():
+                if path.is_file():
+                    shutil.copy(path, folder)
+            shipped = json.loads((SOURCE / "config/scenes/tutorial.json").read_text())
+            small = {**shipped, "spheres": 30, "realizations": 4,
+                     "container": {"sides": "periodic", "width": 3}, "relax": LONG["relax"]}
+            (folder / "config/scenes/tutorial.json").write_text(json.dumps(small))
+            (folder / "config/scenes/quickstart.json").write_text(json.dumps(QUICK))
+            with self.subTest(page=page.name):
+                self.run_all(found, folder, lambda command: INSTEAD_IN_DOCS.get(command, command))
+        self.assertGreater(n, 40)
 
     def test_no_command_is_forgotten(self):
         listed = re.search(r"Subcommands:\n((?:  .*\n)+)", self.jostle("--help").stdout).group(1)
