@@ -11,11 +11,15 @@ constexpr std::uint64_t least_taps_to_fit = 30;
 constexpr std::uint64_t least_taps_to_age = 300;
 constexpr std::uint32_t least_realizations_to_age = 3;
 
-/// Whether the scene asks for this itself.
+/// Whether the scene asks for this itself. A resolved scene has empty lists of what it does not.
 bool asked_for(const Json& scene, std::string_view part, std::string_view kind = "") {
   const Json* found = scene.find(part);
   if (found != nullptr && !kind.empty()) found = found->is_object() ? found->find(kind) : nullptr;
-  return found != nullptr && !found->empty();
+  if (found == nullptr || !found->is_object()) return found != nullptr && !found->empty();
+  for (const auto& [name, member] : found->members()) {
+    if (!member.empty()) return true;
+  }
+  return false;
 }
 
 /// The first fraction, which compaction is about, or else the first observable.
