@@ -56,7 +56,7 @@ INSTEAD_IN_DOCS = {
     "jostle merge part*.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
     "jostle fit data.csv": "jostle fit measured.csv",
     "jostle fit data.csv --realizations": "jostle fit experiments.csv --realizations",
-    "jostle fit file.csv --model pore_tail": "jostle fit pores.csv --model pore_tail",
+    "jostle fit file.csv --model pore_tail": "jostle fit volumes.csv --model pore_tail",
     "jostle analyse file.h5 hysteresis --observable bulk_fraction --last 1000":
         "jostle analyse fig4.h5 hysteresis --observable bulk_fraction",
 }
@@ -144,7 +144,7 @@ class Examples(Case):
         self.make_files()
         for name, of in RESULTS_OF_DOCS.items():
             shutil.copy(self.folder / f"{of}.h5", self.folder / f"{name}.h5")
-        (self.folder / "pores.csv").write_text("t,X\n" + "".join(
+        (self.folder / "volumes.csv").write_text("t,X\n" + "".join(
             f"{0.01 * t},{30 * math.exp(-0.1 * t) + 0.01 * math.cos(t * t)}\n" for t in range(20)))
         n = 0
         for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))):
