@@ -170,13 +170,16 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   if (most == 0) {
     left_out.push_back(fmt::format(
         "no packing is drawn: one of {} spheres alone takes more room than a page has", largest));
-  } else if (const bool some =
-                 n_points > most_points || file.study().realizations > most_realizations;
-             some || chosen.packings.size() < chosen.of) {
+  } else if (chosen.packings.size() < chosen.of) {
     left_out.push_back(
-        fmt::format("{} of {}{} kept packings are drawn: evenly spread over sweep "
+        fmt::format("{} of {} kept packings are drawn: evenly spread over sweep "
                     "points, taps and realizations",
-                    chosen.packings.size(), some ? "more than " : "", chosen.of));
+                    chosen.packings.size(), chosen.of));
+  }
+  if (n_points > most_points || file.study().realizations > most_realizations) {
+    left_out.push_back(
+        fmt::format("packings are those of at most {} sweep points and {} realizations of each",
+                    most_points, most_realizations));
   }
   std::vector<Packing> packings;
   for (const auto& [id, tap] : chosen.packings) {

@@ -16,26 +16,12 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 
 from browser import WIDE, Browser  # noqa: E402
-from crafted_test import SEAL, sealed  # noqa: E402
-from report_test import EVERYTHING, HOSTILE  # noqa: E402
+from pages import make_pages  # noqa: E402
 from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 from selenium.webdriver.support.ui import Select  # noqa: E402
-from support import TINY, Case, changed  # noqa: E402
-
-WHOLE = changed(EVERYTHING, structure={**EVERYTHING["structure"], "sides": {}, "coordination": {},
-                                       "pores": {}, "void_probability": {"points": 500}, "holes": {}})
-LOOP = changed(TINY, name="loop", snapshots={"taps": []}, protocol=[
-    {"ramp": {"dilate": {"from": 0.05, "to": 0.2, "step": 0.05}}, "count": 4},
-    {"ramp": {"dilate": {"from": 0.15, "to": 0.05, "step": 0.05}}, "count": 4}],
-    analyse={"hysteresis": [{"observable": "mean_height"}]})
-del LOOP["sweep"]
-GRAINS = {
-    "name": "grains", "seed": 2010, "realizations": 2, "spheres": 60,
-    "container": {"sides": "periodic", "width": 4}, "start": {"random_settle": {"dilute_fraction": 0.2}},
-    "engine": {"discrete_element": {}}, "observe": ["mean_height"],
-    "protocol": [{"tap": {"half_sine": {"amplitude": 0.4413, "frequency": 7.5}}, "count": 2}]}
+from support import Case  # noqa: E402
 
 SECTIONS = {"run", "compaction", "spread", "packing", "fits", "steady", "ageing", "spectra", "sweep",
             "snapshots", "profile", "sides", "layers", "coordination", "pair_correlation", "order",
@@ -51,38 +37,7 @@ def setUpModule():
     unittest.addModuleCleanup(downloads.cleanup)
     globals().update(FOLDER=case.folder, BROWSER=Browser(downloads.name))
     unittest.addModuleCleanup(BROWSER.quit)
-    plain = changed(TINY, name="plain", snapshots={"taps": []}, realizations=1)
-    del plain["sweep"]
-    hostile = changed(WHOLE, name="hostile", description=HOSTILE, realizations=2,
-                      sweep={"/protocol/0/tap/dilate": [0.02, 0.05]})
-    for name, scene in (("whole", WHOLE), ("plain", plain), ("loop", LOOP), ("grains", GRAINS),
-                        ("hostile", hostile)):
-        case.write(scene, f"{name}.json")
-        case.run_scene("-o", f"{name}.h5", scene=f"{name}.json")
-    forge(case.folder / "hostile.h5")
-    case.write(changed(TINY, name="cost"), "cost.json")
-    case.jostle("cost", "cost.json", "--replicates", 2, "--taps", 2, "-o", "cost.h5")
-    for name in ("whole", "plain", "loop", "grains", "hostile", "cost"):
-        case.jostle("report", f"{name}.h5")
-    case.jostle("report", "plain.h5", "loop.h5", "-o", "two.html")
-
-
-def forge(path):
-    """A results file whose labels, notes and meanings are markup."""
-    path.write_bytes(path.read_bytes()[:-SEAL])
-    with h5py.File(path, "r+") as file:
-        scene = json.loads(file["scene/resolved"].asstr()[()])
-        file["scene/resolved"][()] = json.dumps({**scene, "name": HOSTILE})
-        for point in ("point_0000", "point_0001"):
-            file[f"sweep/{point}"].attrs["label"] = HOSTILE
-
-        def forged(name, item):
-            for key, value in item.attrs.items():
-                if key.startswith("note_") or key in ("long_name", "source"):
-                    item.attrs[key] = HOSTILE if isinstance(value, str) else value
-        for group in ("fits", "analysis", "structure", "observables"):
-            file[group].visititems(forged)
-    path.write_bytes(sealed(path.read_bytes()))
+    make_pages(case)
 
 
 class Open(unittest.TestCase):
