@@ -5,6 +5,7 @@ set(JOSTLE_PUBLIC_HEADERS
     config/json/json.hpp
     config/ladder.hpp
     config/scene.hpp
+    engine/bed/bed_mechanics.hpp
     engine/bed/container.hpp
     engine/bed/packing.hpp
     engine/bed/random.hpp
@@ -81,6 +82,7 @@ set(JOSTLE_PUBLIC_HEADERS
     results/study.hpp
     results/tables.hpp
     structure/density/layers.hpp
+    structure/forces.hpp
     structure/measure.hpp
     structure/measurement.hpp
     structure/observables.hpp

@@ -111,6 +111,11 @@ class Check {
     }
   }
 
+  void snapshots_suit_engine() {
+    if (all_sound({"/snapshots", "/engine"}))
+      note_if("/snapshots/keep", keep_fault(scene_.snapshots, scene_.grains.has_value()));
+  }
+
   void snapshots_are_reached() {
     if (!all_sound({"/snapshots", "/protocol"})) return;
     const std::vector<std::uint64_t> taps = chosen_taps(scene_.snapshots.taps);
@@ -159,6 +164,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check.observables_have_a_floor();
   check.taps_suit_container();
   check.observables_have_names();
+  check.snapshots_suit_engine();
   check.snapshots_are_reached();
   check.fits_have_curves();
   check_until(scene, faults);

@@ -45,7 +45,11 @@ Snapshots snapshots(const SnapshotChoice& choice) {
           .coordination = choice.coordination,
           .contact_cut = choice.contact_cut,
           .height_histogram = choice.height_histogram,
-          .bin_width = choice.bin_width};
+          .bin_width = choice.bin_width,
+          .velocities = choice.velocities,
+          .contacts = choice.contacts,
+          .granular_temperature = choice.granular_temperature,
+          .forces = choice.forces};
 }
 
 }  // namespace

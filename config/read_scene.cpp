@@ -102,7 +102,10 @@ Scene read_scene(const Reader& in) {
   read_identity(in, scene);
   read_simulation(in, scene);
   if (const auto observe = in.find("observe")) scene.observables = read_observables(*observe);
-  if (const auto snapshots = in.find("snapshots")) scene.snapshots = read_snapshots(*snapshots);
+  const bool grains = scene.grains.has_value();
+  scene.snapshots = default_snapshots(grains);
+  if (const auto snapshots = in.find("snapshots"))
+    scene.snapshots = read_snapshots(*snapshots, grains);
   if (const auto sweep = in.find("sweep")) scene.sweep = read_sweep(*sweep);
   if (const auto until = in.find("until")) scene.until = read_until(*until);
   if (const auto fits = in.find("fits")) scene.fits = read_fits(*fits);

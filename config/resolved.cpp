@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "config/names.hpp"
@@ -11,6 +12,22 @@ Json plain_number(double value) {
   }
   return value;
 }
+
+namespace {
+
+// What is kept by default depends on the engine: where that is swept, it is not spelled out.
+bool sweeps_engine(const Scene& scene) {
+  return std::ranges::any_of(scene.sweep, [](const SweepAxis& axis) {
+    return std::ranges::any_of(axis.columns,
+                               [](const auto& one) { return one.first == "/engine"; });
+  });
+}
+bool keeps_default(const Scene& scene) {
+  return written(scene.snapshots).at("keep") ==
+         written(default_snapshots(scene.grains.has_value())).at("keep");
+}
+
+}  // namespace
 
 Json resolved(const Scene& scene) {
   Json out;
@@ -31,6 +48,7 @@ Json resolved(const Scene& scene) {
   if (scene.relax_start) out["relax_start"] = written(*scene.relax_start);
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);
+  if (sweeps_engine(scene) && keeps_default(scene)) out["snapshots"].erase("keep");
   out["sweep"] = written(scene.sweep);
   if (!scene.until.targets.empty()) out["until"] = written(scene.until);
   out["fits"] = written(scene.fits);

@@ -73,6 +73,8 @@ struct SnapshotChoice {
   TapChoice taps;
   bool positions = true, coordination = true, height_histogram = true;
   double contact_cut = 1.05, bin_width = 0.1;  // diameters
+  // Of discrete elements, which keep them by default:
+  bool velocities = false, contacts = false, granular_temperature = false, forces = false;
   bool operator==(const SnapshotChoice&) const = default;
 };
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "engine/bed/bed_mechanics.hpp"
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/starts/starts.hpp"
@@ -63,6 +64,10 @@ class Dynamics {
   virtual void store(Packing& bed) const = 0;
   /// Of the last tap, along the engine's columns. To be called once the bed is at rest.
   virtual std::vector<double> diagnostics() const = 0;
+  /// What moves and acts in the bed, at the positions that store() gives; to be called once the bed
+  /// is at rest. Nothing that follows depends on whether it was. Nothing where spheres do not move
+  /// in time.
+  virtual BedMechanics mechanics() const { return {}; }
   /// Since this object was made.
   virtual Effort effort() const = 0;
   /// Units that take about a tenth of a second on one core.

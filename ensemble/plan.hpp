@@ -40,6 +40,11 @@ struct Snapshots {
   double contact_cut = 1.05;  // diameters
   bool height_histogram = true;
   double bin_width = 0.1;  // diameters
+  // Of engines that move spheres in time (BedMechanics):
+  bool velocities = false;            // and spins; where positions are kept
+  bool contacts = false;              // where positions are kept
+  bool granular_temperature = false;  // in bins as those of the histogram
+  bool forces = false;                // BedForces
   bool operator==(const Snapshots&) const = default;
 };
 

@@ -9,6 +9,14 @@
 
 namespace jostle::inline ensemble {
 
+namespace {
+
+bool moves_in_time(const Snapshots& wanted) {
+  return wanted.velocities || wanted.contacts || wanted.granular_temperature || wanted.forces;
+}
+
+}  // namespace
+
 std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index) {
   return make_dynamics(plan.engine, {.start = stream_key(plan, index, Purpose::start_trials),
                                      .taps = stream_key(plan, index, Purpose::trials)});
@@ -87,7 +95,25 @@ SnapshotRecord Realization::snapshot_of_row() const {
   if (wanted.coordination) record.coordination = coordination(packing_, wanted.contact_cut);
   if (wanted.height_histogram)
     record.height_histogram = height_histogram(packing_, wanted.bin_width);
+  if (moves_in_time(wanted)) add_mechanics(record);
   return record;
+}
+
+void Realization::add_mechanics(SnapshotRecord& record) const {
+  const Snapshots& wanted = plan_.snapshots;
+  BedMechanics bed = dynamics_->mechanics();
+  if (bed.velocities.empty()) return;
+  if (wanted.granular_temperature) {
+    GranularTemperature temperature =
+        granular_temperature(packing_, bed.velocities, wanted.bin_width);
+    record.temperature_lateral = std::move(temperature.lateral);
+    record.temperature_vertical = std::move(temperature.vertical);
+  }
+  if (wanted.forces) record.forces = bed_forces(packing_, bed.contacts);
+  if (wanted.contacts) record.contacts = std::move(bed.contacts);
+  if (!wanted.velocities) return;
+  record.velocities = std::move(bed.velocities);
+  record.spins = std::move(bed.spins);
 }
 
 RealizationState Realization::state() const {

@@ -59,6 +59,7 @@ class Realization {
   bool start(const StopAsked& stop);
   void record(Slice& slice);
   SnapshotRecord snapshot_of_row() const;
+  void add_mechanics(SnapshotRecord& record) const;
 
   const Plan& plan_;
   std::uint32_t index_;

@@ -10,6 +10,7 @@
 #include "engine/bed/window.hpp"
 #include "engine/dynamics.hpp"
 #include "ensemble/fitting_report.hpp"
+#include "structure/forces.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.
 namespace jostle::inline ensemble {
@@ -37,6 +38,11 @@ struct SnapshotRecord {
   std::vector<Vec3> centres;             // [n_spheres], or empty where not kept
   std::optional<double> coordination;    // mean number of centres within the cut
   std::vector<double> height_histogram;  // [n_bins], or empty where not kept
+  // Of engines that move spheres in time, empty where not kept. BedMechanics, GranularTemperature:
+  std::vector<Vec3> velocities{}, spins{};
+  std::vector<Contact> contacts{};
+  std::vector<double> temperature_lateral{}, temperature_vertical{};
+  std::optional<BedForces> forces{};
 };
 
 /// A realization between two slices: what it needs to go on bit for bit.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,39 @@
 #include "ensemble/sink.hpp"
 
 namespace jostle::inline results {
+
+/// What snapshots keep of every sphere, as an H5MD element each: `name`/{step, value}.
+struct SphereVector {
+  const char* name;
+  std::vector<Vec3> SnapshotRecord::*values;
+  const char *units, *long_name;
+};
+inline constexpr SphereVector sphere_vectors[] = {
+    {"position", &SnapshotRecord::centres, "diameter",
+     "centres of the spheres along x, y, z (z is up)"},
+    {"velocity", &SnapshotRecord::velocities, "diameter / s",
+     "velocities of the centres, at the time of the positions"},
+    {"spin", &SnapshotRecord::spins, "rad / s",
+     "angular velocities, at the time of the positions"}};
+inline constexpr std::size_t n_sphere_vectors = std::size(sphere_vectors);
+
+/// What they keep by height, a dataset of /snapshots/P each. `padding` stands above a bed.
+struct HeightProfile {
+  const char* name;
+  std::vector<double> SnapshotRecord::*values;
+  double padding;
+  const char *units, *long_name, *source;
+};
+inline constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+inline constexpr HeightProfile height_profiles[] = {
+    {"height_histogram", &SnapshotRecord::height_histogram, 0, "1",
+     "n(z), fraction of all centres in the bin", "Rosato et al. 2010, fig. 6"},
+    {"granular_temperature_lateral", &SnapshotRecord::temperature_lateral, no_number,
+     "(diameter / s)^2",
+     "variance of horizontal velocities about their mean in the bin, a direction", "jostle"},
+    {"granular_temperature_vertical", &SnapshotRecord::temperature_vertical, no_number,
+     "(diameter / s)^2", "variance of vertical velocities about their mean in the bin", "jostle"}};
+inline constexpr std::size_t n_height_profiles = std::size(height_profiles);
 
 /// What is stored of one realization but for its series and its snapshots.
 struct RealizationHead {

@@ -10,6 +10,7 @@
 #include "results/file/axes.hpp"
 #include "results/file/layout.hpp"
 #include "results/file/results_file_impl.hpp"
+#include "results/file/snapshot_statistics.hpp"
 #include "results/file/validate.hpp"
 #include "results/hdf5/read.hpp"
 
@@ -81,11 +82,14 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
     tables.coordination = read_numbers<double>(snapshots, "coordination", &taken);
-  if (exists(snapshots, "height_histogram")) {
-    const Shape shape = shape_of(open_dataset(snapshots, "height_histogram"));
+  tables.forces = read_bed_forces(snapshots, study.points[point], study.realizations);
+  for (std::size_t k = 0; k < n_height_profiles; ++k) {
+    const std::string name = height_profiles[k].name;
+    if (!exists(snapshots, name)) continue;
+    const Shape shape = shape_of(open_dataset(snapshots, name));
     if (shape.size() != 3 || shape[0] != taken[0] || shape[1] != taken[1] || shape[2] == 0)
-      throw Hdf5Error("height_histogram does not stand along taps and realizations");
-    tables.n_bins = shape[2];
+      throw Hdf5Error(name + " does not stand along taps and realizations");
+    tables.n_bins[k] = shape[2];
   }
   return tables;
 }
@@ -202,6 +206,10 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
 
 std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
   return snapshots_of(*realization(id));
+}
+
+std::vector<SnapshotRecord> ResultsFile::positions(RealizationId id) const {
+  return positions_of(*realization(id));
 }
 
 RealizationRecord ResultsFile::record(RealizationId id) const {

@@ -106,6 +106,8 @@ class ResultsFile {
   std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
+  /// Its kept positions alone: tap and centres.
+  std::vector<SnapshotRecord> positions(RealizationId id) const;
   /// Derived tables of a group (results/tables.hpp), in the order of their names; none where there
   /// is no such group.
   std::vector<Table> tables(const std::string& group) const;

@@ -19,20 +19,32 @@ class InMemory : public StoredRealization {
   }
   std::vector<SnapshotOutline> snapshots() override {
     std::vector<SnapshotOutline> outlines;
-    for (const SnapshotRecord& one : record_.snapshots)
-      outlines.push_back(
-          {one.tap, static_cast<std::uint32_t>(one.centres.size()), one.coordination});
+    for (const SnapshotRecord& one : record_.snapshots) {
+      SnapshotOutline outline{.tap = one.tap,
+                              .n_contacts = one.contacts.size(),
+                              .coordination = one.coordination,
+                              .forces = one.forces};
+      for (std::size_t k = 0; k < n_sphere_vectors; ++k)
+        outline.n_spheres[k] = static_cast<std::uint32_t>((one.*sphere_vectors[k].values).size());
+      outlines.push_back(std::move(outline));
+    }
     return outlines;
   }
-  std::vector<Vec3> centres(std::uint64_t tap) override { return at(tap).centres; }
-  std::vector<double> height_histogram(std::uint64_t tap) override {
-    return at(tap).height_histogram;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override {
+    return values_at(tap, sphere_vectors[which].values);
+  }
+  std::vector<double> profile(std::uint64_t tap, std::size_t which) override {
+    return values_at(tap, height_profiles[which].values);
+  }
+  std::vector<Contact> contacts(std::uint64_t tap) override {
+    return values_at(tap, &SnapshotRecord::contacts);
   }
 
  private:
-  SnapshotRecord at(std::uint64_t tap) const {
+  template <class T>
+  std::vector<T> values_at(std::uint64_t tap, std::vector<T> SnapshotRecord::*values) const {
     const auto found = std::ranges::find(record_.snapshots, tap, &SnapshotRecord::tap);
-    return found == record_.snapshots.end() ? SnapshotRecord{} : *found;
+    return found == record_.snapshots.end() ? std::vector<T>{} : (*found).*values;
   }
 
   RealizationRecord record_;
@@ -48,10 +60,31 @@ std::unique_ptr<StoredRealization> in_memory(RealizationRecord record, std::size
 std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization) {
   std::vector<SnapshotRecord> records;
   for (const SnapshotOutline& one : realization.snapshots()) {
-    SnapshotRecord record{one.tap, realization.centres(one.tap), one.coordination,
-                          realization.height_histogram(one.tap)};
-    if (record.centres.empty() && !record.coordination && record.height_histogram.empty()) continue;
-    records.push_back(std::move(record));
+    SnapshotRecord record{
+        .tap = one.tap, .centres = {}, .coordination = one.coordination, .height_histogram = {}};
+    bool kept = one.coordination || one.forces;
+    for (std::size_t k = 0; k < n_sphere_vectors; ++k) {
+      record.*sphere_vectors[k].values = realization.vectors(one.tap, k);
+      kept = kept || !(record.*sphere_vectors[k].values).empty();
+    }
+    for (std::size_t k = 0; k < n_height_profiles; ++k) {
+      record.*height_profiles[k].values = realization.profile(one.tap, k);
+      kept = kept || !(record.*height_profiles[k].values).empty();
+    }
+    record.contacts = realization.contacts(one.tap);
+    record.forces = one.forces;
+    if (kept) records.push_back(std::move(record));
+  }
+  return records;
+}
+
+std::vector<SnapshotRecord> positions_of(StoredRealization& realization) {
+  std::vector<SnapshotRecord> records;
+  for (const SnapshotOutline& one : realization.snapshots()) {
+    if (one.n_spheres[0] == 0) continue;
+    SnapshotRecord& record = records.emplace_back();
+    record.tap = one.tap;
+    record.centres = realization.vectors(one.tap, 0);
   }
   return records;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -12,8 +13,10 @@ namespace jostle::inline results {
 /// A snapshot without what of it takes room.
 struct SnapshotOutline {
   std::uint64_t tap = 0;
-  std::uint32_t n_spheres = 0;  // whose positions were kept
-  std::optional<double> coordination;
+  std::array<std::uint32_t, n_sphere_vectors> n_spheres{};  // of which each vector was kept
+  std::uint64_t n_contacts = 0;
+  std::optional<double> coordination{};
+  std::optional<BedForces> forces{};
 };
 
 /// What results files are written from: all that is stored of one realization. Its series and its
@@ -32,9 +35,11 @@ class StoredRealization {
   virtual void read_rows(std::uint64_t first, std::span<double> rows) = 0;
   /// With ascending taps.
   virtual std::vector<SnapshotOutline> snapshots() = 0;
-  /// Of a snapshot; empty where none was kept at that tap.
-  virtual std::vector<Vec3> centres(std::uint64_t tap) = 0;
-  virtual std::vector<double> height_histogram(std::uint64_t tap) = 0;
+  /// Of a snapshot, sphere_vectors[which] and height_profiles[which]; empty where none was kept at
+  /// that tap.
+  virtual std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) = 0;
+  virtual std::vector<double> profile(std::uint64_t tap, std::size_t which) = 0;
+  virtual std::vector<Contact> contacts(std::uint64_t tap) = 0;
 };
 
 /// Told, while a results file is written, how many of its realizations are.
@@ -46,6 +51,8 @@ std::unique_ptr<StoredRealization> in_memory(RealizationRecord record = {},
 
 /// All of it at once.
 std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization);
+/// Its kept positions alone.
+std::vector<SnapshotRecord> positions_of(StoredRealization& realization);
 RealizationRecord record_of(StoredRealization& realization, std::size_t n_columns);
 
 }  // namespace jostle::inline results

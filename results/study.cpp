@@ -53,9 +53,14 @@ std::uint64_t histogram_bins(const StudyPoint& point) {
 
 std::uint64_t bytes_of_realization(const StudyPoint& point) {
   const std::uint64_t positions = point.n_spheres * sizeof(Vec3);
+  constexpr std::uint64_t contacts_a_sphere = 3;  // isostatic without friction; fewer with it
+  const Snapshots& kept = point.snapshots;
+  const std::uint64_t profiles =
+      std::uint64_t{kept.height_histogram} + 2 * kept.granular_temperature;
   const std::uint64_t a_snapshot =
-      (point.snapshots.positions ? positions : 0) +
-      (point.snapshots.height_histogram ? histogram_bins(point) * sizeof(double) : 0) + 64;
+      (kept.positions ? positions : 0) + (kept.velocities ? 2 * positions : 0) +
+      (kept.contacts ? contacts_a_sphere * point.n_spheres * sizeof(Contact) : 0) +
+      (profiles > 0 ? profiles * histogram_bins(point) * sizeof(double) : 0) + 512;
   return (point.taps + 1) * point.n_columns() * sizeof(double) +
          point.snapshots.taps.size() * a_snapshot + positions + 4096;
 }

@@ -59,7 +59,7 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
   return spheres;
 }
 
-std::vector<double> height_histogram(const Packing& packing, double bin_width) {
+std::size_t n_height_bins(const Packing& packing, double bin_width) {
   assert(bin_width > 0 && !packing.centres.empty());
   constexpr double most_bins = 1e7;
   const double top = top_height(packing);
@@ -69,8 +69,12 @@ std::vector<double> height_histogram(const Packing& packing, double bin_width) {
                             std::to_string(bin_width) +
                             "; widen bin_width, or keep no height_histogram");
   }
+  return static_cast<std::size_t>(top / bin_width) + 1;
+}
+
+std::vector<double> height_histogram(const Packing& packing, double bin_width) {
   const auto bin = [&](double z) { return static_cast<std::size_t>(z / bin_width); };
-  std::vector<std::uint64_t> counts(bin(top) + 1, 0);
+  std::vector<std::uint64_t> counts(n_height_bins(packing, bin_width), 0);
   for (const Vec3& centre : packing.centres) ++counts[bin(centre.z)];
   std::vector<double> fractions;
   fractions.reserve(counts.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -33,6 +34,10 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
 
 /// How many spheres have k neighbours, k = 0 .. up to the greatest number.
 std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers);
+
+/// Bins [k width, (k + 1) width), k = 0 .. up to the highest centre. Requires a sphere. Throws
+/// std::length_error above ten million.
+std::size_t n_height_bins(const Packing& packing, double bin_width);
 
 /// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
 /// highest centre. Sums to 1. Requires a sphere. Throws std::length_error above ten million bins.

@@ -139,17 +139,31 @@ LogarithmicTaps read_logarithmic_taps(const Reader& in) {
   return grid;
 }
 
+struct KeptPart {
+  const char* name;
+  bool SnapshotChoice::*kept;
+  bool of_grains = false, beside_positions = false;
+};
+constexpr KeptPart kept_parts[] = {
+    {"positions", &SnapshotChoice::positions},
+    {"coordination", &SnapshotChoice::coordination},
+    {"height_histogram", &SnapshotChoice::height_histogram},
+    {"velocities", &SnapshotChoice::velocities, true, true},
+    {"contacts", &SnapshotChoice::contacts, true, true},
+    {"granular_temperature", &SnapshotChoice::granular_temperature, true},
+    {"forces", &SnapshotChoice::forces, true}};
+
 void read_keep(const Reader& in, SnapshotChoice& snapshots) {
-  if (!in.is_list(0, 3, "of the strings positions, coordination, height_histogram")) return;
+  std::vector<std::string> names;
+  for (const KeptPart& part : kept_parts) names.emplace_back(part.name);
+  if (!in.is_list(0, names.size(), "of the strings " + listed(names))) return;
   std::set<std::string> kept;
   for (std::size_t i = 0; i < in.value().size(); ++i) {
     const Reader element = in.element(i);
-    const auto what = element.one_of({"positions", "coordination", "height_histogram"});
+    const auto what = element.one_of(names);
     if (what && !kept.insert(*what).second) element.fault(*what + " is listed twice");
   }
-  snapshots.positions = kept.contains("positions");
-  snapshots.coordination = kept.contains("coordination");
-  snapshots.height_histogram = kept.contains("height_histogram");
+  for (const KeptPart& part : kept_parts) snapshots.*part.kept = kept.contains(part.name);
 }
 
 Json written_taps(const TapChoice& choice) {
@@ -192,8 +206,27 @@ TapChoice read_taps(const Reader& in) {
   return read_tap_list(in);
 }
 
-SnapshotChoice read_snapshots(const Reader& in) {
+SnapshotChoice default_snapshots(bool grains) {
   SnapshotChoice snapshots;
+  for (const KeptPart& part : kept_parts) snapshots.*part.kept = grains || !part.of_grains;
+  return snapshots;
+}
+
+std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains) {
+  for (const KeptPart& part : kept_parts) {
+    if (!(snapshots.*part.kept)) continue;
+    if (part.of_grains && !grains)
+      return fmt::format(
+          "{} are of discrete elements: Monte Carlo knows neither times nor forces; leave them out",
+          part.name);
+    if (part.beside_positions && !snapshots.positions)
+      return fmt::format("{} stand beside positions: keep positions, too", part.name);
+  }
+  return std::nullopt;
+}
+
+SnapshotChoice read_snapshots(const Reader& in, bool grains) {
+  SnapshotChoice snapshots = default_snapshots(grains);
   if (!in.is_object_of({"taps", "keep", "contact_cut", "bin_width"})) return snapshots;
   if (const auto taps = in.find("taps")) snapshots.taps = read_taps(*taps);
   if (const auto keep = in.find("keep")) read_keep(*keep, snapshots);
@@ -224,9 +257,8 @@ Json written(const SnapshotChoice& snapshots) {
   Json out;
   out["taps"] = written_taps(snapshots.taps);
   out["keep"] = Json::array();
-  if (snapshots.positions) out["keep"].push_back("positions");
-  if (snapshots.coordination) out["keep"].push_back("coordination");
-  if (snapshots.height_histogram) out["keep"].push_back("height_histogram");
+  for (const KeptPart& part : kept_parts)
+    if (snapshots.*part.kept) out["keep"].push_back(part.name);
   out["contact_cut"] = plain_number(snapshots.contact_cut);
   out["bin_width"] = plain_number(snapshots.bin_width);
   return out;

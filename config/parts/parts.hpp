@@ -19,7 +19,12 @@ Window read_window(const Reader& in);
 HeightWindow read_heights(const Reader& in);
 std::vector<Observable> read_observables(const Reader& in);
 TapChoice read_taps(const Reader& in);
-SnapshotChoice read_snapshots(const Reader& in);
+/// By default everything that the engine has is kept.
+SnapshotChoice default_snapshots(bool grains);
+SnapshotChoice read_snapshots(const Reader& in, bool grains);
+/// The kept parts that only discrete elements have, and those that stand beside positions, where
+/// they cannot be kept: why.
+std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
 TargetPrecision read_until(const Reader& in);

@@ -56,6 +56,8 @@ class ContactLists {
   /// Those with the floor, and with the sides.
   ContactArrays floor();
   ContactArrays sides();
+  /// Of sides(): which of KeptSide::side each is.
+  std::span<const std::uint32_t> side_numbers() const { return sides_.source; }
   /// Writes normals and distances of the sides.
   void measure_sides(std::span<const Row> rows, double floor_height);
 

@@ -104,6 +104,13 @@ class GrainDynamics final : public Dynamics {
             static_cast<double>(state_.dropped_offsets) / n};
   }
 
+  BedMechanics mechanics() const override {
+    BedMechanics bed = loop_->mechanics();
+    for (std::vector<Vec3>* rates : {&bed.velocities, &bed.spins})
+      for (Vec3& rate : *rates) rate = (1 / units_.seconds) * rate;
+    return bed;
+  }
+
   Effort effort() const override { return effort_; }
   std::uint64_t units_per_slice() const override { return 1'000'000; }
   std::size_t bytes() const override {

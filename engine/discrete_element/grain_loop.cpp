@@ -170,7 +170,8 @@ void GrainLoop::run(std::uint64_t steps) {
   for (std::uint64_t k = 0; k < steps; ++k) step();
 }
 
-void GrainLoop::step() {
+// All of a step but what moves.
+void GrainLoop::find_forces() {
   const FloorMotion::Place before = floor_;
   floor_ = motion_.at(time_);
   side_path_ += std::abs(floor_.height - before.height);
@@ -183,6 +184,11 @@ void GrainLoop::step() {
   kernels_.pairs(lists_.pairs(), grains, settings_.spheres);
   kernels_.sides(floor, grains, settings_.floor);
   kernels_.sides(lists_.sides(), grains, settings_.sides);
+}
+
+void GrainLoop::step() {
+  const FloorMotion::Place before = floor_;
+  find_forces();
   pair_tests_ += lists_.n_near();
   if (floor_moves() || floor_.height != before.height) {
     const double force = lists_.floor_force();
@@ -194,7 +200,7 @@ void GrainLoop::step() {
   Advance advance{.time_step = settings_.time_step,
                   .gravity = settings_.gravity,
                   .drift = {drift_.x, drift_.y, drift_.z}};
-  kernels_.advance(grains, advance);
+  kernels_.advance(spheres(), advance);
   const double path = settings_.time_step * std::sqrt(advance.fastest_squared);
   pair_path_ += 2 * path;
   side_path_ += path + settings_.time_step * std::sqrt(norm_squared(drift_));

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/bed/bed_mechanics.hpp"
 #include "engine/bed/packing.hpp"
 #include "engine/discrete_element/contact_lists.hpp"
 #include "engine/discrete_element/floor_motion.hpp"
@@ -67,6 +68,10 @@ class GrainLoop {
   Energies energies();
   ContactCensus census();
   double kinetic_energy() const;  // summed in the order of load()
+  /// Contacts with the forces of the step that would follow, and velocities and spins at the time
+  /// of the positions: those half a step before, with half a step of what acts. Spins of laws with
+  /// friction alone. Times in sqrt(diameter / gravity).
+  BedMechanics mechanics() const;
   double greatest_overlap() const { return lists_.deepest(); }
   void forget_greatest_overlap() { lists_.set_deepest(0); }
   /// Whether all spheres are where spheres can be.
@@ -91,6 +96,9 @@ class GrainLoop {
   void place(const std::vector<GrainState>& grains);
   std::vector<GrainState> grains() const;
   void step();
+  void find_forces();
+  void add_contacts(std::vector<Contact>& out);
+  void add_velocities(BedMechanics& out);
   void renew_lists();
   bool near_lists_hold();
   double overlap_of(const KeptPair& pair) const;

@@ -207,9 +207,11 @@ class Point:
     def snapshots(self) -> Columns:
         """What is kept of packings besides positions: tap: [tap]; coordination: [tap, realization];
         height_histogram: [tap, realization, height], fraction of all centres in a bin; height: [height],
-        the middle of a bin, diameters."""
+        the middle of a bin, diameters; of discrete elements also the granular temperature and the forces
+        of the bed (docs/format.md)."""
         group = self._file.get(f"snapshots/{self._name}", {})
-        return Columns([name for name in group if name != "realization"],
+        axes = ("realization", "wall", "direction", "arm", "force")
+        return Columns([name for name in group if name not in axes],
                        lambda name: group[name][()], f"snapshots of sweep point {self.index}")
 
     def _particles(self, realization: int) -> h5py.Group:

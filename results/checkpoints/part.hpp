@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 namespace jostle::inline results {
 
 /// The number of the parts' format.
-inline constexpr std::uint32_t part_format = 4;
+inline constexpr std::uint32_t part_format = 5;
 
 /// What every part carries, so that a foreign one is told from ours.
 struct PartIdentity {
@@ -43,10 +44,18 @@ struct PartState {
   std::optional<RealizationState> state;
 };
 
-/// Where in a part's file a snapshot lies.
+/// Where in a part's file a row of numbers lies, and how many there are.
+struct Extent {
+  std::uint64_t n = 0, at = 0;
+};
+/// And a snapshot, but for what takes little room.
 struct SnapshotPlace {
-  std::uint64_t tap = 0, n_spheres = 0, centres_at = 0, n_bins = 0, histogram_at = 0;
-  std::optional<double> coordination;
+  std::uint64_t tap = 0;
+  std::array<Extent, n_sphere_vectors> vectors{};
+  std::array<Extent, n_height_profiles> profiles{};
+  Extent contacts{};
+  std::optional<double> coordination{};
+  std::optional<BedForces> forces{};
 };
 /// And a piece.
 struct PiecePlaces {

@@ -14,9 +14,12 @@ constexpr std::uint32_t state_format = 0xf0000004;
 
 std::size_t SeriesPiece::bytes() const {
   std::size_t n = rows.size() * sizeof(double);
-  for (const SnapshotRecord& record : snapshots)
-    n +=
-        64 + record.centres.size() * sizeof(Vec3) + record.height_histogram.size() * sizeof(double);
+  for (const SnapshotRecord& record : snapshots) {
+    n += 512 + record.contacts.size() * sizeof(Contact);
+    for (const SphereVector& one : sphere_vectors) n += (record.*one.values).size() * sizeof(Vec3);
+    for (const HeightProfile& one : height_profiles)
+      n += (record.*one.values).size() * sizeof(double);
+  }
   return n;
 }
 
@@ -58,12 +61,31 @@ void put(ByteWriter& writer, const SeriesPiece& piece) {
   writer.put<std::uint64_t>(piece.snapshots.size());
   for (const SnapshotRecord& record : piece.snapshots) {
     writer.put(record.tap);
-    writer.put(record.centres);
+    for (const SphereVector& one : sphere_vectors) writer.put(record.*one.values);
+    for (const HeightProfile& one : height_profiles) writer.put(record.*one.values);
+    writer.put(record.contacts);
     writer.put(record.coordination.has_value());
-    writer.put(record.coordination.value_or(0));
-    writer.put(record.height_histogram);
+    if (record.coordination) writer.put(*record.coordination);
+    writer.put(record.forces.has_value());
+    if (!record.forces) continue;
+    for (const double one : record.forces->moment) writer.put(one);
+    writer.put(record.forces->walls);
   }
 }
+
+namespace {
+
+/// What takes little room, which follows the rest.
+template <class Snapshot>
+void get_small(ByteReader& reader, Snapshot& snapshot) {
+  if (reader.get_flag()) snapshot.coordination = reader.get<double>();
+  if (!reader.get_flag()) return;
+  snapshot.forces.emplace();
+  for (double& one : snapshot.forces->moment) one = reader.get<double>();
+  snapshot.forces->walls = reader.get_vector<WallForce>();
+}
+
+}  // namespace
 
 SeriesPiece get_piece(ByteReader& reader) {
   SeriesPiece piece;
@@ -73,11 +95,11 @@ SeriesPiece get_piece(ByteReader& reader) {
   for (std::uint64_t i = 0; i < n_snapshots; ++i) {
     SnapshotRecord record;
     record.tap = reader.get<std::uint64_t>();
-    record.centres = reader.get_vector<Vec3>();
-    const bool has_coordination = reader.get_flag();
-    const double coordination = reader.get<double>();
-    if (has_coordination) record.coordination = coordination;
-    record.height_histogram = reader.get_vector<double>();
+    for (const SphereVector& one : sphere_vectors) record.*one.values = reader.get_vector<Vec3>();
+    for (const HeightProfile& one : height_profiles)
+      record.*one.values = reader.get_vector<double>();
+    record.contacts = reader.get_vector<Contact>();
+    get_small(reader, record);
     piece.snapshots.push_back(std::move(record));
   }
   return piece;
@@ -99,23 +121,24 @@ void put(ByteWriter& writer, const PartState& part) {
 
 PiecePlaces get_piece_places(ByteReader& reader) {
   // Behind its length, which comes first.
-  const auto skip = [&]<class T>(std::uint64_t& at, T) {
-    at = reader.position() + sizeof(std::uint64_t);
-    return reader.skip_vector<T>();
+  const auto skip = [&]<class T>(T) {
+    const std::uint64_t at = reader.position() + sizeof(std::uint64_t);
+    return Extent{reader.skip_vector<T>(), at};
   };
   PiecePlaces piece;
   piece.first_row = reader.get<std::uint64_t>();
-  piece.n_numbers = skip(piece.rows_at, double{});
+  const Extent rows = skip(double{});
+  piece.n_numbers = rows.n;
+  piece.rows_at = rows.at;
   const auto n_snapshots = reader.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < n_snapshots; ++i) {
     SnapshotPlace place;
     place.tap = reader.get<std::uint64_t>();
-    place.n_spheres = skip(place.centres_at, Vec3{});
-    const bool has_coordination = reader.get_flag();
-    const double coordination = reader.get<double>();
-    if (has_coordination) place.coordination = coordination;
-    place.n_bins = skip(place.histogram_at, double{});
-    piece.snapshots.push_back(place);
+    for (Extent& vector : place.vectors) vector = skip(Vec3{});
+    for (Extent& profile : place.profiles) profile = skip(double{});
+    place.contacts = skip(Contact{});
+    get_small(reader, place);
+    piece.snapshots.push_back(std::move(place));
   }
   return piece;
 }

@@ -138,8 +138,9 @@ class Continued : public StoredRealization {
   std::uint64_t n_rows() const override { return n_rows_; }
   void read_rows(std::uint64_t first, std::span<double> rows) override;
   std::vector<SnapshotOutline> snapshots() override;
-  std::vector<Vec3> centres(std::uint64_t tap) override;
-  std::vector<double> height_histogram(std::uint64_t tap) override;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override;
+  std::vector<double> profile(std::uint64_t tap, std::size_t which) override;
+  std::vector<Contact> contacts(std::uint64_t tap) override;
 
  private:
   /// Where something lies that was indexed.
@@ -153,9 +154,8 @@ class Continued : public StoredRealization {
   void read(const std::function<Place()>& place, std::span<std::byte> bytes);
   const PartsIndex::Rows& rows_with(std::uint64_t row) const;
   const PartsIndex::Snapshot* snapshot_at(std::uint64_t tap) const;
-  template <class T>
-  std::vector<T> read_vector(std::uint64_t tap, std::uint64_t SnapshotPlace::*length,
-                             std::uint64_t SnapshotPlace::*at);
+  template <class T, class ExtentOf>
+  std::vector<T> read_vector(std::uint64_t tap, const ExtentOf& extent_of);
 
   std::unique_ptr<StoredRealization> base_;
   const std::string& results_path_;
@@ -209,8 +209,15 @@ std::vector<SnapshotOutline> Continued::snapshots() {
   if (content_ == Content::without_snapshots) return {};
   std::vector<SnapshotOutline> outlines = base_->snapshots();
   std::erase_if(outlines, [&](const SnapshotOutline& one) { return one.tap >= base_rows_; });
-  for (const PartsIndex::Snapshot& one : index_.snapshots)
-    outlines.push_back({one.tap, static_cast<std::uint32_t>(one.n_spheres), one.coordination});
+  for (const PartsIndex::Snapshot& one : index_.snapshots) {
+    SnapshotOutline outline{.tap = one.tap,
+                            .n_contacts = one.contacts.n,
+                            .coordination = one.coordination,
+                            .forces = one.forces};
+    for (std::size_t k = 0; k < n_sphere_vectors; ++k)
+      outline.n_spheres[k] = static_cast<std::uint32_t>(one.vectors[k].n);
+    outlines.push_back(std::move(outline));
+  }
   return outlines;
 }
 
@@ -220,30 +227,34 @@ const PartsIndex::Snapshot* Continued::snapshot_at(std::uint64_t tap) const {
   return found == index_.snapshots.end() || found->tap != tap ? nullptr : &*found;
 }
 
-template <class T>
-std::vector<T> Continued::read_vector(std::uint64_t tap, std::uint64_t SnapshotPlace::*length,
-                                      std::uint64_t SnapshotPlace::*at) {
+template <class T, class ExtentOf>
+std::vector<T> Continued::read_vector(std::uint64_t tap, const ExtentOf& extent_of) {
   const PartsIndex::Snapshot* const there = snapshot_at(tap);
   if (there == nullptr) return {};
-  std::vector<T> values(there->*length);
+  std::vector<T> values(extent_of(*there).n);
   const auto place = [&]() -> Place {
     const PartsIndex::Snapshot* const snapshot = snapshot_at(tap);
-    if (snapshot == nullptr || snapshot->*length != values.size())
+    if (snapshot == nullptr || extent_of(*snapshot).n != values.size())
       throw ResultsError(state_path(results_path_, identity_.id), "has changed meanwhile");
-    return {snapshot->segment, snapshot->*at};
+    return {snapshot->segment, extent_of(*snapshot).at};
   };
   if (!values.empty()) read(place, std::as_writable_bytes(std::span(values)));
   return values;
 }
 
-std::vector<Vec3> Continued::centres(std::uint64_t tap) {
-  if (tap < base_rows_) return base_->centres(tap);
-  return read_vector<Vec3>(tap, &SnapshotPlace::n_spheres, &SnapshotPlace::centres_at);
+std::vector<Vec3> Continued::vectors(std::uint64_t tap, std::size_t which) {
+  if (tap < base_rows_) return base_->vectors(tap, which);
+  return read_vector<Vec3>(tap, [which](const SnapshotPlace& at) { return at.vectors[which]; });
 }
 
-std::vector<double> Continued::height_histogram(std::uint64_t tap) {
-  if (tap < base_rows_) return base_->height_histogram(tap);
-  return read_vector<double>(tap, &SnapshotPlace::n_bins, &SnapshotPlace::histogram_at);
+std::vector<double> Continued::profile(std::uint64_t tap, std::size_t which) {
+  if (tap < base_rows_) return base_->profile(tap, which);
+  return read_vector<double>(tap, [which](const SnapshotPlace& at) { return at.profiles[which]; });
+}
+
+std::vector<Contact> Continued::contacts(std::uint64_t tap) {
+  if (tap < base_rows_) return base_->contacts(tap);
+  return read_vector<Contact>(tap, [](const SnapshotPlace& at) { return at.contacts; });
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::string all_kept(const ResultsFile& file) {
   std::string text;
   int lines = 0;
   for (const RealizationSummary& one : file.realizations()) {
-    const Taps taps = taps_with_positions(file.snapshots(one.id));
+    const Taps taps = taps_with_positions(file.positions(one.id));
     if (taps.empty()) continue;
     if (++lines > most_lines) return text + "\n  ...";
     text += fmt::format("\n  sweep point {}, realization {}: taps {}", one.id.point,
@@ -53,9 +53,17 @@ std::vector<ExportedFrame> snapshots_of(const ResultsFile& file, RealizationId i
   std::erase_if(records, [](const SnapshotRecord& record) { return record.centres.empty(); });
   require(!records.empty(), file, name);
   std::vector<ExportedFrame> frames;
-  for (SnapshotRecord& record : records)
-    frames.push_back(
-        {record.tap, {study.points[id.point].container, std::move(record.centres)}, {}});
+  for (SnapshotRecord& record : records) {
+    ExportedFrame& frame = frames.emplace_back();
+    frame.tap = record.tap;
+    frame.packing = {study.points[id.point].container, std::move(record.centres)};
+    if (!record.velocities.empty())
+      frame.vectors.push_back(
+          {"velocity", "velo", {"vx", "vy", "vz"}, std::move(record.velocities)});
+    if (!record.spins.empty())
+      frame.vectors.push_back(
+          {"spin", "omega", {"omegax", "omegay", "omegaz"}, std::move(record.spins)});
+  }
   return frames;
 }
 

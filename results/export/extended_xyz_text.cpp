@@ -11,27 +11,36 @@
 namespace jostle::inline results {
 namespace {
 
-std::string comment(const Packing& packing, std::span<const ParticleColumn> columns) {
+struct Columns {
+  std::span<const ParticleColumn> numbers;
+  std::span<const VectorColumn> vectors;
+};
+
+std::string comment(const Packing& packing, const Columns& columns) {
   const auto [kind, widths] = container_text(packing.container);
   const double height = widths[2] > 0 ? widths[2] : top_height(packing) + sphere_radius;
   const char* sides = kind == "fully_periodic" ? "T T T" : kind == "periodic" ? "T T F" : "F F F";
   std::string properties = "species:S:1:pos:R:3";
-  for (const ParticleColumn& column : columns) {
+  for (const ParticleColumn& column : columns.numbers) {
     const bool real = std::holds_alternative<std::vector<double>>(column.values);
     properties += fmt::format(":{}:{}:1", column.name, real ? "R" : "I");
   }
+  for (const VectorColumn& column : columns.vectors)
+    properties += fmt::format(":{}:R:3", column.xyz_name);
   return fmt::format("Lattice=\"{} 0 0 0 {} 0 0 0 {}\" Properties={} pbc=\"{}\" container={}",
                      widths[0], widths[1], height, properties, sides, kind);
 }
 
-void append_frame(std::string& text, const Packing& packing,
-                  std::span<const ParticleColumn> columns, std::optional<std::uint64_t> tap) {
+void append_frame(std::string& text, const Packing& packing, const Columns& columns,
+                  std::optional<std::uint64_t> tap) {
   text += fmt::format("{}\n{}", packing.centres.size(), comment(packing, columns));
   text += tap ? fmt::format(" tap={}\n", *tap) : "\n";
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
     const Vec3 r = packing.centres[i];
     fmt::format_to(std::back_inserter(text), "X {} {} {}", r.x, r.y, r.z);
-    for (const ParticleColumn& column : columns) text.append(1, ' ').append(cell_text(column, i));
+    for (const ParticleColumn& column : columns.numbers)
+      text.append(1, ' ').append(cell_text(column, i));
+    for (const VectorColumn& column : columns.vectors) text += cell_text(column, i);
     text += '\n';
   }
 }
@@ -41,7 +50,7 @@ void append_frame(std::string& text, const Packing& packing,
 std::string extended_xyz_text(std::span<const ExportedFrame> frames) {
   std::string text;
   for (const ExportedFrame& frame : frames)
-    append_frame(text, frame.packing, frame.columns, frame.tap);
+    append_frame(text, frame.packing, {frame.columns, frame.vectors}, frame.tap);
   return text;
 }
 

@@ -49,9 +49,13 @@ void write_values(hid_t element, Frames frames, const Shape& rest,
   for (std::size_t i = 0; i < frames.size(); ++i) value.write(i, of(frames[i]));
 }
 
+std::vector<double> components_of(const std::vector<Vec3>& vectors) {
+  const double* const first = &vectors[0].x;
+  return {first, first + 3 * vectors.size()};
+}
+
 std::vector<double> centres(const ExportedFrame& frame) {
-  const double* const first = &frame.packing.centres[0].x;
-  return {first, first + 3 * frame.packing.centres.size()};
+  return components_of(frame.packing.centres);
 }
 
 /// The edges of the box as the rows of a matrix; an open top ends at the highest point.
@@ -88,6 +92,16 @@ void write_column(hid_t trajectory, Frames frames, std::size_t i, const FrameTim
   std::visit(write, first.values);
 }
 
+/// Vector number i of every frame.
+void write_vectors(hid_t trajectory, Frames frames, std::size_t i, const FrameTimes& times) {
+  const VectorColumn& first = frames.front().vectors[i];
+  const Hdf5Handle element = create_group(trajectory, first.name);
+  times.link(element);
+  write_values<double>(element, frames, {first.values.size(), 3}, [i](const ExportedFrame& frame) {
+    return components_of(frame.vectors.at(i).values);
+  });
+}
+
 void write_trajectory(hid_t file, Frames frames) {
   const Hdf5Handle particles = create_group(file, "particles");
   const Hdf5Handle trajectory = create_group(particles, "trajectory");
@@ -97,6 +111,8 @@ void write_trajectory(hid_t file, Frames frames) {
   write_box(trajectory, frames, times);
   for (std::size_t i = 0; i < frames.front().columns.size(); ++i)
     write_column(trajectory, frames, i, times);
+  for (std::size_t i = 0; i < frames.front().vectors.size(); ++i)
+    write_vectors(trajectory, frames, i, times);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ std::string header(const ExportedFrame& frame) {
                                                 : "ff ff ff";
   std::string columns;
   for (const ParticleColumn& column : frame.columns) columns.append(1, ' ').append(column.name);
+  for (const VectorColumn& column : frame.vectors)
+    for (const char* name : column.components) columns.append(1, ' ').append(name);
   return fmt::format(
       "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n0 {}\n0 {}\n0 {}\n"
       "ITEM: ATOMS id type x y z{}\n",
@@ -34,6 +36,7 @@ std::string lammps_dump_text(std::span<const ExportedFrame> frames) {
       fmt::format_to(std::back_inserter(text), "{} 1 {} {} {}", i + 1, r.x, r.y, r.z);
       for (const ParticleColumn& column : frame.columns)
         text.append(1, ' ').append(cell_text(column, i));
+      for (const VectorColumn& column : frame.vectors) text += cell_text(column, i);
       text += '\n';
     }
   }

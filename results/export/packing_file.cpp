@@ -18,10 +18,9 @@ Packing read_snapshot(const std::string& path, const PackingSelector& selector) 
   if (selector.realization >= study.realizations)
     throw ResultsError(path, fmt::format("has no realization {}: it has {}", selector.realization,
                                          study.realizations));
-  const auto records = file.snapshots({selector.point, selector.realization});
+  const auto records = file.positions({selector.point, selector.realization});
   std::string kept;
   for (auto record = records.rbegin(); record != records.rend(); ++record) {
-    if (record->centres.empty()) continue;
     if (!selector.tap || *selector.tap == record->tap)
       return {study.points[selector.point].container, record->centres};
     kept = fmt::format("{}{}{}", record->tap, kept.empty() ? "" : ", ", kept);

@@ -62,4 +62,9 @@ std::string cell_text(const ParticleColumn& column, std::size_t i) {
                     column.values);
 }
 
+std::string cell_text(const VectorColumn& column, std::size_t i) {
+  const Vec3& value = column.values[i];
+  return fmt::format(" {} {} {}", value.x, value.y, value.z);
+}
+
 }  // namespace jostle::inline results

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -15,11 +16,19 @@ struct ParticleColumn {
   std::variant<std::vector<double>, std::vector<std::uint32_t>> values;  // [n_spheres]
 };
 
+/// A vector a sphere, under the names that each format knows it by.
+struct VectorColumn {
+  const char *name, *xyz_name;
+  std::array<const char*, 3> components;  // of LAMMPS
+  std::vector<Vec3> values;               // [n_spheres]
+};
+
 /// A packing as it leaves for other programs.
 struct ExportedFrame {
   std::uint64_t tap = 0;
   Packing packing;
   std::vector<ParticleColumn> columns;
+  std::vector<VectorColumn> vectors{};
 };
 
 /// The packing with its centres inside the container, where cells and neighbours are sought; those
@@ -35,5 +44,7 @@ std::vector<ParticleColumn> particle_columns(const Packing& packing);
 
 /// The value of sphere i: numbers in the fewest digits that read back to the same bits.
 std::string cell_text(const ParticleColumn& column, std::size_t i);
+/// The three of a vector, each after a blank.
+std::string cell_text(const VectorColumn& column, std::size_t i);
 
 }  // namespace jostle::inline results

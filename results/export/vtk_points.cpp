@@ -58,6 +58,12 @@ std::string array(const std::string& name, const std::vector<T>& values, int com
       type_name(T{}), name, components, encoded(values));
 }
 
+std::vector<double> components_of(const std::vector<Vec3>& vectors) {
+  std::vector<double> components;
+  for (const Vec3& one : vectors) components.insert(components.end(), {one.x, one.y, one.z});
+  return components;
+}
+
 std::string escaped(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -77,8 +83,6 @@ std::string escaped(const std::string& name) {
 
 std::string vtk_points_text(const ExportedFrame& frame) {
   const std::size_t n = frame.packing.centres.size();
-  std::vector<double> points;
-  for (const Vec3 r : frame.packing.centres) points.insert(points.end(), {r.x, r.y, r.z});
   std::vector<std::int64_t> connectivity(n), offsets(n);
   std::iota(connectivity.begin(), connectivity.end(), 0);
   std::iota(offsets.begin(), offsets.end(), 1);
@@ -93,7 +97,10 @@ std::string vtk_points_text(const ExportedFrame& frame) {
   for (const ParticleColumn& column : frame.columns)
     text +=
         std::visit([&](const auto& values) { return array(column.name, values); }, column.values);
-  text += "</PointData>\n<Points>\n" + array("Points", points, 3) + "</Points>\n<Verts>\n";
+  for (const VectorColumn& column : frame.vectors)
+    text += array(column.name, components_of(column.values), 3);
+  text += "</PointData>\n<Points>\n" + array("Points", components_of(frame.packing.centres), 3) +
+          "</Points>\n<Verts>\n";
   text += array("connectivity", connectivity) + array("offsets", offsets);
   return text + "</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n";
 }

@@ -1,7 +1,6 @@
 #include "results/file/axes.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace jostle::inline results {
@@ -10,7 +9,7 @@ namespace {
 constexpr hsize_t numbers_a_chunk = 65536;
 
 template <class Number>
-Hdf5Handle write_counting_axis(hid_t group, const char* name, Number n, const char* long_name) {
+Hdf5Handle write_counting(hid_t group, const char* name, Number n, const char* long_name) {
   RowsDataset<Number> axis(group, name, {n}, chunk_along_first({n}));
   std::vector<Number> values;
   for (Number first = 0; first < n; first += static_cast<Number>(values.size())) {
@@ -33,51 +32,20 @@ RowsDataset<Number> labelled_column(hid_t group, const Hdf5Handle& taps, std::ui
   return column;
 }
 
-void write_histograms(hid_t group, const Hdf5Handle& taps, const Hdf5Handle& realizations,
-                      const Snapshots& snapshots, std::uint32_t n_realizations,
-                      const HistogramOf& histogram) {
-  const std::size_t n_taps = snapshots.taps.size();
-  std::size_t n_bins = 0;
-  for (std::size_t tap = 0; tap < n_taps; ++tap)
-    for (std::uint32_t r = 0; r < n_realizations; ++r)
-      n_bins = std::max(n_bins, histogram(tap, r).size());
-  if (n_bins == 0) return;
-  std::vector<double> heights, values;
-  for (std::size_t k = 0; k < n_bins; ++k)
-    heights.push_back((static_cast<double>(k) + 0.5) * snapshots.bin_width);
-  const Hdf5Handle axis = write_numbers(group, "height", heights);
-  write_label(axis, {"height", "diameter", "height of the middle of the bin above the floor", ""});
-  make_axis(axis, "height");
-  const Shape all{n_taps, n_realizations, n_bins}, chunk = chunk_along_first(all);
-  RowsDataset<double> dataset(group, "height_histogram", all, chunk);
-  for (std::size_t first = 0; first < n_taps; first += chunk[0]) {
-    values.clear();
-    for (std::size_t tap = first; tap < std::min<std::size_t>(first + chunk[0], n_taps); ++tap) {
-      for (std::uint32_t r = 0; r < n_realizations; ++r) {
-        const std::vector<double> bins = histogram(tap, r);
-        const double absent = bins.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-        values.insert(values.end(), bins.begin(), bins.end());
-        values.insert(values.end(), n_bins - bins.size(), absent);
-      }
-    }
-    dataset.write(first, values);
-  }
-  write_label(dataset.dataset(),
-              {"height_histogram", "1", "n(z), fraction of all centres in the bin",
-               "Rosato et al. 2010, fig. 6"});
-  const Hdf5Handle* const axes[] = {&taps, &realizations, &axis};
-  attach_axes(dataset.dataset(), axes);
-}
-
 }  // namespace
 
 Hdf5Handle write_tap_axis(hid_t group, std::uint64_t n_taps) {
-  return write_counting_axis<std::uint64_t>(group, "tap", n_taps, "number of taps; 0 is the start");
+  return write_counting_axis(group, "tap", n_taps, "number of taps; 0 is the start");
 }
 
 Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations) {
-  return write_counting_axis<std::uint32_t>(group, "realization", n_realizations,
-                                            "index of the realization");
+  return write_counting<std::uint32_t>(group, "realization", n_realizations,
+                                       "index of the realization");
+}
+
+Hdf5Handle write_counting_axis(hid_t group, const char* name, std::uint64_t n,
+                               const char* long_name) {
+  return write_counting<std::uint64_t>(group, name, n, long_name);
 }
 
 void write_label(hid_t dataset, const Column& label) {
@@ -129,28 +97,6 @@ void EnsembleWriter::write(const SeriesBlock& block) {
     columns_[c].error.write(block.first_tap(), folded.error);
     columns_[c].count.write(block.first_tap(), folded.count);
   }
-}
-
-void write_snapshot_statistics(hid_t group, const Snapshots& snapshots,
-                               std::uint32_t n_realizations,
-                               const std::vector<double>& coordination,
-                               const HistogramOf& histogram) {
-  const Hdf5Handle taps = write_numbers(group, "tap", snapshots.taps);
-  write_label(taps, {"tap", "1", "number of taps; 0 is the start", ""});
-  make_axis(taps, "tap");
-  const Hdf5Handle realizations = write_realization_axis(group, n_realizations);
-  const Shape shape{snapshots.taps.size(), n_realizations};
-  if (snapshots.coordination) {
-    const Hdf5Handle dataset =
-        write_numbers<double>(group, "coordination", shape, coordination, chunk_along_first(shape));
-    write_label(dataset, {"coordination", "1", "mean number of centres within contact_cut",
-                          "Rosato et al. 2010"});
-    write_attribute(dataset, "contact_cut", snapshots.contact_cut);
-    const Hdf5Handle* const axes[] = {&taps, &realizations};
-    attach_axes(dataset, axes);
-  }
-  if (snapshots.height_histogram)
-    write_histograms(group, taps, realizations, snapshots, n_realizations, histogram);
 }
 
 }  // namespace jostle::inline results

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "ensemble/fold.hpp"
-#include "ensemble/plan.hpp"
 #include "results/hdf5/write.hpp"
 #include "structure/observables.hpp"
 
@@ -18,6 +16,10 @@ std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns);
 
 Hdf5Handle write_tap_axis(hid_t group, std::uint64_t n_taps);
 Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations);
+
+/// Of the numbers 0 .. n - 1.
+Hdf5Handle write_counting_axis(hid_t group, const char* name, std::uint64_t n,
+                               const char* long_name);
 
 /// units, long_name and source; a label's empty text leaves its attribute out.
 void write_label(hid_t dataset, const Column& label);
@@ -40,15 +42,5 @@ class EnsembleWriter {
   };
   std::vector<Written> columns_;
 };
-
-/// Of a snapshot tap, by its place among them, and a realization; empty where there is none.
-using HistogramOf = std::function<std::vector<double>(std::size_t tap, std::uint32_t realization)>;
-
-/// /snapshots/<point>: `coordination` is [n_taps, n_realizations]. Histograms are asked for twice,
-/// in the order of taps.
-void write_snapshot_statistics(hid_t group, const Snapshots& snapshots,
-                               std::uint32_t n_realizations,
-                               const std::vector<double>& coordination,
-                               const HistogramOf& histogram);
 
 }  // namespace jostle::inline results

@@ -41,6 +41,14 @@ inline std::vector<Column> unnamed_diagnostics() {
 inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share",
                                                    "stored"};  // of Shown
 
+/// Attribute `snapshots_keep` of /sweep/P: what is kept of snapshots, in this order; the first
+/// three of every engine.
+inline constexpr bool Snapshots::*kept_fields[] = {
+    &Snapshots::positions,  &Snapshots::coordination, &Snapshots::height_histogram,
+    &Snapshots::velocities, &Snapshots::contacts,     &Snapshots::granular_temperature,
+    &Snapshots::forces};
+inline constexpr std::size_t n_kept_by_all = 3;
+
 /// What fitting did to the pours of points that start from one.
 inline constexpr const char* fitting_folder = "fitting";
 

@@ -34,8 +34,14 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       point_(study.points[point]),
       number_(point),
       n_realizations_(study.realizations),
-      labels_(point_.columns()),
-      coordination_(point_.snapshots.taps.size() * n_realizations_, nan) {}
+      labels_(point_.columns()) {
+  const std::size_t n_snapshots = point_.snapshots.taps.size() * n_realizations_;
+  statistics_.coordination.resize(n_snapshots, nan);
+  if (point_.snapshots.forces) statistics_.forces.resize(n_snapshots);
+  statistics_.profile = [this](std::size_t which, std::size_t tap, std::uint32_t realization) {
+    return realizations_[realization]->profile(point_.snapshots.taps[tap], which);
+  };
+}
 
 void PointWriter::begin() {
   if (begun_) return;
@@ -68,17 +74,18 @@ RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realizatio
 void PointWriter::take_snapshots(StoredRealization& realization) {
   const auto number = static_cast<std::uint32_t>(realizations_.size());
   const auto& taps = point_.snapshots.taps;
-  std::vector<std::uint64_t> frames;
-  for (const SnapshotOutline& snapshot : realization.snapshots()) {
-    const auto place = std::ranges::lower_bound(taps, snapshot.tap);
-    if (place == taps.end() || *place != snapshot.tap) continue;
-    const auto row = static_cast<std::size_t>(place - taps.begin());
-    coordination_[row * n_realizations_ + number] = canonical(snapshot.coordination.value_or(nan));
-    if (snapshot.n_spheres > 0) frames.push_back(snapshot.tap);
+  std::vector<SnapshotOutline> snapshots = realization.snapshots();
+  std::erase_if(snapshots, [&](const SnapshotOutline& snapshot) {
+    return !std::ranges::binary_search(taps, snapshot.tap);
+  });
+  for (const SnapshotOutline& snapshot : snapshots) {
+    const auto row = std::ranges::lower_bound(taps, snapshot.tap) - taps.begin();
+    const std::size_t cell = static_cast<std::size_t>(row) * n_realizations_ + number;
+    statistics_.coordination[cell] = canonical(snapshot.coordination.value_or(nan));
+    if (point_.snapshots.forces) statistics_.forces[cell] = snapshot.forces;
   }
-  if (frames.empty()) return;
   write_particles(file_, particles_name({number_, number}), point_.container, point_.n_spheres,
-                  frames, [&](std::uint64_t tap) { return realization.centres(tap); });
+                  snapshots, realization);
 }
 
 void PointWriter::write_restart(const RealizationState& state) {
@@ -160,11 +167,7 @@ void PointWriter::write_observables() {
 
 void PointWriter::write_snapshots() {
   if (point_.snapshots.taps.empty()) return;
-  write_snapshot_statistics(
-      group_under("snapshots"), point_.snapshots, n_realizations_, coordination_,
-      [&](std::size_t tap, std::uint32_t realization) {
-        return realizations_[realization]->height_histogram(point_.snapshots.taps[tap]);
-      });
+  write_snapshot_statistics(group_under("snapshots"), point_, n_realizations_, statistics_);
 }
 
 // Only of points that start from a fitted pour.

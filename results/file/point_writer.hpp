@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "results/file/snapshot_statistics.hpp"
 #include "results/hdf5/write.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
@@ -50,7 +51,7 @@ class PointWriter {
   std::vector<std::string> reasons_;
   std::vector<Work> work_;
   std::vector<std::optional<FittingReport>> fittings_;  // [n_realizations]
-  std::vector<double> coordination_;                    // [n_snapshot_taps, n_realizations]
+  SnapshotStatistics statistics_;                       // of snapshots
 };
 
 }  // namespace jostle::inline results

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -26,8 +27,9 @@ struct PointTables {
   std::vector<std::uint64_t> rows;
   std::vector<std::string> reasons;
   std::vector<Work> work;
-  std::vector<double> coordination;  // [n_snapshot_taps, n_realizations], or empty
-  std::size_t n_bins = 0;            // of height histograms; 0 where there are none
+  std::vector<double> coordination;              // [n_snapshot_taps, n_realizations], or empty
+  std::vector<std::optional<BedForces>> forces;  // likewise
+  std::array<std::size_t, n_height_profiles> n_bins{};  // 0 where there are none
 };
 
 /// An open file, and the blocks of it that were read last.
@@ -76,27 +78,27 @@ class ResultsFile::Impl {
   }
   std::size_t n_columns(std::uint32_t point) const { return study.points.at(point).n_columns(); }
 
-  /// A snapshot's height histogram, with the zeros that pad it; empty where none was kept.
-  std::span<const double> histogram(RealizationId id, std::size_t snapshot) {
-    const std::size_t n_bins = tables(id.point).n_bins;
+  /// A snapshot's height_profiles[which], with what pads it.
+  std::span<const double> profile(RealizationId id, std::size_t snapshot, std::size_t which) {
+    const std::size_t n_bins = tables(id.point).n_bins[which];
     const std::uint64_t n_taps = study.points.at(id.point).snapshots.taps.size();
     if (n_bins == 0) return {};
     const Shape all{n_taps, study.realizations, n_bins};
     const std::uint64_t n_a_block = chunk_along_first(all)[0];
     const std::uint64_t first = snapshot / n_a_block * n_a_block;
-    const auto& block = histogram_blocks_.get({id.point, first}, [&] {
+    const auto& block = profile_blocks_[which].get({id.point, first}, [&] {
       const Hdf5Handle group = open_group(file, "snapshots/" + point_name(id.point));
-      return read_block(group, "height_histogram", {first, 0, 0},
+      return read_block(group, height_profiles[which].name, {first, 0, 0},
                         {std::min(n_a_block, n_taps - first), study.realizations, n_bins});
     });
     const std::size_t cell = (snapshot - first) * study.realizations + id.realization;
-    const auto bins = std::span(block).subspan(cell * n_bins, n_bins);
-    return std::isnan(bins[0]) ? std::span<const double>{} : bins;
+    return std::span(block).subspan(cell * n_bins, n_bins);
   }
 
   const ParticleFrames& frames(RealizationId id) {
     return frames_.get(id, [&] {
-      return ParticleFrames(file, particles_name(id), study.points.at(id.point).n_spheres);
+      const StudyPoint& point = study.points.at(id.point);
+      return ParticleFrames(file, particles_name(id), point.n_spheres, point.container);
     });
   }
 
@@ -112,7 +114,7 @@ class ResultsFile::Impl {
   using Block = std::pair<std::uint32_t, std::uint64_t>;  // of a point, from a row or a snapshot on
   // Two, as what is written from them comes in other blocks where it has more realizations.
   RecentlyUsed<Block, std::vector<std::vector<double>>, 2> row_blocks_;
-  RecentlyUsed<Block, std::vector<double>, 2> histogram_blocks_;
+  std::array<RecentlyUsed<Block, std::vector<double>, 2>, n_height_profiles> profile_blocks_;
   RecentlyUsed<RealizationId, ParticleFrames, 1> frames_;
 };
 

@@ -28,8 +28,9 @@ class ResultsFile::Stored : public StoredRealization {
   }
   void read_rows(std::uint64_t first, std::span<double> rows) override;
   std::vector<SnapshotOutline> snapshots() override;
-  std::vector<Vec3> centres(std::uint64_t tap) override;
-  std::vector<double> height_histogram(std::uint64_t tap) override;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override;
+  std::vector<double> profile(std::uint64_t tap, std::size_t which) override;
+  std::vector<Contact> contacts(std::uint64_t tap) override;
 
  private:
   const StudyPoint& point() const { return file_.study().points.at(id_.point); }
@@ -52,21 +53,26 @@ void ResultsFile::Stored::read_rows(std::uint64_t first, std::span<double> rows)
   });
 }
 
-/// Where histograms were kept and nothing else, every snapshot tap that was reached may have one.
+/// Where profiles were kept and nothing else, every snapshot tap that was reached may have one.
 std::vector<SnapshotOutline> ResultsFile::Stored::snapshots() {
   if (content_ == Content::without_snapshots) return {};
   return naming_file(impl_.path, [&] {
     const PointTables& tables = impl_.tables(id_.point);
     const auto& taps = point().snapshots.taps;
     std::map<std::uint64_t, SnapshotOutline> by_tap;
-    for (const std::uint64_t tap : impl_.frames(id_).taps())
-      by_tap[tap].n_spheres = point().n_spheres;
+    const ParticleFrames& frames = impl_.frames(id_);
+    for (std::size_t k = 0; k < n_sphere_vectors; ++k)
+      for (const std::uint64_t tap : frames.taps(k)) by_tap[tap].n_spheres[k] = point().n_spheres;
+    for (auto& [tap, outline] : by_tap) outline.n_contacts = frames.network().n_contacts(tap);
+    const bool has_profiles = std::ranges::max(tables.n_bins) > 0;
     for (std::size_t s = 0; s < taps.size(); ++s) {
       const std::size_t cell = s * file_.study().realizations + id_.realization;
       const bool coordinated =
           !tables.coordination.empty() && !std::isnan(tables.coordination.at(cell));
       if (coordinated) by_tap[taps[s]].coordination = tables.coordination[cell];
-      if (tables.n_bins > 0 && taps[s] < tables.rows.at(id_.realization)) by_tap[taps[s]];
+      if (!tables.forces.empty() && tables.forces.at(cell))
+        by_tap[taps[s]].forces = tables.forces[cell];
+      if (has_profiles && taps[s] < tables.rows.at(id_.realization)) by_tap[taps[s]];
     }
     std::vector<SnapshotOutline> outlines;
     for (auto& [tap, outline] : by_tap) {
@@ -77,19 +83,27 @@ std::vector<SnapshotOutline> ResultsFile::Stored::snapshots() {
   });
 }
 
-std::vector<Vec3> ResultsFile::Stored::centres(std::uint64_t tap) {
+std::vector<Vec3> ResultsFile::Stored::vectors(std::uint64_t tap, std::size_t which) {
   if (content_ == Content::without_snapshots) return {};
-  return naming_file(impl_.path, [&] { return impl_.frames(id_).centres(tap); });
+  return naming_file(impl_.path, [&] { return impl_.frames(id_).vectors(tap, which); });
 }
 
-std::vector<double> ResultsFile::Stored::height_histogram(std::uint64_t tap) {
+std::vector<Contact> ResultsFile::Stored::contacts(std::uint64_t tap) {
+  if (content_ == Content::without_snapshots) return {};
+  return naming_file(impl_.path, [&] { return impl_.frames(id_).network().contacts(tap); });
+}
+
+std::vector<double> ResultsFile::Stored::profile(std::uint64_t tap, std::size_t which) {
   return naming_file(impl_.path, [&]() -> std::vector<double> {
     const auto& taps = point().snapshots.taps;
     const auto found = std::ranges::lower_bound(taps, tap);
     if (content_ == Content::without_snapshots || found == taps.end() || *found != tap) return {};
-    auto bins = impl_.histogram(id_, static_cast<std::size_t>(found - taps.begin()));
-    // The last bin of a histogram holds the highest centre: what follows is padding.
-    while (!bins.empty() && bins.back() == 0) bins = bins.first(bins.size() - 1);
+    auto bins = impl_.profile(id_, static_cast<std::size_t>(found - taps.begin()), which);
+    // The last bin of a profile holds spheres: what follows is padding, or none was kept.
+    const auto is_none = [&](double value) {
+      return std::isnan(value) || value == height_profiles[which].padding;
+    };
+    while (!bins.empty() && is_none(bins.back())) bins = bins.first(bins.size() - 1);
     return {bins.begin(), bins.end()};
   });
 }

@@ -71,12 +71,14 @@ std::vector<Column> read_diagnostics(hid_t group) {
 
 Snapshots read_snapshot_settings(hid_t group) {
   const auto kept = read_numbers_attribute<std::uint8_t>(group, "snapshots_keep");
-  return {.taps = read_numbers<std::uint64_t>(group, "snapshot_taps"),
-          .positions = kept.at(0) != 0,
-          .coordination = kept.at(1) != 0,
-          .contact_cut = read_number_attribute<double>(group, "contact_cut"),
-          .height_histogram = kept.at(2) != 0,
-          .bin_width = read_number_attribute<double>(group, "bin_width")};
+  if (kept.size() < n_kept_by_all || kept.size() > std::size(kept_fields))
+    throw Hdf5Error("snapshots_keep is not as long as what snapshots may keep");
+  Snapshots snapshots{.taps = read_numbers<std::uint64_t>(group, "snapshot_taps"),
+                      .contact_cut = read_number_attribute<double>(group, "contact_cut"),
+                      .bin_width = read_number_attribute<double>(group, "bin_width")};
+  for (std::size_t k = 0; k < std::size(kept_fields); ++k)
+    snapshots.*kept_fields[k] = k < kept.size() && kept[k] != 0;
+  return snapshots;
 }
 
 /// /sweep/value, [n_points, n_pointers].

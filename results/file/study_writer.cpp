@@ -91,8 +91,10 @@ void write_kept(hid_t group, const StudyPoint& point) {
   write_texts_along(group, {{"pointers", pointers_of(point)}, {"values", values}});
   write_columns(group, point);
   make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
-  const std::array<std::uint8_t, 3> kept = {point.snapshots.positions, point.snapshots.coordination,
-                                            point.snapshots.height_histogram};
+  std::vector<std::uint8_t> kept;
+  for (const auto field : kept_fields) kept.push_back(point.snapshots.*field);
+  // Those of engines that move spheres in time stand only where one is kept.
+  while (kept.size() > n_kept_by_all && kept.back() == 0) kept.pop_back();
   write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
   write_attribute(group, "contact_cut", point.snapshots.contact_cut);
   write_attribute(group, "bin_width", point.snapshots.bin_width);

@@ -164,9 +164,7 @@ std::vector<std::uint64_t> chosen_taps(const std::string& name,
 std::vector<std::uint64_t> kept_taps(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint64_t> taps;
   for (std::uint32_t r = 0; r < file.study().realizations; ++r) {
-    for (const SnapshotRecord& snapshot : file.snapshots({point, r})) {
-      if (!snapshot.centres.empty()) taps.push_back(snapshot.tap);
-    }
+    for (const SnapshotRecord& snapshot : file.positions({point, r})) taps.push_back(snapshot.tap);
   }
   std::ranges::sort(taps);
   taps.erase(std::unique(taps.begin(), taps.end()), taps.end());
@@ -183,8 +181,7 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
                         .sweep_point = file.study().points[point].id};
   ensemble.read = [&file, &container, point](std::uint32_t r) {
     std::vector<KeptPacking> packings;
-    for (SnapshotRecord& snapshot : file.snapshots({point, r})) {
-      if (snapshot.centres.empty()) continue;
+    for (SnapshotRecord& snapshot : file.positions({point, r})) {
       packings.push_back({snapshot.tap, {container, std::move(snapshot.centres)}});
     }
     return packings;

@@ -232,6 +232,53 @@ KIN = {
         file, "particles/point_0000_realization_00000/position/value", np.full((2, 48, 3), 1e300)),
 }
 
+PARTICLES = "particles/point_0000_realization_00000"
+TAKEN = "snapshots/point_0000"
+
+# Of a file of grains, whose snapshots keep more.
+OF_GRAINS = {
+    "velocities of other numbers": lambda file: replace(
+        file, f"{PARTICLES}/velocity/value", np.zeros((2, 19, 3))),
+    "velocities of NaN": lambda file: replace(
+        file, f"{PARTICLES}/velocity/value", np.full((2, 20, 3), np.nan)),
+    "contacts that end before they begin": lambda file: replace(
+        file, f"{PARTICLES}/contacts/offset", np.array([0, 2**63], np.uint64)),
+    "contacts from the middle on": lambda file: replace(
+        file, f"{PARTICLES}/contacts/offset", np.array([1, 2], np.uint64)),
+    "offsets of other steps": lambda file: replace(
+        file, f"{PARTICLES}/contacts/offset", np.zeros(3, np.uint64)),
+    "contacts of no sphere": lambda file: replace(
+        file, f"{PARTICLES}/contacts/first",
+        np.full(len(file[f"{PARTICLES}/contacts/first"]), 2**32 - 1, np.uint32)),
+    "contacts with no wall": lambda file: replace(
+        file, f"{PARTICLES}/contacts/second",
+        np.full(len(file[f"{PARTICLES}/contacts/first"]), 21, np.uint32)),
+    "one contact again and again": lambda file: (
+        replace(file, f"{PARTICLES}/contacts/first",
+                np.zeros(len(file[f"{PARTICLES}/contacts/first"]), np.uint32)),
+        replace(file, f"{PARTICLES}/contacts/second",
+                np.ones(len(file[f"{PARTICLES}/contacts/first"]), np.uint32))),
+    "forces without end": lambda file: replace(
+        file, f"{PARTICLES}/contacts/normal_force",
+        np.full(len(file[f"{PARTICLES}/contacts/first"]), np.inf)),
+    "normals of other contacts": lambda file: replace(
+        file, f"{PARTICLES}/contacts/normal", np.zeros((3, 3))),
+    "a terabyte of contacts": lambda file: [
+        (file[f"{PARTICLES}/contacts"].__delitem__(name),
+         file.create_dataset(f"{PARTICLES}/contacts/{name}", (1 << 37, *shape), kind, chunks=True))
+        for name, kind, shape in (("first", "u4", ()), ("second", "u4", ()), ("overlap", "f8", ()),
+                                  ("normal_force", "f8", ()), ("normal", "f8", (3,)),
+                                  ("tangential_force", "f8", (3,)))],
+    "forces of other walls": lambda file: replace(
+        file, f"{TAKEN}/wall_normal_force", np.zeros((2, 2, 7))),
+    "a tensor of two directions": lambda file: replace(
+        file, f"{TAKEN}/force_moment", np.zeros((2, 2, 2, 2))),
+    "temperatures of other taps": lambda file: replace(
+        file, f"{TAKEN}/granular_temperature_lateral", np.zeros((1, 2, 9))),
+    "more kept than there is": attribute(POINT, "snapshots_keep", np.ones(9, np.uint8)),
+    "less kept than there is": attribute(POINT, "snapshots_keep", np.ones(2, np.uint8)),
+}
+
 
 class Crafted(Case):
     @classmethod
@@ -295,6 +342,23 @@ class Crafted(Case):
 
     def test_their_kin(self):
         self.try_all({kind: change for kind, change in KIN.items() if "escapes" not in kind})
+
+    def test_snapshots_of_grains(self):
+        grains = changed(SMALL, spheres=20, realizations=2, observe=["mean_height"], name="file",
+                         start={"random_settle": {}}, snapshots={"taps": [0, 2]},
+                         engine={"discrete_element": {"contact": {"walton_braun": {
+                             "stiffness": 1000}}}},
+                         protocol=[{"tap": {"lift": 0.05}, "count": 2}])
+        grains.pop("relax", None)
+        self.write(grains)
+        self.write(changed(grains, protocol=[{"tap": {"lift": 0.05}, "count": 3}]), "longer.json")
+        (self.folder / "good.h5").unlink()
+        self.run_scene("-o", "good.h5")
+        commands = [command for command in COMMANDS if command[0] not in ("fit", "analyse", "check")]
+        self.craft(lambda file: None)
+        for command in commands:
+            self.assertEqual(self.use(command).returncode, OK, command)
+        self.try_all(OF_GRAINS, commands)
 
     def test_escapes_in_a_stored_scene_stay_in_it(self):
         self.craft(KIN["a scene of escapes"])

@@ -6,6 +6,7 @@ import time
 import unittest
 
 import h5py
+import numpy as np
 
 from support import BAD_INPUT, STOPPED, UNFOLDED, Case, changed
 
@@ -68,6 +69,118 @@ class Grains(Case):
             self.assertTrue((point["input_energy"][1:, :] > 0).all())
         info = json.loads(self.jostle("info", "grains.h5", "--json").stdout)
         self.assertGreater(info["realizations"][0]["sphere_steps"], 1e6)
+
+    def test_snapshots_keep_what_moves_and_acts(self):
+        self.write(changed(GRAINS, container={"sides": "walls", "width": 4}))
+        shown = self.run_scene().stdout + self.jostle("info", "grains.h5").stdout
+        self.assertIn("velocities; contacts; granular_temperature; forces", shown)
+        with h5py.File(self.folder / "grains.h5") as file:
+            group = file["particles/point_0000_realization_00001"]
+            self.assertEqual(group["velocity/value"].shape, (2, 80, 3))
+            self.assertEqual(group["velocity/value"].attrs["units"], "diameter / s")
+            self.assertEqual(group["spin/step"][:].tolist(), [0, 3])
+            contacts = group["contacts"]
+            for name, axes in (("normal_force", ["contact"]), ("normal", ["contact", "direction"]),
+                               ("offset", ["step"])):
+                with self.subTest(axes_of=name):
+                    named = [axis[0].name.split("/")[-1] for axis in contacts[name].dims]
+                    self.assertEqual(named, axes)
+            walls = contacts["second"].attrs["walls"].tolist()
+            self.assertEqual(walls, ["floor", "x_min", "x_max", "y_min", "y_max"])
+            point = file["snapshots/point_0000"]
+            self.assertEqual([wall.decode() for wall in point["wall"][:]], walls)
+            for frame in (0, 1):
+                with self.subTest(frame=frame):
+                    self.check_frame(group, point, frame)
+            vertical = point["granular_temperature_vertical"]
+            self.assertEqual([axis[0].name.split("/")[-1] for axis in vertical.dims],
+                             ["tap", "realization", "height"])
+            self.assertTrue((vertical[:][np.isfinite(vertical[:])] >= 0).all())
+            self.assertEqual(point["height_histogram"].shape, vertical.shape)
+
+    def check_frame(self, group, point, frame):
+        contacts = group["contacts"]
+        bounds = np.append(contacts["offset"], len(contacts["first"])).astype(int)
+        here = slice(bounds[frame], bounds[frame + 1])
+        first, second = contacts["first"][here].astype(int), contacts["second"][here].astype(int)
+        force = contacts["normal_force"][here][:, None] * contacts["normal"][here]
+        force = force + contacts["tangential_force"][here]
+        pairs = second < 80
+        # Normals lead from one centre to the other, and overlaps are what the distance lacks.
+        centres = group["position/value"][frame]
+        between = centres[first[pairs]] - centres[second[pairs]]
+        distance = np.linalg.norm(between, axis=1)
+        np.testing.assert_allclose(1 - distance, contacts["overlap"][here][pairs], atol=1e-13)
+        np.testing.assert_allclose(between / distance[:, None], contacts["normal"][here][pairs],
+                                   atol=1e-12)
+        # Walls carry the weight, but for the ringing of the latched springs.
+        acting = np.zeros((80, 3))
+        np.add.at(acting, first, force)
+        np.add.at(acting, second[pairs], -force[pairs])
+        total = acting.sum(axis=0)
+        self.assertLess(abs(total[2] - 80), 8)
+        normal, friction = point["wall_normal_force"][frame, 1], point["wall_friction_force"][frame, 1]
+        self.assertAlmostEqual(normal[0] + friction[1:, 2].sum(), total[2], places=9)
+        self.assertAlmostEqual(normal[1] - normal[2] + friction[[0, 3, 4], 0].sum(), total[0], places=9)
+        # The tensor of the bed: twice the arm for pairs, whose other sphere has as much.
+        overlap = contacts["overlap"][here]
+        arm = np.where(pairs, 1 - overlap, 0.5 - overlap)[:, None] * contacts["normal"][here]
+        moment = np.einsum("ka,kb->ab", arm, force)
+        np.testing.assert_allclose(point["force_moment"][frame, 1], moment, atol=1e-9)
+        self.assertGreater(np.trace(moment), 0)
+
+    def test_snapshots_keep_what_is_asked_for(self):
+        without = changed(GRAINS, snapshots={"taps": [0, 3], "keep": ["positions"]})
+        self.write(without)
+        self.run_scene("-o", "bare.h5")
+        self.write(GRAINS)
+        self.run_scene("-o", "all.h5")
+        with h5py.File(self.folder / "bare.h5") as bare, h5py.File(self.folder / "all.h5") as full:
+            particles = "particles/point_0000_realization_00000"
+            self.assertEqual(sorted(bare[particles]), ["box", "position"])
+            self.assertEqual(sorted(full[particles]), ["box", "contacts", "position", "spin", "velocity"])
+            # No row depends on it, bit for bit.
+            for name, dataset in bare["observables/point_0000"].items():
+                if dataset.dtype.kind == "f":
+                    np.testing.assert_array_equal(dataset[:], full["observables/point_0000"][name][:])
+        self.write(changed(GRAINS, engine={"discrete_element": {
+            "contact": {"walton_braun": {"friction": 0}}}}))
+        self.run_scene("-o", "smooth.h5")
+        with h5py.File(self.folder / "smooth.h5") as smooth:
+            self.assertNotIn("spin", smooth[particles])
+            self.assertFalse(smooth[particles]["contacts/tangential_force"][:].any())
+        for change, message in (
+                ({"engine": {"monte_carlo": {}}, "protocol": []},
+                 "/snapshots/keep: velocities are of discrete elements: Monte Carlo knows neither"),
+                ({"snapshots": {"taps": [0], "keep": ["contacts"]}},
+                 "/snapshots/keep: contacts stand beside positions: keep positions, too")):
+            asked = {"taps": [0], "keep": ["positions", "velocities"]}
+            self.write(changed(GRAINS, **{"snapshots": asked, **change}))
+            self.assertIn(message, self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
+
+    def test_both_engines_keep_what_they_have(self):
+        self.write(changed(GRAINS, realizations=1, protocol=[{"tap": {"lift": 0.1}, "count": 1}],
+                           snapshots={"taps": [0]}, sweep={
+                               "/engine": [{"discrete_element": {}}, {"monte_carlo": {}}]}))
+        self.run_scene()
+        with h5py.File(self.folder / "grains.h5") as file:
+            self.assertIn("velocity", file["particles/point_0000_realization_00000"])
+            self.assertNotIn("velocity", file["particles/point_0001_realization_00000"])
+
+    def test_exports_carry_velocities(self):
+        self.run_scene()
+        for form, named, column in (("lammps", "x y z", "vx vy vz omegax omegay omegaz"),
+                                    ("extxyz", "pos:R:3", "velo:R:3:omega:R:3")):
+            text = self.jostle("export", "grains.h5", "--format", form, "-o", f"out.{form}").stdout
+            lines = (self.folder / f"out.{form}").read_text().splitlines()
+            header = next(line for line in lines if named in line)
+            self.assertIn(column, header, text)
+            last = [float(word) for word in lines[-1].split()[-6:]]
+            with h5py.File(self.folder / "grains.h5") as file:
+                group = file["particles/point_0000_realization_00000"]
+                self.assertEqual(last, [*group["velocity/value"][-1, -1], *group["spin/value"][-1, -1]])
+        self.jostle("export", "grains.h5", "--format", "vtp", "-o", "out.vtp")
+        self.assertIn('Name="velocity" NumberOfComponents="3"', (self.folder / "out.vtp").read_text())
 
     def test_check_says_what_the_settings_come_to(self):
         text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout

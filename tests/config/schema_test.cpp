@@ -80,6 +80,8 @@ const std::vector<std::string> cross_field_messages{
     "is measured from a floor",
     "a tap has no meaning without gravity",
     "every relaxation would end capped",
+    "are of discrete elements",
+    "stand beside positions",
     "is beyond the last tap",
     "zipped lists must have the same length",
     "more than 100000 points",

@@ -35,6 +35,23 @@ class Bits {
     add(snapshot.centres);
     add(snapshot.coordination.value_or(-1));
     add(snapshot.height_histogram);
+    add(snapshot.velocities);
+    add(snapshot.spins);
+    add(std::uint64_t{snapshot.contacts.size()});
+    for (const Contact& one : snapshot.contacts) {
+      add(std::uint64_t{one.first});
+      add(std::uint64_t{one.second});
+      add(std::vector<double>{one.overlap, one.normal_force});
+      add(std::vector<Vec3>{one.normal, one.tangential_force});
+    }
+    add(snapshot.temperature_lateral);
+    add(snapshot.temperature_vertical);
+    if (!snapshot.forces) return;
+    for (const double one : snapshot.forces->moment) add(one);
+    for (const WallForce& wall : snapshot.forces->walls) {
+      add(wall.normal);
+      add(std::vector<Vec3>{wall.friction});
+    }
   }
   void add(const RealizationState& state) {
     add(state.rows);

@@ -81,6 +81,30 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   CHECK(record.snapshots[2].coordination == record.state->centres[0].x);
   CHECK(record.snapshots[2].height_histogram ==
         std::vector<double>{0.25, 0, record.state->centres[1].x});
+  const SnapshotRecord& last = record.snapshots[2];
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(last.velocities.at(i) ==
+          Vec3{last.centres[i].x - 0.5, -last.centres[i].x, 1e-3 * last.centres[i].z});
+    CHECK(last.spins.at(i) == Vec3{last.centres[i].z, 0, -last.centres[i].x});
+  }
+  CHECK(last.temperature_lateral.size() == 2);
+  CHECK(std::isnan(last.temperature_vertical.at(0)));
+  CHECK(last.temperature_vertical.at(1) == 2 * last.centres[0].x);
+  REQUIRE(last.forces);
+  CHECK(last.forces->moment[8] == 8 + last.centres[0].x);
+  CHECK(last.forces->walls == std::vector<WallForce>{{5.5, {0.5, last.centres[0].x, 0}}});
+  std::size_t n_contacts = 0;
+  for (std::uint32_t r = 0; r < 3; ++r) {
+    for (const SnapshotRecord& one : file.snapshots({1, r})) {
+      CHECK(one.contacts.size() == static_cast<std::size_t>(5 * one.centres[0].x));
+      n_contacts += one.contacts.size();
+      if (one.contacts.size() < 2) continue;
+      CHECK(one.contacts[1] ==
+            Contact{1, 5, 1e-4 * one.centres[1].x, 2, {0, 0, -1}, {one.centres[1].x, 0.25, 0}});
+    }
+    CHECK(file.positions({1, r}).at(1).centres == file.snapshots({1, r}).at(1).centres);
+  }
+  CHECK(n_contacts > 5);
 }
 
 TEST_CASE("any part of a column can be read by itself") {

@@ -77,7 +77,30 @@ TapRow row_of(const RealizationState& state) {
 }
 
 SnapshotRecord snapshot_of(const RealizationState& state) {
-  return {state.rows, state.centres, state.centres[0].x, {0.25, 0, state.centres[1].x}};
+  SnapshotRecord record{
+      state.rows, state.centres, state.centres[0].x, {0.25, 0, state.centres[1].x}};
+  const auto n = static_cast<std::uint32_t>(state.centres.size());
+  for (const Vec3& r : state.centres) {
+    record.velocities.push_back({r.x - 0.5, -r.x, 1e-3 * r.z});
+    record.spins.push_back({r.z, 0, -r.x});
+  }
+  // As many as it likes, also none.
+  const auto n_contacts = static_cast<std::uint32_t>(static_cast<double>(n) * state.centres[0].x);
+  for (std::uint32_t i = 0; i < n_contacts; ++i)
+    record.contacts.push_back({i,
+                               i % 2 == 0 ? i + 1 : n,
+                               1e-4 * state.centres[i].x,
+                               1.0 + i,
+                               {0, 0, -1},
+                               {state.centres[i].x, 0.25, 0}});
+  const double nan = std::nan("");
+  record.temperature_lateral = {nan, state.centres[0].x};
+  record.temperature_vertical = {nan, 2 * state.centres[0].x};
+  record.forces.emplace();
+  for (std::size_t k = 0; k < 9; ++k)
+    record.forces->moment[k] = static_cast<double>(k) + state.centres[0].x;
+  record.forces->walls = {{5.5, {0.5, state.centres[0].x, 0}}};
+  return record;
 }
 
 /// Records the tap that is due and leaves the state between relaxations.
@@ -124,6 +147,8 @@ Study study(const Sizes& sizes) {
                      .diagnostics = columns(MonteCarlo{}),
                      .snapshots = {}};
     point.snapshots.taps = sizes.snapshot_taps;
+    point.snapshots.velocities = point.snapshots.contacts = true;
+    point.snapshots.granular_temperature = point.snapshots.forces = true;
     study.points.push_back(point);
   }
   return study;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/bed/container.hpp"
+#include "engine/bed/vec3.hpp"
+
+// What moves and acts in a bed, beside where its spheres are.
+namespace jostle::inline engine {
+
+/// Two spheres, or a sphere and a wall, that act on each other. On `first` acts normal_force x
+/// normal + tangential_force, on `second` the opposite.
+struct Contact {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;  // a later sphere, or n_spheres + w: wall w of wall_names()
+  double overlap = 0;        // diameters, positive
+  double normal_force = 0;   // m g; positive where they press on each other
+  Vec3 normal{};             // of length 1, from `second` to `first`
+  Vec3 tangential_force{};   // m g, along the tangent plane
+  bool operator==(const Contact&) const = default;
+};
+
+/// Of a bed at one time: that of its positions.
+struct BedMechanics {
+  std::vector<Vec3> velocities;   // [n_spheres], diameters / s; empty where nothing has any
+  std::vector<Vec3> spins;        // [n_spheres], rad / s; empty where nothing turns
+  std::vector<Contact> contacts;  // with force, by (first, second)
+};
+
+/// What a sphere can lean on, by number: "floor", then "x_min", "x_max", "y_min", "y_max" of
+/// planes, or "tube". None of a fully periodic container.
+std::vector<std::string> wall_names(const Container& container);
+
+}  // namespace jostle::inline engine
