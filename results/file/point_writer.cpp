@@ -38,9 +38,6 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
   const std::size_t n_snapshots = point_.snapshots.taps.size() * n_realizations_;
   statistics_.coordination.resize(n_snapshots, nan);
   if (point_.snapshots.forces) statistics_.forces.resize(n_snapshots);
-  statistics_.profile = [this](std::size_t which, std::size_t tap, std::uint32_t realization) {
-    return realizations_[realization]->profile(point_.snapshots.taps[tap], which);
-  };
 }
 
 void PointWriter::begin() {
@@ -167,6 +164,9 @@ void PointWriter::write_observables() {
 
 void PointWriter::write_snapshots() {
   if (point_.snapshots.taps.empty()) return;
+  statistics_.profile = [this](std::size_t which, std::size_t tap, std::uint32_t realization) {
+    return realizations_[realization]->profile(point_.snapshots.taps[tap], which);
+  };
   write_snapshot_statistics(group_under("snapshots"), point_, n_realizations_, statistics_);
 }
 

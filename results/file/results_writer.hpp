@@ -26,7 +26,7 @@ struct FileContent {
 
 /// Writes a whole results file and publishes it under `path`; `before` is called when all has been
 /// written, before what was there is replaced. In memory it holds some 32 MB of
-/// the series of a point, a snapshot, and about 1 kB for every realization and 100 bytes for every
+/// the series of a point, a snapshot, and about 1 kB for every realization and 500 bytes for every
 /// snapshot of a point. Throws ResultsError.
 void write_results(const std::string& path, const FileContent& content,
                    const std::function<void()>& before = {});

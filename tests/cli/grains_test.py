@@ -151,9 +151,9 @@ class Grains(Case):
             self.assertFalse(smooth[particles]["contacts/tangential_force"][:].any())
         for change, message in (
                 ({"engine": {"monte_carlo": {}}, "protocol": []},
-                 "/snapshots/keep: velocities are of discrete elements: Monte Carlo knows neither"),
+                 '/snapshots/keep: "velocities" is of discrete elements only: Monte Carlo has no times'),
                 ({"snapshots": {"taps": [0], "keep": ["contacts"]}},
-                 "/snapshots/keep: contacts stand beside positions: keep positions, too")):
+                 '/snapshots/keep: "contacts" stands beside positions: keep positions, too')):
             asked = {"taps": [0], "keep": ["positions", "velocities"]}
             self.write(changed(GRAINS, **{"snapshots": asked, **change}))
             self.assertIn(message, self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)

@@ -6,6 +6,7 @@
 #include "results/checkpoints/part.hpp"
 #include "results/export/input_file.hpp"
 #include "results/file/layout.hpp"
+#include "results/record.hpp"
 
 using namespace jostle;
 
@@ -16,5 +17,17 @@ TEST_CASE("The page of the format quotes the numbers of its formats as they are"
                                     fmt::format("`{}`", keeps_what_point_keeps)}) {
     INFO(quoted);
     CHECK(page.find(quoted) != std::string::npos);
+  }
+}
+
+TEST_CASE("The page of the format names all that snapshots keep of spheres and by height") {
+  const std::string page = read_text_file(SOURCE_ROOT "/docs/format.md");
+  for (const SphereVector& one : sphere_vectors) {
+    INFO(one.name);
+    CHECK(page.find(fmt::format("{}/value`", one.name)) != std::string::npos);
+  }
+  for (const HeightProfile& one : height_profiles) {
+    INFO(one.name);
+    CHECK(page.find(one.name) != std::string::npos);
   }
 }

@@ -4,7 +4,9 @@
 #include <tuple>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/discrete_element/reduced.hpp"
 #include "engine/engines.hpp"
+#include "engine/starts/starts.hpp"
 #include "tests/engine/discrete_element/grain_cases.hpp"
 
 using namespace jostle;
@@ -71,16 +73,18 @@ WallSums wall_sums(const BedMechanics& bed, std::uint32_t n) {
 TEST_CASE("contacts have the forces that the next step moves spheres by") {
   const Container container = GENERATE(Container{PeriodicBox{4, 4}}, Container{WalledBox{3.3, 4}},
                                        Container{Cylinder{4}}, Container{PeriodicBox{2.05, 3}});
-  const ContactLaw law = GENERATE(ContactLaw{WaltonBraun{}}, ContactLaw{LinearSpringDashpot{}},
-                                  ContactLaw{WaltonBraun{.friction = 0}},
-                                  ContactLaw{LinearSpringDashpot{.friction = 0}});
+  const ContactLaw law = GENERATE(ContactLaw{WaltonBraun{.stiffness = 1e4}},
+                                  ContactLaw{LinearSpringDashpot{.stiffness = 1e4}},
+                                  ContactLaw{WaltonBraun{.stiffness = 1e4, .friction = 0}},
+                                  ContactLaw{LinearSpringDashpot{.stiffness = 1e4, .friction = 0}});
   const bool linear = std::holds_alternative<LinearSpringDashpot>(law);
   const bool friction = std::visit([](const auto& one) { return one.friction; }, law) > 0;
   constexpr std::uint32_t n = 60;
   const ReducedSettings units = settings(law, 1);
   GrainLoop loop = loop_of(container, units, column_of(container, n));
   GrainLoop apart = loop_of(container, units, column_of(container, n), InstructionSet::baseline);
-  for (const std::uint64_t steps : {500, 20'000, 777}) {
+  for (const double time : {0.3, 10.0, 0.2}) {
+    const auto steps = static_cast<std::uint64_t>(time / units.time_step);
     loop.run(steps);
     apart.run(steps);
     const std::vector<GrainState> before = loop.state().grains;
@@ -108,13 +112,13 @@ TEST_CASE("contacts have the forces that the next step moves spheres by") {
       const Vec3 mean_spin = 0.5 * (after[i].spin + before[i].spin);
       spin_error = std::max(spin_error, length(mean_spin - bed.spins[i]));
     }
-    CAPTURE(container.index(), law.index(), steps);
+    CAPTURE(container.index(), law.index(), time);
     CHECK(force_error < 1e-8 * (1 + largest(sums.force)));
     CHECK(torque_error < 1e-8 * (1 + largest(sums.torque)));
     CHECK(velocity_error < 1e-13 * (1 + largest(bed.velocities)));
     CHECK(spin_error < 1e-13 * (1 + largest(bed.spins)));
     CHECK(bed.spins.size() == (friction ? n : 0));
-    CHECK((steps == 500 || bed.contacts.size() > n));
+    CHECK((time == 0.3 || !bed.contacts.empty()));
     const bool sorted = std::ranges::is_sorted(
         bed.contacts, {}, [](const Contact& one) { return std::tuple(one.first, one.second); });
     CHECK(sorted);
@@ -192,7 +196,7 @@ TEST_CASE("the floor and rough sides carry the weight of a bed at rest") {
   const ReducedSettings units = settings(law, 1);
   GrainLoop loop = loop_of(container, units, column_of(container, n));
   loop.run(static_cast<std::uint64_t>(120 / units.time_step));
-  REQUIRE(loop.kinetic_energy() / n < 1e-12);
+  REQUIRE(loop.kinetic_energy() / n < 1e-7);
   const BedMechanics bed = loop.mechanics();
   const WallSums walls = wall_sums(bed, n);
   CHECK(walls.floor + walls.side_friction == Approx(n).epsilon(1e-4));
@@ -204,28 +208,39 @@ TEST_CASE("the floor and rough sides carry the weight of a bed at rest") {
   CHECK(largest(sums.torque) < 1e-3);
 }
 
-TEST_CASE("rough walls of a tall tube carry weight, smooth ones none") {
-  const Container tube = Cylinder{3.3};
+TEST_CASE("rough walls of a tall duct carry weight, smooth ones none") {
+  const Container duct = WalledBox{3.3, 3.3};
   constexpr std::uint32_t n = 150;
-  const auto poured = [&](double friction) {
+  RandomStream random(stream_key(3, 0, 0, Purpose::start));
+  const Packing start = make_start(SteepestDescentPour{}, duct, n, random);
+  // A bed without stress that becomes heavy by and by slides down its walls: one that falls as a
+  // whole is wedged by the impact.
+  const auto loaded = [&](double side_friction) {
     DiscreteElement engine;
-    engine.spheres = WaltonBraun{.stiffness = 1e4, .friction = 0.5};
-    engine.sides = WaltonBraun{.stiffness = 1e4, .friction = friction};
-    const auto dynamics = make_dynamics(EngineSettings{engine}, {});
-    dynamics->load(dilute_column(tube, n, 3));
-    dynamics->settle(RandomSettle{});
-    while (dynamics->advance(1'000'000) == DynamicsStatus::running) {
+    engine.spheres = LinearSpringDashpot{.stiffness = 1e4, .restitution = 0.3, .friction = 0.5};
+    engine.sides =
+        LinearSpringDashpot{.stiffness = 1e4, .restitution = 0.3, .friction = side_friction};
+    ReducedSettings units = reduced(engine);
+    std::vector<GrainState> grains;
+    for (const Vec3 centre : start.centres) grains.push_back(grain(centre));
+    GrainLoop loop = loop_of(duct, units, grains);
+    constexpr int parts = 20;
+    for (int part = 1; part <= parts; ++part) {
+      units.gravity = static_cast<double>(part) / parts;
+      GrainLoop heavier(duct, units);
+      heavier.restore(loop.state());
+      heavier.run(static_cast<std::uint64_t>((part < parts ? 1 : 10) / units.time_step));
+      loop = std::move(heavier);
     }
-    return wall_sums(dynamics->mechanics(), n);
+    return wall_sums(loop.mechanics(), n);
   };
-  const WallSums rough = poured(0.5), smooth = poured(0);
-  CHECK(smooth.side_friction == 0);
+  const WallSums rough = loaded(0.5), smooth = loaded(0);
+  CHECK(std::abs(smooth.side_friction) < 1e-9);
   CHECK(smooth.side_normal > 0);
-  CHECK(smooth.floor == Approx(n).epsilon(0.05));  // it rings
-  CHECK(rough.side_friction > 0.2 * n);            // Janssen 1895
+  CHECK(smooth.floor == Approx(n).epsilon(0.02));
+  CHECK(rough.side_friction > 0.2 * n);  // Janssen 1895
   CHECK(rough.side_friction <= 0.5 * rough.side_normal);
-  CHECK(rough.floor + rough.side_friction == Approx(n).epsilon(0.05));
-  CHECK(rough.floor < smooth.floor);
+  CHECK(rough.floor + rough.side_friction == Approx(n).epsilon(0.02));
 }
 
 TEST_CASE("velocities and spins of a bed are in diameters and radians a second") {

@@ -1,0 +1,63 @@
+#include <catch2/catch.hpp>
+
+#include "tests/config/scene_files.hpp"
+
+namespace jostle {
+
+namespace {
+
+std::string scene_with(const std::string& more) {
+  return R"({"seed": 1, "container": {"sides": "periodic", "width": 4}, "spheres": 10,
+             "start": {"random_settle": {}}, "protocol": [], )" +
+         more + "}";
+}
+const std::string grains = R"("engine": {"discrete_element": {}})";
+const std::string all_kept =
+    R"(["positions","coordination","height_histogram","velocities","contacts",)"
+    R"("granular_temperature","forces"])";
+
+Json kept(const std::string& text) {
+  return resolved(scene_of(text)).at("snapshots").at("keep");
+}
+
+}  // namespace
+
+TEST_CASE("By default snapshots keep everything that the engine has") {
+  CHECK(kept(scene_with(grains)).dump() == all_kept);
+  CHECK(kept(scene_with(grains + R"(, "snapshots": {"taps": [0]})")).dump() == all_kept);
+  CHECK(kept(scene_with(R"("snapshots": {"taps": [0]})")).dump() ==
+        R"(["positions","coordination","height_histogram"])");
+  const Scene chosen =
+      scene_of(scene_with(grains + R"(, "snapshots": {"keep": ["positions", "contacts"]})"));
+  CHECK(chosen.snapshots.contacts);
+  CHECK_FALSE(chosen.snapshots.velocities);
+  const Snapshots plan = make_plans(chosen, {}).at(0).snapshots;
+  CHECK(plan.contacts);
+  CHECK_FALSE(plan.forces);
+}
+
+TEST_CASE("Points of both engines keep by default what each has") {
+  const std::string sweep =
+      R"(, "sweep": {"/engine": [{"discrete_element": {}}, {"monte_carlo": {}}]})";
+  const Scene scene = scene_of(scene_with(grains + sweep));
+  const std::vector<Plan> plans = make_plans(scene, {});
+  REQUIRE(plans.size() == 2);
+  CHECK(plans[0].snapshots.velocities);
+  CHECK_FALSE(plans[1].snapshots.velocities);
+  CHECK(plans[1].snapshots.positions);
+  CHECK(scene_of(resolved(scene).dump()) == scene);
+}
+
+TEST_CASE("What an engine does not have cannot be kept, nor what stands beside no positions") {
+  const auto faults = [](const std::string& more) {
+    return lines(parse_scene(scene_with(more)).faults);
+  };
+  CHECK(faults(R"("snapshots": {"keep": ["positions", "forces"]})") ==
+        "/snapshots/keep: \"forces\" is of discrete elements only: Monte Carlo has no times and no "
+        "forces; leave it out\n");
+  CHECK(faults(grains + R"(, "snapshots": {"keep": ["velocities"]})") ==
+        "/snapshots/keep: \"velocities\" stands beside positions: keep positions, too\n");
+  CHECK(faults(grains + R"(, "snapshots": {"keep": ["forces", "granular_temperature"]})").empty());
+}
+
+}  // namespace jostle
