@@ -24,7 +24,7 @@ inline constexpr SphereVector sphere_vectors[] = {
      "velocities of the centres, at the time of the positions"},
     {"spin", &SnapshotRecord::spins, "rad / s",
      "angular velocities, at the time of the positions"}};
-inline constexpr std::size_t n_sphere_vectors = std::size(sphere_vectors);
+inline constexpr std::size_t n_sphere_vectors = std::size(sphere_vectors), kept_positions = 0;
 
 /// What they keep by height, a dataset of /snapshots/P each. `padding` stands above a bed.
 struct HeightProfile {
@@ -42,7 +42,7 @@ inline constexpr HeightProfile height_profiles[] = {
      "variance of horizontal velocities about their mean in the bin, a direction", "jostle"},
     {"granular_temperature_vertical", &SnapshotRecord::temperature_vertical, no_number,
      "(diameter / s)^2", "variance of vertical velocities about their mean in the bin", "jostle"}};
-inline constexpr std::size_t n_height_profiles = std::size(height_profiles);
+inline constexpr std::size_t n_height_profiles = std::size(height_profiles), kept_histogram = 0;
 
 /// What is stored of one realization but for its series and its snapshots.
 struct RealizationHead {

@@ -81,10 +81,10 @@ std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization) {
 std::vector<SnapshotRecord> positions_of(StoredRealization& realization) {
   std::vector<SnapshotRecord> records;
   for (const SnapshotOutline& one : realization.snapshots()) {
-    if (one.n_spheres[0] == 0) continue;
+    if (one.n_spheres[kept_positions] == 0) continue;
     SnapshotRecord& record = records.emplace_back();
     record.tap = one.tap;
-    record.centres = realization.vectors(one.tap, 0);
+    record.centres = realization.vectors(one.tap, kept_positions);
   }
   return records;
 }

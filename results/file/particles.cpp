@@ -61,7 +61,7 @@ void write_particles(hid_t file, const std::string& name, const Container& conta
                      StoredRealization& realization) {
   std::vector<ContactFrame> frames;
   for (const SnapshotOutline& one : snapshots)
-    if (one.n_spheres[0] > 0) frames.push_back({one.tap, one.n_contacts});
+    if (one.n_spheres[kept_positions] > 0) frames.push_back({one.tap, one.n_contacts});
   if (frames.empty()) return;
   const Hdf5Handle group = create_group(file, "particles/" + name);
   double highest = 0;
@@ -72,7 +72,7 @@ void write_particles(hid_t file, const std::string& name, const Container& conta
     const auto vectors_at = [&](std::uint64_t tap) {
       std::vector<Vec3> vectors = realization.vectors(tap, k);
       if (vectors.size() != n_spheres) throw Hdf5Error(name + ": a snapshot of other spheres");
-      if (k == 0)
+      if (k == kept_positions)
         for (const Vec3& centre : vectors) highest = std::max(highest, centre.z + sphere_radius);
       return vectors;
     };
@@ -89,7 +89,7 @@ ParticleFrames::ParticleFrames(hid_t file, const std::string& name, std::uint32_
   if (!exists(file, "particles/" + name)) return;
   const Hdf5Handle group = open_group(file, "particles/" + name);
   for (std::size_t k = 0; k < n_sphere_vectors; ++k) {
-    if (k > 0 && !exists(group, sphere_vectors[k].name)) continue;
+    if (k != kept_positions && !exists(group, sphere_vectors[k].name)) continue;
     const Hdf5Handle element = open_group(group, sphere_vectors[k].name);
     elements_[k].taps = read_numbers<std::uint64_t>(element, "step");
     require_shape(element, "value", {elements_[k].taps.size(), n_spheres, 3});

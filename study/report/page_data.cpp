@@ -132,7 +132,7 @@ class SnapshotMeans {
     for (const SnapshotOutline& outline : realization.snapshots()) {
       if (outline.coordination) coordination_[outline.tap].add(*outline.coordination);
       if (std::ranges::find(histogram_taps, outline.tap) == histogram_taps.end()) continue;
-      const std::vector<double> histogram = realization.height_histogram(outline.tap);
+      const std::vector<double> histogram = realization.profile(outline.tap, kept_histogram);
       if (histogram.empty()) continue;
       Histogram& mean = heights_[outline.tap];
       mean.sums.resize(std::max(mean.sums.size(), histogram.size()));

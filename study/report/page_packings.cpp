@@ -39,9 +39,9 @@ KeptPoint kept_of(const ResultsFile& file, std::uint32_t point) {
   for (const std::size_t r : evenly_spread(file.study().realizations, most_realizations)) {
     KeptRealization one{{point, static_cast<std::uint32_t>(r)}, {}};
     for (const SnapshotOutline& outline : file.realization(one.id)->snapshots()) {
-      if (outline.n_spheres == 0) continue;
+      if (outline.n_spheres[kept_positions] == 0) continue;
       one.taps.push_back(outline.tap);
-      kept.n_spheres = std::max(kept.n_spheres, outline.n_spheres);
+      kept.n_spheres = std::max(kept.n_spheres, outline.n_spheres[kept_positions]);
     }
     if (!one.taps.empty()) kept.realizations.push_back(std::move(one));
   }
@@ -183,8 +183,8 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   }
   std::vector<Packing> packings;
   for (const auto& [id, tap] : chosen.packings) {
-    packings.push_back(
-        {file.study().points[id.point].container, file.realization(id)->centres(tap)});
+    packings.push_back({file.study().points[id.point].container,
+                        file.realization(id)->vectors(tap, kept_positions)});
   }
   std::vector<Json> made(packings.size());
   std::atomic<std::size_t> next = 0;

@@ -133,8 +133,8 @@ TEST_CASE("parts that go on while they are read give what was there") {
   early->read_rows(0, rows);
   for (const std::uint64_t tap : {std::uint64_t{0}, n_rows / 2, n_rows - 1})
     CHECK(rows[tap * n_columns] == synthetic::expected_row(study, {0, 0}, tap).observables[0]);
-  CHECK(early->vectors(10'000, 0).size() == 5);
-  CHECK(early->vectors(60'000, 0).empty());
+  CHECK(early->vectors(10'000, kept_positions).size() == 5);
+  CHECK(early->vectors(60'000, kept_positions).empty());
 }
 
 TEST_CASE("a fold takes little memory, however large the run") {
