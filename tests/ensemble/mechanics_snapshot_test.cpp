@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <memory>
 
 #include "bits.hpp"
@@ -15,7 +16,9 @@ Plan grains_plan() {
   plan.n_spheres = 50;
   plan.start = RandomSettle{0.2};
   plan.protocol = {{HalfSine{0.4413, 7.5}, 2}, {Lift{.gamma = 0.1}, 1}};
-  plan.engine = DiscreteElement{.spheres = WaltonBraun{.stiffness = 1e4}};
+  DiscreteElement grains;
+  grains.spheres = WaltonBraun{.stiffness = 1e4};
+  plan.engine = grains;
   plan.observables = {MeanHeight{}, BulkFraction{}};
   plan.snapshots.taps = {0, 1, 3};
   return plan;
