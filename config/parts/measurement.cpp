@@ -217,7 +217,8 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
     if (!(snapshots.*part.kept)) continue;
     if (part.of_grains && !grains)
       return fmt::format(
-          "\"{}\" is of discrete elements only: Monte Carlo has no times and no forces; leave it out",
+          "\"{}\" is of discrete elements only: Monte Carlo has no times and no forces; leave it "
+          "out",
           part.name);
     if (part.beside_positions && !snapshots.positions)
       return fmt::format("\"{}\" stands beside positions: keep positions, too", part.name);

@@ -98,9 +98,11 @@ TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
            fmt::format(
                "`lambda` 0 to 10 ({}), `lateral_radius` 0 to 1 ({}), `retries` 0 to 1000 ({})",
                Shake{}.lambda, Shake{}.lateral_radius, Shake{}.retries),
-           fmt::format("`amplitude` 0 to 100 ({}) or `acceleration` 0 to 100, `frequency` 1e-3 to 1e6 Hz ({})",
+           fmt::format("`amplitude` 0 to 100 ({}) or `acceleration` 0 to 100, `frequency` 1e-3 to "
+                       "1e6 Hz ({})",
                        HalfSine{}.strength, HalfSine{}.frequency),
-           fmt::format("`amplitude` 0 to 100 ({}) or `acceleration` 0 to 100, `frequency` 1e-3 to 1e6 Hz ({}), `cycles` 1 to "
+           fmt::format("`amplitude` 0 to 100 ({}) or `acceleration` 0 to 100, `frequency` 1e-3 to "
+                       "1e6 Hz ({}), `cycles` 1 to "
                        "{} ({})",
                        Vibration{}.strength, Vibration{}.frequency, spaced(most_cycles),
                        Vibration{}.cycles),
