@@ -70,7 +70,7 @@ void add_report(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle report quickstart.h5                      writes quickstart.html\n"
-      "  jostle report weak.h5 strong.h5 -o both.html     two runs on one page\n"
+      "  jostle report low.h5 high.h5 -o both.html         two runs on one page\n"
       "\n"
       "The page needs nothing but a browser: no network, no other file. It shows what the files\n"
       "hold: curves, and the tables that fit, analyse, structure and cost have stored; make those\n"

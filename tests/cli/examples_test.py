@@ -60,8 +60,7 @@ INSTEAD_IN_DOCS = {
     "jostle analyse file.h5 hysteresis --observable bulk_fraction --last 1000":
         "jostle analyse fig4.h5 hysteresis --observable bulk_fraction",
 }
-RESULTS_OF_DOCS = {"file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5",
-                   "weak": "low", "strong": "high"}
+RESULTS_OF_DOCS = {"file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5"}
 
 
 def documented(page):

@@ -7,9 +7,7 @@ function tapAxisOf(chapter) {
   return {label: "taps t", type: chapter.changesStrength ? "linear" : "tap", short: "tap"};
 }
 
-function zeroText(chapter) {
-  return chapter.changesStrength ? "Tap 0 is the starting packing." : "Tap 0, left of the axis' break, is the starting packing.";
-}
+const zeroText = "Tap 0 is the starting packing.";
 
 /// A figure of one column at the sweep points that are switched on.
 function columnFigure(chapter, name, spec) {
@@ -41,7 +39,7 @@ function meanFigure(chapter, name, title) {
   return columnFigure(chapter, name, (column) => ({
     title: title ?? sentence(words(name)),
     caption: `${sentence(column.long_name || words(name))} against the number of taps; ${bars(chapter)}. ` +
-      zeroText(chapter),
+      zeroText,
     source: column.source === "jostle" ? "" : column.source,
     rows: (curve, own) => rowsOf(curve.taps, own.mean, own.error),
   }));
