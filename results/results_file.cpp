@@ -15,6 +15,19 @@
 #include "results/hdf5/read.hpp"
 
 namespace jostle::inline results {
+
+const char* name_of(RunState state) {
+  switch (state) {
+    case RunState::running:
+      return "running";
+    case RunState::interrupted:
+      return "interrupted";
+    case RunState::complete:
+      return "complete";
+  }
+  return "unknown";
+}
+
 namespace {
 
 Hdf5Handle open_sealed(const std::string& path, const std::string& known_as) {

@@ -17,6 +17,8 @@ namespace jostle::inline results {
 /// Written on the file: `running` until the first fold, then `interrupted` while realizations of
 /// the shard have taps left, else `complete` (with or without failed realizations).
 enum class RunState { running, interrupted, complete };
+/// "running", "interrupted", "complete": as files and people are told.
+const char* name_of(RunState state);
 
 /// One column of the series at one sweep point, over all realizations.
 struct Series {

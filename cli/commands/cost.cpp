@@ -8,7 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/reports/cost_report.hpp"
 #include "cli/reports/durations.hpp"
-#include "cli/reports/table_output.hpp"
+#include "cli/tables/table_output.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/output_file.hpp"
@@ -172,9 +172,10 @@ void add_cost(Command& app, int& code) {
       "Example:\n"
       "  jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 30m\n"
       "\n"
-      "A ladder of settings is run for a few taps, in pairs from the same packings: stop rules,\n"
-      "test intervals, step lengths, theta_0, half the spheres, the other pour between walls. "
-      "docs/accuracy.md says how to read it.");
+      "A ladder of settings is run for a few taps, in pairs from the same packings. Of Monte Carlo:\n"
+      "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour between\n"
+      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. docs/accuracy.md\n"
+      "says how to read it.");
   command.run([arguments, &code] { code = run_cost(*arguments); });
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "cli/commands/commands.hpp"
-#include "cli/reports/text_table.hpp"
+#include "cli/tables/text_table.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"

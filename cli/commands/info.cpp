@@ -9,7 +9,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/reports/effects.hpp"
 #include "cli/reports/report.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
@@ -20,18 +20,6 @@
 
 namespace jostle::inline cli {
 namespace {
-
-const char* name(RunState state) {
-  switch (state) {
-    case RunState::running:
-      return "running";
-    case RunState::interrupted:
-      return "interrupted";
-    case RunState::complete:
-      return "complete";
-  }
-  return "unknown";
-}
 
 const char* name(RealizationStatus status) {
   switch (status) {
@@ -51,7 +39,7 @@ const char* name(RealizationStatus status) {
 /// was: the lock tells.
 std::string state_of(const RunStatus& status) {
   if (status.owner && status.owner->alive) return "running";
-  if (status.state != RunState::running) return name(status.state);
+  if (status.state != RunState::running) return name_of(status.state);
   return "killed; --resume goes on";
 }
 
@@ -95,7 +83,7 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
     realizations.push_back(realization_json(one, study.points[one.id.point].unit));
   }
   return {{"file", file.path()},
-          {"state", name(status.state)},
+          {"state", name_of(status.state)},
           {"alive", status.owner && status.owner->alive},
           {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
           {"version", file.provenance().front().version},

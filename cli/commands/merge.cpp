@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
-#include "cli/reports/tables_display.hpp"
+#include "cli/tables/tables_display.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"

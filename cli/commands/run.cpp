@@ -8,13 +8,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/commands/commands.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
-#include "cli/reports/tables_display.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/tables_display.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/output_file.hpp"
@@ -102,14 +103,17 @@ std::string resume_command(const RunArguments& arguments) {
   return shell_words(words);
 }
 
-/// What this process computed, all sweep points together.
+/// What this process computed, all sweep points together. Rates of different engines do not add up.
 std::string process_line(const Progress& progress, Seconds elapsed, int threads,
-                         const std::string& unit) {
+                         const std::vector<StudyPoint>& points) {
+  const std::string& unit = points.front().unit;
+  const bool one_engine = std::ranges::all_of(
+      points, [&](const StudyPoint& point) { return point.unit == unit; });
   std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
                                  counted(static_cast<std::uint64_t>(threads), "thread"));
   const auto units = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
-  if (units > 0 && relaxing > 0) {
+  if (one_engine && units > 0 && relaxing > 0) {
     line += fmt::format("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
                         format_count(units / relaxing), unit,
                         static_cast<double>(progress.pair_tests) / units,
@@ -142,6 +146,12 @@ void say_which_tables_are_gone(const std::vector<std::string>& before,
 void print_end(const ResultsFile& file, const RunSettings& settings) {
   print_curves(file);
   if (settings.shard.count > 1) return;  // jostle merge knows the other shards' files
+  const auto realizations = file.realizations();
+  if (std::ranges::none_of(realizations, [](const RealizationSummary& one) {
+        return one.status == RealizationStatus::done;
+      })) {
+    return;  // nothing to go on from
+  }
   std::string text = "\nnext:\n";
   for (std::vector<std::string> words :
        next_commands(file.study(), stored_scene(file), settings.output)) {
@@ -159,7 +169,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   if (!arguments.quiet) {
     print_report(report(run.results(), arguments.layout) +
                  wrapped(process_line(run.progress(), std::chrono::steady_clock::now() - began,
-                                      settings.threads, run.results().study().points.front().unit),
+                                      settings.threads, run.results().study().points),
                          arguments.layout.width));
   }
   if (stopped) {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "cli/reports/durations.hpp"
-#include "cli/reports/text_table.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/text_table.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "fitting/value_text.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "study/cost/cost_study.hpp"
 
 namespace jostle::inline cli {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {

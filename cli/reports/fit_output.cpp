@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "fitting/report.hpp"
 
 namespace jostle::inline cli {

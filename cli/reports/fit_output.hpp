@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "config/json/json.hpp"
 #include "study/tables/fits.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "cli/reports/durations.hpp"
 #include "cli/reports/tap_table.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "fitting/value_text.hpp"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle::inline cli {

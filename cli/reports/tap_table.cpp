@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/reports/text_table.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/text_table.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {

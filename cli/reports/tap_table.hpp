@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle::inline cli {

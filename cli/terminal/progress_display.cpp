@@ -5,7 +5,7 @@
 #include <new>
 
 #include "cli/reports/durations.hpp"
-#include "cli/reports/text_table.hpp"
+#include "cli/tables/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "study/amounts.hpp"
 

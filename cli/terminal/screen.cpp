@@ -9,7 +9,7 @@
 #include <string>
 
 #include "cli/reports/curves.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/export/printable.hpp"
 

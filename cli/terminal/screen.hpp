@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "cli/options/command.hpp"
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle::inline cli {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "cli/reports/table_output.hpp"
-#include "cli/reports/table_text.hpp"
+#include "cli/tables/table_output.hpp"
+#include "cli/tables/table_text.hpp"
 #include "cli/terminal/exit_codes.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"

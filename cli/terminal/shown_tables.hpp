@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/options/command.hpp"
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/study.hpp"

@@ -1,5 +1,7 @@
 #include "engine/discrete_element/discrete_element.hpp"
 
+#include "engine/dropped_offsets.hpp"
+
 namespace jostle::inline engine {
 
 std::optional<std::string> engine_fault(const DiscreteElement& settings,
@@ -82,12 +84,7 @@ std::vector<Column> columns(const DiscreteElement&) {
            .shown = Shown::count,
            .if_any = "{} taps ended at the cap on seconds, not at rest: raise most_seconds",
            .if_none = "no tap ended at the cap on seconds"},
-          {.name = "dropped_offsets",
-           .units = "1",
-           .long_name = "lateral offsets of the tap that found no room / number of spheres",
-           .source = "jostle",
-           .shown = Shown::share,
-           .if_any = "shakes dropped {} of their lateral offsets for want of room"}};
+          dropped_offsets_column()};
 }
 
 }  // namespace jostle::inline engine

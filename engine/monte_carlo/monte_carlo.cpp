@@ -1,5 +1,7 @@
 #include "engine/monte_carlo/monte_carlo.hpp"
 
+#include "engine/dropped_offsets.hpp"
+
 namespace jostle::inline engine {
 
 const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& start) {
@@ -26,12 +28,7 @@ std::vector<Column> columns(const MonteCarlo&) {
            .shown = Shown::count,
            .if_any = "{} relaxations ended at the cap on sweeps: raise max_sweeps",
            .if_none = "no relaxation ended at the cap on sweeps"},
-          {.name = "dropped_offsets",
-           .units = "1",
-           .long_name = "lateral offsets of the tap that found no room / number of spheres",
-           .source = "jostle",
-           .shown = Shown::share,
-           .if_any = "shakes dropped {} of their lateral offsets for want of room"}};
+          dropped_offsets_column()};
 }
 
 }  // namespace jostle::inline engine

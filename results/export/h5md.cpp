@@ -9,6 +9,7 @@
 
 #include "engine/bed/boundary.hpp"
 #include "results/checkpoints/temporary_file.hpp"
+#include "results/file/particles.hpp"
 #include "results/file/study_writer.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
@@ -68,12 +69,7 @@ std::vector<double> edges(const ExportedFrame& frame) {
 
 void write_box(hid_t trajectory, Frames frames, const FrameTimes& times) {
   const Hdf5Handle box = create_group(trajectory, "box");
-  write_attribute(box, "dimension", std::uint32_t{3});
-  const Boundary boundary(frames.front().packing.container);
-  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
-  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
-                                            word(boundary.periodic_z)};
-  write_attribute(box, "boundary", words);
+  write_boundary(box, frames.front().packing.container);
   const Hdf5Handle element = create_group(box, "edges");
   times.link(element);
   write_values<double>(element, frames, {3, 3}, edges);

@@ -16,15 +16,24 @@ namespace {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
+}  // namespace
+
+void write_boundary(const Hdf5Handle& box, const Container& container) {
+  const Boundary boundary(container);
+  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
+  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
+                                            word(boundary.periodic_z)};
+  write_attribute(box, "dimension", std::uint32_t{3});
+  write_attribute(box, "boundary", words);
+}
+
+namespace {
+
 /// H5MD's box. An open top ends at the highest point any frame reaches.
 void write_box(hid_t group, const Container& container, double highest) {
   const Boundary boundary(container);
-  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
   const Hdf5Handle box = create_group(group, "box");
-  write_attribute(box, "dimension", std::uint32_t{3});
-  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
-                                            word(boundary.periodic_z)};
-  write_attribute(box, "boundary", words);
+  write_boundary(box, container);
   const std::vector<double> edges = {boundary.width_x, boundary.width_y,
                                      boundary.periodic_z ? boundary.height : highest};
   const Hdf5Handle dataset = write_numbers(box, "edges", edges);

@@ -161,9 +161,8 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
 }
 
 RunState state_named(const std::string& name) {
-  if (name == "running") return RunState::running;
-  if (name == "interrupted") return RunState::interrupted;
-  if (name == "complete") return RunState::complete;
+  for (const RunState state : {RunState::running, RunState::interrupted, RunState::complete})
+    if (name == name_of(state)) return state;
   throw Hdf5Error("unknown state of the run: \"" + name + "\"");
 }
 

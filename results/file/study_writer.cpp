@@ -232,8 +232,7 @@ void write_study(hid_t file, const Study& study) {
 void write_provenance(hid_t file, const FileContent& content, RunState state) {
   const Hdf5Handle group = create_group(file, "provenance");
   write_attribute(group, "run_id", content.run_id);
-  constexpr const char* names[] = {"running", "interrupted", "complete"};
-  write_attribute(group, "state", std::string(names[static_cast<int>(state)]));
+  write_attribute(group, "state", std::string(name_of(state)));
   const std::array<std::uint32_t, 2> shard = {content.shard.index, content.shard.count};
   write_attribute<std::uint32_t>(group, "shard", shard);
   std::vector<std::uint32_t> numbers(content.provenance.size());

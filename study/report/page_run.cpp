@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "results/export/container_text.hpp"
 #include "study/report/page_json.hpp"
 #include "study/report/thinning.hpp"
 #include "study/scenes/stored_scene.hpp"
@@ -16,21 +17,8 @@ constexpr std::size_t most_listed = 50;       // failures, processes
 constexpr std::size_t most_points = 2000;     // that are named
 constexpr std::size_t longest_scene = 60000;  // bytes
 
-const char* name(RunState state) {
-  switch (state) {
-    case RunState::running:
-      return "running";
-    case RunState::interrupted:
-      return "interrupted";
-    case RunState::complete:
-      return "complete";
-  }
-  return "unknown";
-}
-
 Json page_container(const Container& container) {
-  const char* const kinds[] = {"periodic", "walls", "cylinder", "fully_periodic"};
-  return {{"kind", kinds[container.index()]},
+  return {{"kind", container_text(container).kind},
           {"width_x", page_number(width_x(container))},
           {"width_y", page_number(width_y(container))}};
 }
@@ -129,7 +117,7 @@ Json page_run(const ResultsFile& file, const std::string& digest,
         fmt::format("{} of {} sweep points are named", most_points, study.points.size()));
   }
   return {{"file", page_text(std::filesystem::path(file.path()).filename().string())},
-          {"state", name(file.state())},
+          {"state", name_of(file.state())},
           {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
           {"digest", digest},
           {"realizations_a_point", study.realizations},

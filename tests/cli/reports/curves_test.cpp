@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 
 using namespace jostle;
 

@@ -1,4 +1,4 @@
-#include "cli/reports/text_table.hpp"
+#include "cli/tables/text_table.hpp"
 
 #include <catch2/catch.hpp>
 

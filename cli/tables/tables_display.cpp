@@ -1,9 +1,9 @@
-#include "cli/reports/tables_display.hpp"
+#include "cli/tables/tables_display.hpp"
 
 #include <fmt/format.h>
 
 #include "cli/reports/fit_output.hpp"
-#include "cli/reports/table_text.hpp"
+#include "cli/tables/table_text.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 

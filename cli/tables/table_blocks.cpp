@@ -1,4 +1,4 @@
-#include "cli/reports/table_blocks.hpp"
+#include "cli/tables/table_blocks.hpp"
 
 #include <algorithm>
 #include <variant>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/reports/layout.hpp"
+#include "cli/tables/layout.hpp"
 #include "study/scenes/scene_tables.hpp"
 
 namespace jostle::inline cli {

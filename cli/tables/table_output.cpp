@@ -1,10 +1,10 @@
-#include "cli/reports/table_output.hpp"
+#include "cli/tables/table_output.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "cli/reports/table_blocks.hpp"
+#include "cli/tables/table_blocks.hpp"
 
 namespace jostle::inline cli {
 

@@ -1,10 +1,10 @@
-#include "cli/reports/text_table.hpp"
+#include "cli/tables/text_table.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <numeric>
 
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 
 namespace jostle::inline cli {
 namespace {

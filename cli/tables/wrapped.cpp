@@ -1,4 +1,4 @@
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/wrapped.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "cli/reports/table_text.hpp"
+#include "cli/tables/table_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "cli/reports/table_blocks.hpp"
-#include "cli/reports/text_table.hpp"
-#include "cli/reports/wrapped.hpp"
+#include "cli/tables/table_blocks.hpp"
+#include "cli/tables/text_table.hpp"
+#include "cli/tables/wrapped.hpp"
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "fitting/value_text.hpp"

@@ -1,9 +1,9 @@
-#include "cli/reports/table_output.hpp"
+#include "cli/tables/table_output.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "cli/reports/table_text.hpp"
+#include "cli/tables/table_text.hpp"
 
 using namespace jostle;
 
