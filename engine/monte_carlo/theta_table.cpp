@@ -67,9 +67,7 @@ double angle_with_integral(const PolarMove& move, double low, double high, doubl
   return theta;
 }
 
-}  // namespace
-
-std::vector<double> make_theta_table(const PolarMove& move) {
+std::vector<double> integrate_theta_table(const PolarMove& move) {
   constexpr int intervals = 2048;
   const double width = largest_angle(move) / intervals;
   // tail[k]: weight of the law beyond k x width, summed from the small end.
@@ -89,6 +87,22 @@ std::vector<double> make_theta_table(const PolarMove& move) {
   }
   table.back() = 0;
   return table;
+}
+
+}  // namespace
+
+// It takes as long as 20 000 trials, and all realizations of a scene have one law: every thread
+// keeps the table that it made last.
+std::vector<double> make_theta_table(const PolarMove& move) {
+  struct Kept {
+    ThetaLaw law{};
+    double theta0 = 0;
+    std::vector<double> table;
+  };
+  thread_local Kept kept;
+  if (kept.table.empty() || kept.law != move.law || kept.theta0 != move.theta0)
+    kept = {move.law, move.theta0, integrate_theta_table(move)};
+  return kept.table;
 }
 
 }  // namespace jostle::inline engine
