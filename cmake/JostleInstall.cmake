@@ -1,20 +1,31 @@
-# cmake --install gives the program, the libraries with their public headers, the scenes and the schema,
-# and find_package(jostle).
+# cmake --install gives the program with its manual pages and completions, the libraries with their
+# public headers, the scenes, the schema and the documentation, and find_package(jostle). Components,
+# which are packages of Debian: jostle, dev, python.
 include(CMakePackageConfigHelpers)
 get_property(libraries GLOBAL PROPERTY jostle_libraries)
 
-install(TARGETS ${libraries} EXPORT jostle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS jostle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS jostle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT jostle)
+install(DIRECTORY config/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle COMPONENT jostle)
+install(FILES config/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle COMPONENT jostle)
+install(DIRECTORY ${JOSTLE_MANUAL}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT jostle)
+install(FILES ${JOSTLE_MANUAL}/bash/jostle COMPONENT jostle
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+# Debian's zsh looks in one folder for itself and another for packages.
+install(FILES ${JOSTLE_MANUAL}/zsh/_jostle COMPONENT zsh
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${JOSTLE_MANUAL}/zsh/_jostle COMPONENT jostle EXCLUDE_FROM_ALL
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT jostle)
+install(FILES README.md CITATION.cff report/licences.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT jostle)
+
+install(TARGETS ${libraries} EXPORT jostle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 include(PublicHeaders)
 foreach(header ${JOSTLE_PUBLIC_HEADERS})
   get_filename_component(folder ${header} DIRECTORY)
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle/${folder})
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle/${folder} COMPONENT dev)
 endforeach()
-install(DIRECTORY config/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle)
-install(FILES config/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle)
 install(EXPORT jostle NAMESPACE jostle:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle
-        FILE jostle-targets.cmake)
-
+        FILE jostle-targets.cmake COMPONENT dev)
 configure_package_config_file(
   cmake/jostle-config.cmake.in ${PROJECT_BINARY_DIR}/jostle-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle)
@@ -22,4 +33,4 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/jostle-config-version.cma
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/jostle-config.cmake
               ${PROJECT_BINARY_DIR}/jostle-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle)
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle COMPONENT dev)

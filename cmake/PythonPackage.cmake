@@ -11,4 +11,4 @@ file(WRITE ${metadata}/METADATA "Metadata-Version: 2.1\nName: jostle\nVersion: $
 file(WRITE ${metadata}/entry_points.txt
      "[xarray.backends]\njostle = jostle.xarray_engine:JostleBackendEntrypoint\n")
 install(DIRECTORY python/jostle ${metadata} DESTINATION ${JOSTLE_PYTHON_DIR}
-        PATTERN __pycache__ EXCLUDE)
+        COMPONENT python PATTERN __pycache__ EXCLUDE)

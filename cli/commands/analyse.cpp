@@ -289,7 +289,8 @@ void add_analyse(Command& app, int& code) {
   AnalyseArguments& a = *arguments;
   command.add_option("input", a.inputs, "Results, one file or several")
       .required()
-      .check(file_or_kind_fault, "FILE");
+      .check(file_or_kind_fault, "FILE")
+      .offers_files({"h5"});
   command.add_option("--sweep-point", a.point,
                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
   add_table_output(command, a.output);

@@ -175,7 +175,9 @@ void check(const CheckArguments& arguments) {
 void add_check(Command& app, int& code) {
   Command command = app.add_command("check", "Say what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
-  command.add_option("scene", arguments->scene, "The scene, a JSON file").required();
+  command.add_option("scene", arguments->scene, "The scene, a JSON file")
+      .required()
+      .offers_files({"json"});
   command.add_threads(arguments->threads,
                       "Estimate for so many (default: the CPUs this process may use)");
   command.add_flag("--no-pilot", arguments->no_pilot,

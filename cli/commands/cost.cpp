@@ -141,7 +141,7 @@ void add_cost(Command& app, int& code) {
   Command command = app.add_command("cost", "What a scene's accuracy costs in time");
   auto arguments = std::make_shared<CostArguments>();
   CostArguments& a = *arguments;
-  command.add_option("scene", a.scene, "The scene, a JSON file").required();
+  command.add_option("scene", a.scene, "The scene, a JSON file").required().offers_files({"json"});
   command.add_option("--observable", a.observable,
                      "What is to be accurate (default: bottom_fraction, or the first observed)");
   command.add_option("--target", a.target, "Recommend the cheapest way to this total error")
@@ -157,7 +157,8 @@ void add_cost(Command& app, int& code) {
                      "Its number, or POINTER=VALUE of the sweep (default: the first)");
   command.add_threads(a.threads);
   command.add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
-      .file_to_write();
+      .file_to_write()
+      .offers_files({"h5"});
   command.add_flag("--resume", a.resume, "Go on with the output file");
   command.add_flag(
       "--force", a.force,
@@ -172,9 +173,12 @@ void add_cost(Command& app, int& code) {
       "Example:\n"
       "  jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 30m\n"
       "\n"
-      "A ladder of settings is run for a few taps, in pairs from the same packings. Of Monte Carlo:\n"
-      "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour between\n"
-      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. docs/accuracy.md\n"
+      "A ladder of settings is run for a few taps, in pairs from the same packings. Of Monte "
+      "Carlo:\n"
+      "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour "
+      "between\n"
+      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. "
+      "docs/accuracy.md\n"
       "says how to read it.");
   command.run([arguments, &code] { code = run_cost(*arguments); });
 }

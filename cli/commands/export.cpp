@@ -155,7 +155,8 @@ void add_export(Command& app, int& code) {
   ExportArguments& a = *arguments;
   command.add_option("file", a.input, "Results, or a packing in extended XYZ")
       .required()
-      .existing_file();
+      .existing_file()
+      .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--format", a.format,
                   "extxyz, lammps (text dump), vtp (VTK points), h5md; results: all of the run")

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -21,14 +22,18 @@
 #include "study/tables/curve_file.hpp"
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
+#include "study/tables/law_formula.hpp"
+#include "study/tables/own_law.hpp"
 
 namespace jostle::inline cli {
 
 namespace {
 
 struct FitArguments {
-  std::string input, observable, point, model = "all", range, csv;
+  std::string input, observable, point, model, range, csv;
   std::vector<std::string> fixed;
+  OwnLaw law;
+  std::vector<std::string> start, bounds;  // of the law
   std::string resample = "none";
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
@@ -40,31 +45,89 @@ struct FitArguments {
   bool resampling_asked_for = false;
 };
 
-std::vector<std::unique_ptr<Model>> chosen_models(const std::string& name) {
-  auto models = models_named(name);
-  if (!models.empty()) return models;
+std::vector<std::string> model_names() {
   std::vector<std::string> names{"all"};
   for (const auto& model : all_models()) names.push_back(model->name());
+  return names;
+}
+
+std::vector<std::unique_ptr<Model>> models_of_name(const std::string& name) {
+  auto models = models_named(name);
+  if (!models.empty()) return models;
+  const std::vector<std::string> names = model_names();
   throw BadInput(fmt::format("--model {}: there is none; there are {}.{}", name,
                              joined(names, ", "), did_you_mean(name, names)));
 }
 
-std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {
-  std::map<std::string, double> fixed;
+using NamedNumber = std::pair<std::string, double>;
+
+std::vector<NamedNumber> named_numbers(const std::string& option,
+                                       const std::vector<std::string>& texts) {
+  std::vector<NamedNumber> all;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     char* end = nullptr;
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
     const double number = std::strtod(value.c_str(), &end);
     if (value.empty() || *end != '\0' || !std::isfinite(number)) {
-      throw BadInput(fmt::format("--fix {}: not NAME=NUMBER", text));
+      throw BadInput(fmt::format("{} {}: not NAME=NUMBER", option, text));
     }
-    const std::string name = text.substr(0, equals);
+    all.emplace_back(text.substr(0, equals), number);
+  }
+  return all;
+}
+
+std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {
+  std::map<std::string, double> fixed;
+  for (const auto& [name, number] : named_numbers("--fix", texts)) {
     if (!fixed.emplace(name, number).second) {
-      throw BadInput(fmt::format("--fix {}: {} is fixed already", text, name));
+      throw BadInput(fmt::format("--fix {}={}: {} is fixed already", name, number, name));
     }
   }
   return fixed;
+}
+
+std::map<std::string, ParameterBounds> parameter_bounds(const std::vector<std::string>& texts) {
+  std::map<std::string, ParameterBounds> bounds;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos) {
+      throw BadInput(fmt::format("--bounds {}: not NAME=LOWER:UPPER, as tau=0:", text));
+    }
+    const FitRange range = read_range("--bounds", text.substr(equals + 1));
+    if (!bounds.emplace(text.substr(0, equals), ParameterBounds{range.first, range.last}).second) {
+      throw BadInput(fmt::format("--bounds {}: it has bounds already", text));
+    }
+  }
+  return bounds;
+}
+
+/// Of --law; a parameter that is fixed begins there.
+std::unique_ptr<Model> own_law(const FitArguments& arguments) {
+  OwnLaw law = arguments.law;
+  law.start = named_numbers("--start", arguments.start);
+  law.bounds = parameter_bounds(arguments.bounds);
+  const std::vector<FormulaName> words = names_in(law.formula);
+  for (const auto& [name, value] : fixed_parameters(arguments.fixed)) {
+    const auto started = std::ranges::find(law.start, name, &NamedNumber::first);
+    if (started != law.start.end()) {
+      started->second = value;
+    } else if (std::ranges::find(words, name, &FormulaName::text) != words.end()) {
+      law.start.emplace_back(name, value);
+    }
+  }
+  return make_own_law(law);
+}
+
+std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments) {
+  const bool own = !arguments.law.formula.empty();
+  std::vector<std::unique_ptr<Model>> models;
+  if (own) models.push_back(own_law(arguments));
+  if (own && arguments.model.empty()) return models;
+  for (auto& model : models_of_name(arguments.model.empty() ? "all" : arguments.model)) {
+    models.push_back(std::move(model));
+  }
+  return models;
 }
 
 std::vector<FitSource> read_sources(const FitArguments& arguments) {
@@ -131,7 +194,7 @@ Json source_json(const FittedCurve& fitted) {
 
 int run_fits(const FitArguments& arguments) {
   require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
-  const auto models = chosen_models(arguments.model);
+  const auto models = chosen_models(arguments);
   const std::vector<FitSource> sources = read_sources(arguments);
   if (!arguments.csv.empty() && sources.size() > 1) {
     throw BadInput("--csv holds one curve: choose it with --sweep-point");
@@ -168,6 +231,23 @@ int run_fits(const FitArguments& arguments) {
   return any ? exit_ok : exit_bad_input;
 }
 
+/// Also what else of its command line has no sense without a law of one's own.
+void add_law_options(const Command& app, FitArguments& a) {
+  Command command = app;
+  const Option law = command.add_option(
+      "--law", a.law.formula, "A law of your own, a formula of t: \"X0 + a*log(1 + t/tau)\"");
+  command.add_option("--start", a.start, "NAME=NUMBER,...: where its parameters begin")
+      .separated_by(',')
+      .needs(law);
+  command
+      .add_option("--bounds", a.bounds,
+                  "NAME=LOWER:UPPER,...: between which they stay, as tau=0: for a positive one")
+      .separated_by(',')
+      .needs(law);
+  command.add_option("--law-name", a.law.name, "What it is called and kept as (default own)")
+      .needs(law);
+}
+
 }  // namespace
 
 void add_fit(Command& app, int& code) {
@@ -178,12 +258,17 @@ void add_fit(Command& app, int& code) {
       .add_option("input", a.input,
                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
       .required()
-      .existing_file();
+      .existing_file()
+      .offers_files({"h5", "csv", "txt"});
   command.add_option("--observable", a.observable, "Which column of the results");
   command.add_option("--sweep-point", a.point,
                      "Its number, or POINTER=VALUE of the sweep (default: every point)");
-  command.add_option("--model", a.model,
-                     "A law of docs/fitting.md, or all: every law of relaxation (default)");
+  command
+      .add_option("--model", a.model,
+                  "A law of docs/fitting.md, or all: every law of relaxation (default); with "
+                  "--law also that")
+      .offers(model_names());
+  add_law_options(command, a);
   command.add_option("--range", a.range,
                      "FIRST:LAST of t, either may be left out (default: results from tap 1)");
   command.add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
@@ -214,6 +299,7 @@ void add_fit(Command& app, int& code) {
       "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
+      "  jostle fit measured.csv --law \"X0 + a*log(1 + t/tau)\" --start X0=0.58,a=0.01,tau=10\n"
       "  jostle fit experiments.csv --realizations --model inverse_log      a column an "
       "experiment\n"
       "\n"

@@ -179,7 +179,7 @@ void info(const InfoArguments& arguments) {
 void add_info(Command& app, int& code) {
   Command command = app.add_command("info", "Summarise a results file, also of a live run");
   auto arguments = std::make_shared<InfoArguments>();
-  command.add_option("file", arguments->file, "The results").required();
+  command.add_option("file", arguments->file, "The results").required().offers_files({"h5"});
   const Option digest =
       command.add_flag("--digest", arguments->digest,
                        "Print the SHA-256 of the data alone, the same for equal runs");

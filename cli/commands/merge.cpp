@@ -50,10 +50,12 @@ void add_merge(Command& app, int& code) {
       .add_option(
           "files", arguments->inputs,
           "Results: the shards, in any order, or runs of one scene with other values of its sweep")
-      .required();
+      .required()
+      .offers_files({"h5"});
   command.add_option("-o,--output", arguments->output, "The file to write")
       .required()
-      .file_to_write();
+      .file_to_write()
+      .offers_files({"h5"});
   command.add_flag("--force", arguments->force, "Replace the output file if it exists");
   command.footer(
       "Examples:\n"

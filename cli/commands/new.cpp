@@ -28,14 +28,19 @@ struct NewArguments {
   bool force = false;
 };
 
-std::string text_of(const std::string& name) {
+std::vector<std::string> scene_names() {
   std::vector<std::string> names;
+  for (const ShippedScene& scene : shipped_scenes()) names.emplace_back(scene.name);
+  return names;
+}
+
+std::string text_of(const std::string& name) {
   for (const ShippedScene& scene : shipped_scenes()) {
     if (scene.name == name || fmt::format("{}.json", scene.name) == name) {
       return std::string(scene.text);
     }
-    names.emplace_back(scene.name);
   }
+  const std::vector<std::string> names = scene_names();
   throw BadInput(fmt::format("--from {}: there is no such scene.{} There are\n  {}", name,
                              did_you_mean(name, names), joined(names, "\n  ")));
 }
@@ -101,8 +106,10 @@ void add_new(Command& app, int& code) {
   Command command = app.add_command("new", "Write a scene of your own, from one that is shipped");
   auto arguments = std::make_shared<NewArguments>();
   command.add_option("name", arguments->name, "Of the scene: NAME.json is written").required();
-  command.add_option("--from", arguments->from,
-                     "A shipped scene (default: quickstart); an unknown name lists them");
+  command
+      .add_option("--from", arguments->from,
+                  "A shipped scene (default: quickstart); an unknown name lists them")
+      .offers(scene_names());
   command.add_flag("--force", arguments->force, "Replace files that exist");
   command.footer(
       "Examples:\n"

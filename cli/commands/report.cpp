@@ -58,12 +58,14 @@ void add_report(Command& app, int& code) {
   ReportArguments& a = *arguments;
   command.add_option("file", a.inputs, "Results; several are shown one after another")
       .required()
-      .existing_file();
+      .existing_file()
+      .offers_files({"h5"});
   command
       .add_option("-o,--output", a.output,
                   "The page to write (default: the first input's name with .html, in the current "
                   "folder)")
-      .file_to_write();
+      .file_to_write()
+      .offers_files({"html"});
   add_live(command, a.live);
   command.add_flag("--force", a.force, "Replace a file that exists");
   command.add_threads(a.threads);

@@ -107,8 +107,8 @@ std::string resume_command(const RunArguments& arguments) {
 std::string process_line(const Progress& progress, Seconds elapsed, int threads,
                          const std::vector<StudyPoint>& points) {
   const std::string& unit = points.front().unit;
-  const bool one_engine = std::ranges::all_of(
-      points, [&](const StudyPoint& point) { return point.unit == unit; });
+  const bool one_engine =
+      std::ranges::all_of(points, [&](const StudyPoint& point) { return point.unit == unit; });
   std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
                                  counted(static_cast<std::uint64_t>(threads), "thread"));
   const auto units = static_cast<double>(progress.units_done);
@@ -223,11 +223,14 @@ int run(const RunArguments& arguments) {
 }
 
 void add_options(Command& command, RunArguments& arguments) {
-  command.add_option("scene", arguments.scene, "The scene, a JSON file").required();
+  command.add_option("scene", arguments.scene, "The scene, a JSON file")
+      .required()
+      .offers_files({"json"});
   command
       .add_option("-o,--output", arguments.output,
                   "The results (default: the scene's name + .h5, here)")
-      .file_to_write();
+      .file_to_write()
+      .offers_files({"h5"});
   command.add_threads(arguments.threads);
   command.add_flag("--resume", arguments.resume,
                    "Go on with the output file, or begin it if there is none");

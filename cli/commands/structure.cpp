@@ -119,7 +119,8 @@ void add_structure(Command& app, int& code) {
   StructureArguments& a = *arguments;
   command.add_option("input", a.inputs, "Results, or packings in extended XYZ, one a realization")
       .required()
-      .existing_file();
+      .existing_file()
+      .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--part", a.parts,
                   "What to measure, separated by commas (default: what the scene names, else all): "

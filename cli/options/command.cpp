@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "cli/options/command_text.hpp"
+
 namespace jostle::inline cli {
 
 namespace {
@@ -34,6 +36,14 @@ std::string file_name_fault(const std::string& text) {
   return fmt::format("\"{}\" is no file's name", text);
 }
 
+// The parser has no place for what is offered: it is kept as the name of a check that finds no
+// fault. A later one counts.
+void note_offer(CLI::Option& option, const char* kind, const std::vector<std::string>& texts) {
+  std::string name = kind;
+  for (const std::string& text : texts) name += " " + text;
+  option.check(CLI::Validator([](std::string&) { return std::string(); }, "", name));
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -56,6 +66,11 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
+Option& Option::needs(const Option& other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
 Option& Option::between(int least, int most) {
   option_->check(CLI::Range(least, most));
   return *this;
@@ -71,21 +86,32 @@ Option& Option::positive_number() {
 
 Option& Option::one_of(const std::vector<std::string>& words) {
   option_->check(CLI::IsMember(words));
-  return *this;
+  return offers(words);
 }
 
 Option& Option::existing_file() {
   option_->check(CLI::ExistingFile);
-  return *this;
+  return offers_files({});
 }
 
 Option& Option::file_to_write() {
-  return check(file_name_fault, "");
+  check(file_name_fault, "");
+  return offers_files({});
 }
 
 Option& Option::check(std::function<std::string(const std::string& text)> fault,
                       const std::string& type) {
   option_->check(CLI::Validator(std::move(fault), type));
+  return *this;
+}
+
+Option& Option::offers(const std::vector<std::string>& words) {
+  note_offer(*option_, words_offered, words);
+  return *this;
+}
+
+Option& Option::offers_files(const std::vector<std::string>& suffixes) {
+  note_offer(*option_, files_offered, suffixes);
   return *this;
 }
 

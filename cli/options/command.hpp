@@ -32,6 +32,7 @@ class Option {
   Option& environment(const std::string& variable);
   Option& separated_by(char character);
   Option& excludes(const Option& other);
+  Option& needs(const Option& other);
 
   Option& between(int least, int most);
   Option& whole_from(std::uint64_t least);
@@ -42,6 +43,11 @@ class Option {
   Option& file_to_write();
   /// `fault` says what is wrong with a text; nothing, if nothing. `type` is shown in the help.
   Option& check(std::function<std::string(const std::string& text)> fault, const std::string& type);
+
+  /// What completion offers; other values are taken too.
+  Option& offers(const std::vector<std::string>& words);
+  /// Names of files with one of these suffixes, "h5"; of any file, if there are none.
+  Option& offers_files(const std::vector<std::string>& suffixes);
 
   /// How often it was given.
   std::size_t count() const;

@@ -74,6 +74,10 @@ Command CommandLine::program() {
   return Command(*app_);
 }
 
+CommandText CommandLine::text() const {
+  return text_of(*app_);
+}
+
 void CommandLine::set_version(const std::string& text) {
   app_->set_version_flag("--version", text);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/options/command.hpp"
+#include "cli/options/command_text.hpp"
 
 namespace jostle::inline cli {
 
@@ -15,6 +16,9 @@ class CommandLine {
 
   Command program();
   void set_version(const std::string& text);
+
+  /// All that has been described.
+  CommandText text() const;
 
   /// What is to be printed instead of running a command; empty where one was run.
   struct Outcome {

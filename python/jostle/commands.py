@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -129,8 +130,10 @@ def _paths(results: Results | Path | Sequence[Path]) -> list[Path]:
     return [one.path if isinstance(one, Results) else one for one in results]
 
 
-def fit(results: Results | Path, observable: str | None = None, *, model: str = "all",
-        sweep_point: int | str | None = None, range: str | None = None,
+def fit(results: Results | Path, observable: str | None = None, *, model: str | None = None,
+        law: str | None = None, start: Mapping[str, float] | None = None,
+        bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
+        law_name: str | None = None, sweep_point: int | str | None = None, range: str | None = None,
         fix: Mapping[str, float] | None = None, realizations: bool = False, resample: str | None = None,
         resamples: int | None = None, seed: int | None = None, store: bool = True, live: bool = False,
         program: Path | None = None) -> list[FittedCurve]:
@@ -138,12 +141,22 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str = 
 
     Kept in the file under /fits unless store=False; a Results that is open shows them once it is opened
     anew. range: "first:last" of t. The laws and what a report means: docs/fitting.md.
+
+    model: a law, or "all" (default). law: one of your own, a formula of t and of parameters that start at
+    `start` and stay between `bounds`, (lower, upper), None for no bound; it is called law_name ("own").
     """
-    fixed = [word for name, value in (fix or {}).items() for word in ("--fix", f"{name}={value!r}")]
-    done = call(["fit", *_paths(results), "--json", *fixed,
-                 *_options(observable=observable, model=model, sweep_point=sweep_point, range=range,
-                           realizations=realizations, resample=resample, resamples=resamples, seed=seed,
-                           no_store=not store, live=live)], program)
+    named = [word for option, values in (("--fix", fix), ("--start", start))
+             for name, value in (values or {}).items() for word in (option, f"{name}={float(value)!r}")]
+    for name, (lower, upper) in (bounds or {}).items():
+        ends = ["" if end is None or math.isinf(end) else repr(float(end)) for end in (lower, upper)]
+        named += ["--bounds", f"{name}={':'.join(ends)}"]
+    if law is not None:
+        named.append(f"--law={law}")  # one word: it may begin with a minus
+    done = call(["fit", *_paths(results), "--json", *named,
+                 *_options(observable=observable, model=model, law_name=law_name,
+                           sweep_point=sweep_point, range=range, realizations=realizations,
+                           resample=resample, resamples=resamples, seed=seed, no_store=not store,
+                           live=live)], program)
     return fitted_curves(json.loads(done.stdout))
 
 

@@ -4,6 +4,7 @@ import json
 import math
 import unittest
 
+import h5py
 from support import BAD_INPUT, OK, TINY, Case, changed
 
 TRUTH = {"X_inf": 0.64, "dX": 0.056, "B": 0.3, "tau": 10.0}
@@ -111,6 +112,59 @@ class Measured(Case):
                 self.assertIn(message, result.stderr + result.stdout)
 
 
+class OwnLaw(Measured):
+    """A formula of the user's own, on the curves of the law that it repeats."""
+
+    LAW = ("--law", "Xi - d/(1 + B*log(1 + t/tau))", "--start", "Xi=0.6,d=0.1", "--start", "B=1,tau=3",
+           "--bounds", "B=0:,tau=0:")
+
+    def test_it_is_fitted_as_the_law_that_it_repeats(self):
+        self.write(self.table(), "data.csv")
+        fits = self.fit_json("data.csv", "--model", "inverse_log", *self.LAW, "--law-name", "mine")
+        own, built_in = fits["curves"][0]["fits"]
+        self.assertEqual((own["model"], own["formula"]), ("mine", self.LAW[1]))
+        self.assertEqual(own["order"], ["Xi", "d", "B", "tau"])
+        for mine, theirs in zip(own["order"], built_in["order"]):
+            a, b = own["parameters"][mine], built_in["parameters"][theirs]
+            self.assertAlmostEqual(a["value"] / b["value"], 1, places=8)
+            self.assertEqual(a["identifiability"], b["identifiability"])
+            for end in (0, 1):
+                width = b["interval_95"][1] - b["interval_95"][0]
+                self.assertLess(abs(a["interval_95"][end] - b["interval_95"][end]), 1e-5 * width)
+        alone = self.fit_json("data.csv", *self.LAW)["curves"][0]["fits"]
+        self.assertEqual([fit["model"] for fit in alone], ["own"])
+        text = self.jostle("fit", "data.csv", *self.LAW).stdout
+        self.assertIn("own: X = Xi - d/(1 + B*log(1 + t/tau))  [own law]", text)
+
+    def test_a_fixed_parameter_needs_no_start(self):
+        self.write(self.table(), "data.csv")
+        own = self.fit_json("data.csv", "--law", "Xi - d/(1 + B*log(1 + t/tau))", "--start",
+                            "Xi=0.6,d=0.1,B=1", "--fix", "tau=10", "--bounds", "B=0:")
+        tau = own["curves"][0]["fits"][0]["parameters"]["tau"]
+        self.assertEqual((tau["value"], tau["identifiability"]), (10.0, "fixed"))
+
+    def test_what_is_wrong_is_named(self):
+        self.write(self.table(), "data.csv")
+        for arguments, message in (
+                (["--law", "a*lgo(t)", "--start", "a=1"], "there is no function lgo; there are abs"),
+                (["--law", "a*t + b", "--start", "a=1"], "the parameter b has no start"),
+                (["--law", "a*t"], "the parameter a has no start"),
+                (["--law", "a + b", "--start", "a=1,b=1"], "there is no t in it"),
+                (["--law", "a*(t", "--start", "a=1"], "cannot be read"),
+                (["--law", "a*t", "--start", "a=1,t=2"], "no parameter can be called t"),
+                (["--law", "a*t", "--start", "a=1,a=2"], "a has two starts"),
+                (["--law", "a*t", "--start", "a"], "--start a: not NAME=NUMBER"),
+                (["--law", "a*t", "--start", "a=1", "--bounds", "a"], "--bounds a: not NAME=LOWER:UPPER"),
+                (["--law", "a*t", "--start", "a=1", "--bounds", "a=2:3"], "not between its bounds"),
+                (["--law", "a*t", "--start", "a=1", "--fix", "q=2"], "no parameter q"),
+                (["--law", "a*t", "--start", "a=1", "--law-name", "kww"], "cannot be called"),
+                (["--law", "a*log(t - 3)", "--start", "a=1"], "not finite where it starts, at t = 1"),
+                (["--start", "a=1"], "--law")):
+            with self.subTest(arguments=arguments):
+                result = self.jostle("fit", "data.csv", *arguments, expect=BAD_INPUT)
+                self.assertIn(message, result.stderr + result.stdout)
+
+
 class Results(Case):
     def setUp(self):
         super().setUp()
@@ -175,6 +229,20 @@ class Kept(Case):
         self.assertEqual(self.tables(), ["fits/point_0000/mean_height/kww"] +
                          [f"fits/point_0001/mean_height/{law}" for law in laws])
         self.assertEqual(self.digest("tiny.h5"), digest)
+
+    def test_an_own_law_is_kept_with_its_formula(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
+        self.run_scene()
+        for name in ((), ("--law-name", "line")):
+            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--sweep-point", "0", "--law",
+                        "a + b*log(t)", "--start", "a=4,b=-0.1", *name, "--resample", "jackknife")
+        self.assertEqual(self.tables(), ["fits/point_0000/mean_height/line",
+                                         "fits/point_0000/mean_height/own"])
+        with h5py.File(self.folder / "tiny.h5") as file:
+            table = file["fits/point_0000/mean_height/own"]
+            self.assertEqual(table.attrs["note_law"], "a + b*log(t)")
+            self.assertEqual([name.decode() for name in table["parameter"]], ["a", "b"])
+            self.assertEqual([unit.decode() for unit in table["units"]], ["X", "X"])
 
     def test_a_trial_leaves_what_is_kept(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))

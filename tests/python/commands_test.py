@@ -205,6 +205,19 @@ class Derive(Case):
         (curve,) = jostle.fit("curve.csv", model="kww")
         self.assertAlmostEqual(curve["kww"].parameters["tau"].value, 40, places=4)
 
+    def test_a_law_of_ones_own_is_fitted_and_stored(self):
+        (curve,) = jostle.fit(self.results, "mean_height", law="-a*log(t/tau)", start={"a": 0.1, "tau": 1e4},
+                              bounds={"tau": (0, None)}, law_name="fall")
+        fit = curve["fall"]
+        self.assertEqual((fit.formula, fit.refused, list(fit.parameters)), ("-a*log(t/tau)", None, ["a", "tau"]))
+        table = self.open("tiny.h5").tables.one("fits", "mean_height", "fall")
+        self.assertEqual(table.notes["law"], "-a*log(t/tau)")
+        taps = self.results.points[0].tap[1:]
+        slope, level = np.polyfit(np.log(taps), self.results.points[0].mean["mean_height"][1:], 1)
+        self.assertAlmostEqual(fit.parameters["a"].value / -slope, 1, places=6)
+        with self.assertRaisesRegex(jostle.ProgramError, "the parameter b has no start"):
+            jostle.fit(self.results, "mean_height", law="a*t + b", start={"a": 1})
+
     def test_analyses_are_the_same_returned_and_stored(self):
         returned = jostle.analyse(self.results, "ageing", "mean_height", waiting_times=[0, 5],
                                   lags=[1, 2, 5, 10])
