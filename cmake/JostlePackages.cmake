@@ -3,7 +3,9 @@
 # bytes in any folder.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME jostle)
-set(CPACK_PACKAGE_CONTACT "The jostle authors <maintainers@users.noreply.github.com>")
+set(JOSTLE_PACKAGE_CONTACT "The jostle authors <jostle@example.org>"
+    CACHE STRING "Whom users of the Debian packages write to")
+set(CPACK_PACKAGE_CONTACT ${JOSTLE_PACKAGE_CONTACT})
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -26,11 +28,10 @@ set(CPACK_DEBIAN_JOSTLE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_JOSTLE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_JOSTLE_PACKAGE_SUGGESTS "libjostle-dev, python3-jostle")
 set(CPACK_COMPONENT_JOSTLE_DESCRIPTION
-    "${PROJECT_DESCRIPTION}
- Runs many realizations of a bed of spheres that is tapped again and again, by
- Monte Carlo or by discrete elements, and says how it gets denser: compaction
- curves with errors, fits of the published laws, ageing, hysteresis, and the
- structure of the packings.")
+    "Runs many realizations of a bed of spheres that is tapped again and again, by
+Monte Carlo or by discrete elements, and says how it gets denser: compaction
+curves with errors, fits of the published laws, ageing, hysteresis, and the
+structure of the packings.")
 
 # The libraries are static: what they stand on is what an own program links.
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libjostle-dev)
@@ -39,9 +40,8 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev (>= 9.1), libfmt-dev (<< 10), libhdf5-dev, libmuparser-dev, libssl-dev, libtbb-dev, nlohmann-json3-dev, voro++-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS jostle)
 set(CPACK_COMPONENT_DEV_DESCRIPTION
-    "${PROJECT_DESCRIPTION}: libraries
- Static libraries and headers of jostle, and the files by which CMake's
- find_package(jostle) finds them: scenes, runs, fits and analyses from C++.")
+    "Static libraries and headers of jostle, and the files by which CMake's
+find_package(jostle) finds them: scenes, runs, fits and analyses from C++.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-jostle)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -50,7 +50,6 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3-h5py, python
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
     "jostle, python3-jsonschema, python3-matplotlib, python3-pandas, python3-xarray")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-    "${PROJECT_DESCRIPTION}: Python
- Reads results of jostle as numpy arrays and xarray datasets, runs the program
- and draws the main figures.")
+    "Reads results of jostle as numpy arrays and xarray datasets, runs the program
+and draws the main figures.")
 include(CPack)
