@@ -3,9 +3,7 @@
 # bytes in any folder.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME jostle)
-set(JOSTLE_PACKAGE_CONTACT "The jostle authors <jostle@example.org>"
-    CACHE STRING "Whom users of the Debian packages write to")
-set(CPACK_PACKAGE_CONTACT ${JOSTLE_PACKAGE_CONTACT})
+set(CPACK_PACKAGE_CONTACT "The jostle authors <jostle@example.org>")  # -D at a release
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -2,7 +2,7 @@
 
 namespace jostle::inline study {
 
-/// "0.1.0".
+/// "0.2.0".
 const char* version();
 
 /// The commit this was built from, "-dirty" appended where tracked files differed; "unknown" where

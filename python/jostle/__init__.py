@@ -25,7 +25,7 @@ from .scenes import Checked, check, schema
 from .student import half_width
 from .tables import Quantity, Table, Tables
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = ["Box", "Checked", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
            "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
