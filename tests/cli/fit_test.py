@@ -20,7 +20,9 @@ def rough(t):
     return 3e-5 * math.sin(1.0 + 17.0 * t * t)
 
 
-class Measured(Case):
+class WithCurve(Case):
+    """With the points of a curve that follows an inverse log."""
+
     def setUp(self):
         super().setUp()
         taps = sorted({round(1.2 ** k) for k in range(50)})
@@ -36,6 +38,8 @@ class Measured(Case):
     def fit_json(self, *arguments, expect=OK):
         return json.loads(self.jostle("fit", *arguments, "--json", expect=expect).stdout)
 
+
+class Measured(WithCurve):
     def test_a_table_of_two_columns_gives_its_law_back(self):
         self.write(self.table(), "data.csv")
         fit = self.fit_json("data.csv", "--model", "inverse_log")["curves"][0]["fits"][0]
@@ -112,7 +116,7 @@ class Measured(Case):
                 self.assertIn(message, result.stderr + result.stdout)
 
 
-class OwnLaw(Measured):
+class OwnLaw(WithCurve):
     """A formula of the user's own, on the curves of the law that it repeats."""
 
     LAW = ("--law", "Xi - d/(1 + B*log(1 + t/tau))", "--start", "Xi=0.6,d=0.1", "--start", "B=1,tau=3",
