@@ -149,7 +149,7 @@ class Examples(Case):
         for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))):
             found = documented(page.read_text())
             n += len(found)
-            folder = self.folder / f"of_{page.stem}"
+            folder = self.folder / f"of_{page.parent.name}_{page.stem}"
             (folder / "config/scenes").mkdir(parents=True)
             for path in self.folder.iterdir():
                 if path.is_file():
