@@ -79,7 +79,7 @@ void GrainLoop::add_velocities(BedMechanics& out) {
       const Row& action = all.action[all.slot[s] >> 1];
       const double sign = (all.slot[s] & 1) != 0 ? -1 : 1;
       force = force + sign * triple(action, 0);
-      torque = torque + triple(action, 3);
+      torque = torque + Vec3{action.of[7], action.of[3], action.of[6]};
     }
     const std::uint32_t number = numbers_[at];
     out.velocities[number] = before[number].velocity + half_step * force;

@@ -30,7 +30,10 @@ Vec3 centre_of(const Row& row) {
   return {row.of[0], row.of[1], row.of[2]};
 }
 Vec3 velocity_of(const Row& row) {
-  return {row.of[3], row.of[4], row.of[5]};
+  return {row.of[4], row.of[5], row.of[6]};
+}
+Vec3 spin_of(const Row& row, double spin_z) {
+  return {row.of[3], row.of[7], spin_z};
 }
 
 // Places in the order of cells as wide as two spheres, so that neighbours lie near in memory.
@@ -83,7 +86,7 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
   half_spin_z_.assign(kernels_.sees_full_step ? n + 2 : 0, 0);
   dissipated_.resize(2 * n);
   const auto put = [](Row& row, double& spin_z, Vec3 centre, Vec3 velocity, Vec3 spin) {
-    row = {{centre.x, centre.y, centre.z, velocity.x, velocity.y, velocity.z, spin.x, spin.y}};
+    row = {{centre.x, centre.y, centre.z, spin.x, velocity.x, velocity.y, velocity.z, spin.y}};
     spin_z = spin.z;
   };
   for (std::uint32_t at = 0; at < n; ++at) {
@@ -112,9 +115,9 @@ std::vector<GrainState> GrainLoop::grains() const {
     const Row& moving = apart ? half_rows_[at] : seen;
     grain.centre = centre_of(seen);
     grain.velocity = velocity_of(moving);
-    grain.spin = {moving.of[6], moving.of[7], apart ? half_spin_z_[at] : spin_z_[at]};
+    grain.spin = spin_of(moving, apart ? half_spin_z_[at] : spin_z_[at]);
     grain.seen_velocity = velocity_of(seen);
-    grain.seen_spin = {seen.of[6], seen.of[7], spin_z_[at]};
+    grain.seen_spin = spin_of(seen, spin_z_[at]);
     grain.friction = dissipated_[2 * at];
     grain.latched = dissipated_[2 * at + 1];
   }
@@ -259,8 +262,7 @@ double GrainLoop::kinetic_energy() const {
   for (const std::uint32_t at : place_of_) {
     const Row& row = apart ? half_rows_[at] : rows_[at];
     const double spin_z = apart ? half_spin_z_[at] : spin_z_[at];
-    sum += norm_squared(velocity_of(row)) +
-           inertia * (row.of[6] * row.of[6] + row.of[7] * row.of[7] + spin_z * spin_z);
+    sum += norm_squared(velocity_of(row)) + inertia * norm_squared(spin_of(row, spin_z));
   }
   return 0.5 * sum;
 }

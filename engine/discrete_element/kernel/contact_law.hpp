@@ -113,16 +113,22 @@ struct TangentialForce {
   N length;
 };
 
-/// The force `old`, which lay in the tangent plane of the step before, turned with the pair into
-/// the present one: by the mean spin about the normal, then by projection. It keeps its length.
+/// The force `old`, which lay in the tangent plane of the step before, turned with the pair: by the
+/// mean spin about the normal, then by projection into the present plane, which shortens it.
+template <class N>
+JOSTLE_INLINE Vector3<N> projected(const Vector3<N>& old, const Meeting<N>& at, double time_step) {
+  const N twist = (0.5 * time_step) * dot(at.spin, at.normal);
+  const Vector3<N> spun = old + scaled(twist, cross(at.normal, old));
+  return spun - scaled(dot(spun, at.normal), at.normal);
+}
+
+/// The same, with the length that it had.
 template <class N>
 JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const Meeting<N>& at,
                                         double time_step) {
   const N zero{};
   const N length = square_root(dot(old, old));
-  const N twist = (0.5 * time_step) * dot(at.spin, at.normal);
-  const Vector3<N> spun = old + scaled(twist, cross(at.normal, old));
-  const Vector3<N> plane = spun - scaled(dot(spun, at.normal), at.normal);
+  const Vector3<N> plane = projected(old, at, time_step);
   const N plane2 = dot(plane, plane);
   const N inverse = 1.0 / square_root(select(plane2 > zero, plane2, zero + 1.0));
   const Vector3<N> along = scaled(inverse, plane);
@@ -272,10 +278,14 @@ struct LinearLaw {
                            ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
     const auto touching = at.overlap > zero;
-    const N held = (0.5 / law.tangential) * dot(spring, spring);
+    const N spring2 = dot(spring, spring);
+    const N held = (0.5 / law.tangential) * spring2;
     const Vector3<N> velocity = sliding_velocity(at);
     const N stretch = zero + law.tangential * law.time_step;
-    const Vector3<N> start = turned(spring, at, law.time_step).force;
+    const Vector3<N> plane = projected(spring, at, law.time_step);
+    const N plane2 = dot(plane, plane);
+    const N longer = square_root(spring2 / select(plane2 > zero, plane2, one));
+    const Vector3<N> start = scaled(longer, plane);  // as long as it was
     const Vector3<N> trial = start + scaled(stretch, velocity);
     // Half the last displacement comes after this step's positions.
     const N ahead = zero + (law.shear_damping - 0.5 * law.tangential * law.time_step);
@@ -283,8 +293,11 @@ struct LinearLaw {
     const N size2 = dot(resisting, resisting);
     const N limit = law.friction * greater(normal_force, zero - normal_force);
     const auto slides = size2 > limit * limit;
-    const N cut = limit / square_root(select(slides, size2, one));
-    const Vector3<N> acting = scaled(select(slides, cut, one), resisting);
+    Vector3<N> acting = resisting;
+    if (any_of(slides)) {
+      const N cut = limit / square_root(select(slides, size2, one));
+      acting = scaled(select(slides, cut, one), resisting);
+    }
     const Vector3<N> kept = acting - scaled(ahead, velocity);
     // Work on the contact in this step, less what its spring then holds.
     const N work = law.time_step * dot(acting, velocity);

@@ -8,13 +8,13 @@ namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
-using Row8 = double __attribute__((vector_size(64)));
+using Half = double __attribute__((vector_size(32)));  // of a row
 
-[[gnu::always_inline]] inline const Row8& row8(const Row& row) {
-  return *reinterpret_cast<const Row8*>(row.of);
+[[gnu::always_inline]] inline Half& half_at(double* from) {
+  return *reinterpret_cast<Half*>(from);
 }
-[[gnu::always_inline]] inline Row8& row8(Row& row) {
-  return *reinterpret_cast<Row8*>(row.of);
+[[gnu::always_inline]] inline const Half& half_at(const double* from) {
+  return *reinterpret_cast<const Half*>(from);
 }
 
 // Loads numbers of a law's history, and stores them.
@@ -38,9 +38,9 @@ template <class Law>
   const Wide friction = share * act.dissipated_by_friction;
   const Wide normal = share * act.dissipated_normally;
   for (std::uint32_t p = 0; p < n_parts; ++p) {
-    Lanes m[8] = {act.force.x.part[p],  act.force.y.part[p],  act.force.z.part[p],
-                  act.torque.x.part[p], act.torque.y.part[p], act.torque.z.part[p],
-                  friction.part[p],     normal.part[p]};
+    Lanes m[8] = {act.force.x.part[p],  act.force.y.part[p], act.force.z.part[p],
+                  act.torque.y.part[p], friction.part[p],    normal.part[p],
+                  act.torque.z.part[p], act.torque.x.part[p]};
     columns_to_rows(m);
     double* rows = contacts.action[at + p * n_lanes].of;
     for (std::uint32_t k = 0; k < 8; ++k) lanes_at(rows + k * n_lanes) = m[k];
@@ -66,7 +66,7 @@ template <bool spin>
       for (std::uint32_t k = 0; k < per_row; ++k) {
         Lanes sign = Lanes{} + 1.0;
         for (std::uint32_t l = 0; l < n_lanes; ++l)
-          if (spin && k * n_lanes + l >= 6) sign[l] = -1;
+          if (spin && (k * n_lanes + l) % 4 == 3) sign[l] = -1;
         m[lane * per_row + k] = lanes_at(a + k * n_lanes) - sign * lanes_at(b + k * n_lanes);
       }
       if constexpr (spin)
@@ -128,10 +128,10 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
     Meeting<Wide> meeting;
     meeting.normal = scaled(1.0 / distance, between);
     meeting.overlap = 1.0 - distance;
-    meeting.velocity = {m.of[3], m.of[4], m.of[5]};
+    meeting.velocity = {m.of[4], m.of[5], m.of[6]};
     if constexpr (Law::has_spin) {
       meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
-      meeting.spin = {m.of[6], m.of[7], m.spin_z};
+      meeting.spin = {m.of[3], m.of[7], m.spin_z};
     }
     deepest = greater(deepest, meeting.overlap);
     act<Law>(meeting, contacts, at, constants, 0.5);
@@ -151,10 +151,10 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
     meeting.normal = {Wide::at(contacts.side[0] + at), Wide::at(contacts.side[1] + at),
                       Wide::at(contacts.side[2] + at)};
     meeting.overlap = 0.5 - distance;
-    meeting.velocity = {m.of[3], m.of[4], m.of[5] - contacts.side_velocity};
+    meeting.velocity = {m.of[4], m.of[5], m.of[6] - contacts.side_velocity};
     if constexpr (Law::has_spin) {
       meeting.arm = scaled(Law::arm_is_radius ? Wide(0.5) : distance, meeting.normal);
-      meeting.spin = {m.of[6], m.of[7], m.spin_z};
+      meeting.spin = {m.of[3], m.of[7], m.spin_z};
     }
     deepest = greater(deepest, meeting.overlap);
     act<Law>(meeting, contacts, at, constants, 1.0);
@@ -162,44 +162,40 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
   keep_deepest(contacts, deepest);
 }
 
-// Forces and torques where a row has velocities and spins; velocities where it has positions.
-[[gnu::always_inline]] inline Row8 at_velocities(const Row8& action) {
-  return __builtin_shufflevector(action, action, 0, 0, 0, 0, 1, 2, 3, 4);
-}
-[[gnu::always_inline]] inline Row8 at_positions(const Row8& row) {
-  return __builtin_shufflevector(row, row, 3, 4, 5, 3, 3, 3, 3, 3);
-}
-
 // A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
 // step back, go a step on, and then the positions. Moment of inertia 1/10.
 template <bool spin, bool full_step>
 void advance(const SphereArrays& spheres, Advance& step) {
-  constexpr Row8 sign_of[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {-1, -1, -1, 1, 1, 1, 1, 1}};
+  constexpr Half sign_of[2] = {{1, 1, 1, 1}, {-1, -1, -1, 1}};
   const double dt = step.time_step, turn = 10 * dt;
-  const Row8 kick = {0, 0, 0, dt, dt, dt, turn, turn}, move = {dt, dt, dt, 0, 0, 0, 0, 0};
-  const Row8 weight = {0, 0, -step.gravity, 0, 0, 0, 0, 0};
+  const Half kick = {dt, dt, dt, turn}, twist = {0, 0, 0, turn}, move = {dt, dt, dt, 0};
+  const Half weight = {0, 0, -step.gravity, 0};
+  const Half drift = {step.drift[0], step.drift[1], step.drift[2], 0};
   double fastest = 0;
   for (std::size_t i = 0; i < spheres.n; ++i) {
-    Row8 sum = weight;
+    Half force = weight, rest = {};
     for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
       const std::uint32_t slot = spheres.slot[s];
-      sum += sign_of[slot & 1] * row8(spheres.action[slot >> 1]);
+      const double* action = spheres.action[slot >> 1].of;
+      force += sign_of[slot & 1] * half_at(action);
+      rest += half_at(action + 4);
     }
-    const Row8 kicked = at_velocities(sum) * kick;
-    Row8& row = row8(spheres.rows[i]);
+    const Half kicked = force * kick, twisted = rest * twist;
+    double* row = spheres.rows[i].of;
+    double* moving = full_step ? spheres.half_rows[i].of : row;
+    half_at(moving + 4) += kicked;
+    half_at(moving) += twisted;
+    const Half velocity = half_at(moving + 4);
+    const Half moved = half_at(row) + velocity * move;
     if constexpr (full_step) {
-      Row8& half = row8(spheres.half_rows[i]);
-      half += kicked;
-      const Row8 moved = row + at_positions(half) * move;
-      const Row8 predicted = half + 0.5 * kicked;
-      row = Row8{moved[0],     moved[1],     moved[2],     predicted[3],
-                 predicted[4], predicted[5], predicted[6], predicted[7]};
+      const Half spun = half_at(moving) + 0.5 * twisted;
+      half_at(row) = __builtin_shufflevector(moved, spun, 0, 1, 2, 7);
+      half_at(row + 4) = velocity + 0.5 * kicked;
     } else {
-      row += kicked;
-      row += at_positions(row) * move;
+      half_at(row) = moved;
     }
     if constexpr (spin) {
-      const double turned = turn * sum[5];
+      const double turned = turn * rest[2];
       if constexpr (full_step) {
         spheres.half_spin_z[i] += turned;
         spheres.spin_z[i] = spheres.half_spin_z[i] + 0.5 * turned;
@@ -207,12 +203,10 @@ void advance(const SphereArrays& spheres, Advance& step) {
         spheres.spin_z[i] += turned;
       }
     }
-    spheres.dissipated[2 * i] += sum[6];
-    spheres.dissipated[2 * i + 1] += sum[7];
-    const Row8& moving = full_step ? row8(spheres.half_rows[i]) : row;
-    const double u = moving[3] - step.drift[0], v = moving[4] - step.drift[1],
-                 w = moving[5] - step.drift[2];
-    const double speed_squared = u * u + v * v + w * w;
+    spheres.dissipated[2 * i] += rest[0];
+    spheres.dissipated[2 * i + 1] += rest[1];
+    const Half apart = velocity - drift, squares = apart * apart;
+    const double speed_squared = squares[0] + squares[1] + squares[2];
     fastest = speed_squared > fastest ? speed_squared : fastest;
   }
   step.fastest_squared = fastest;

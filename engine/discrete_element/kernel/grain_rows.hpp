@@ -11,9 +11,10 @@
 // What the kernels read and write, as plain arrays. Units as in contact_law.hpp.
 namespace jostle::inline engine {
 
-/// One cache line. Of a sphere: x, y, z, its velocity, and two components of its spin. Of a
-/// contact: the force on its first sphere, the torque on each, and what it dissipated by friction
-/// and normally, halved where two spheres share it.
+/// One cache line, in two halves, so that what changes what has the same place in its half. Of a
+/// sphere: x, y, z, spin x; velocity, spin y. Of a contact: force on its first sphere, torque y on
+/// each; what it dissipated by friction and normally, halved where two spheres share it, torque z,
+/// torque x.
 struct alignas(64) Row {
   double of[8] = {};
 };
