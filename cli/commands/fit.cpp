@@ -231,11 +231,16 @@ int run_fits(const FitArguments& arguments) {
   return any ? exit_ok : exit_bad_input;
 }
 
-/// Also what else of its command line has no sense without a law of one's own.
+/// A law of one's own, and the options that have no sense without it.
 void add_law_options(const Command& app, FitArguments& a) {
   Command command = app;
-  const Option law = command.add_option(
-      "--law", a.law.formula, "A law of your own, a formula of t: \"X0 + a*log(1 + t/tau)\"");
+  const auto fault = [](const std::string& formula) -> std::string {
+    return formula.empty() ? "an empty formula is no law" : "";
+  };
+  const Option law = command
+                         .add_option("--law", a.law.formula,
+                                     "A law of your own, a formula of t: \"X0 + a*log(1 + t/tau)\"")
+                         .check(fault, "");
   command.add_option("--start", a.start, "NAME=NUMBER,...: where its parameters begin")
       .separated_by(',')
       .needs(law);

@@ -163,6 +163,7 @@ class OwnLaw(WithCurve):
                 (["--law", "a*t", "--start", "a=1", "--fix", "q=2"], "no parameter q"),
                 (["--law", "a*t", "--start", "a=1", "--law-name", "kww"], "cannot be called"),
                 (["--law", "a*log(t - 3)", "--start", "a=1"], "not finite where it starts, at t = 1"),
+                (["--law", ""], "an empty formula"),
                 (["--start", "a=1"], "--law")):
             with self.subTest(arguments=arguments):
                 result = self.jostle("fit", "data.csv", *arguments, expect=BAD_INPUT)
