@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/commands/commands.hpp"
+#include "cli/reports/figure_files.hpp"
 #include "cli/terminal/keep_tables.hpp"
 #include "cli/terminal/live_input.hpp"
 #include "cli/terminal/output_file.hpp"
@@ -20,24 +21,38 @@ namespace {
 struct ReportArguments {
   std::vector<std::string> inputs;
   std::string output;
+  FigureFolder figures;
+  int columns = 1;
   bool force = false;
   Live live = Live::no;
   int threads = 0;
 };
 
-void write_report(const ReportArguments& arguments) {
-  const std::string output =
-      !arguments.output.empty()
-          ? arguments.output
-          : std::filesystem::path(arguments.inputs.front()).stem().string() + ".html";
-  if (output != arguments.output) require_no_link(output);
-  require_text_output("-o", output, arguments.inputs, arguments.force);
+std::vector<ResultsFile> opened(const ReportArguments& arguments) {
   require_different(arguments.inputs);
   std::vector<ResultsFile> files;
   for (const std::string& input : arguments.inputs) {
     files.push_back(open_to_read(input, arguments.live));
   }
   require_different_runs(files);
+  return files;
+}
+
+void write_figure_folder(const ReportArguments& arguments) {
+  FigureFolder folder = arguments.figures;
+  folder.columns = arguments.columns == 2 ? JournalColumns::two : JournalColumns::one;
+  folder.force = arguments.force;
+  print(write_figures(opened(arguments), folder, provenance_of_this_run("")));
+}
+
+void write_page(const ReportArguments& arguments) {
+  const std::string output =
+      !arguments.output.empty()
+          ? arguments.output
+          : std::filesystem::path(arguments.inputs.front()).stem().string() + ".html";
+  if (output != arguments.output) require_no_link(output);
+  require_text_output("-o", output, arguments.inputs, arguments.force);
+  const std::vector<ResultsFile> files = opened(arguments);
   std::vector<PageSource> sources;
   for (const ResultsFile& file : files) {
     sources.push_back({file, arguments.live == Live::yes ? "" : digest_of(file.path())});
@@ -60,25 +75,43 @@ void add_report(Command& app, int& code) {
       .required()
       .existing_file()
       .offers_files({"h5"});
+  Option output = command.add_option(
+      "-o,--output", a.output,
+      "The page to write (default: the first input's name with .html, in the current folder)");
+  output.file_to_write().offers_files({"html"});
+  Option figures =
+      command.add_option("--figures", a.figures.path,
+                         "Write no page but its figures into this folder: SVG and PDF, with their "
+                         "data and gnuplot scripts");
+  figures.file_to_write().excludes(output);
   command
-      .add_option("-o,--output", a.output,
-                  "The page to write (default: the first input's name with .html, in the current "
-                  "folder)")
-      .file_to_write()
-      .offers_files({"html"});
+      .add_option("--columns", a.columns,
+                  "Width of the figures: one column of a journal, 86 mm, or two, 178 mm (default: "
+                  "1)")
+      .between(1, 2)
+      .needs(figures);
+  command
+      .add_option("--sweep-point", a.figures.sweep_point,
+                  "Figures of this one alone: its number, or POINTER=VALUE of the sweep")
+      .needs(figures);
   add_live(command, a.live);
-  command.add_flag("--force", a.force, "Replace a file that exists");
+  command.add_flag("--force", a.force, "Replace files that exist");
   command.add_threads(a.threads);
   command.footer(
       "Examples:\n"
       "  jostle report quickstart.h5                      writes quickstart.html\n"
       "  jostle report low.h5 high.h5 -o both.html         two runs on one page\n"
+      "  jostle report quickstart.h5 --figures figures     its figures, for a paper\n"
       "\n"
       "The page needs nothing but a browser: no network, no other file. It shows what the files\n"
       "hold: curves, and the tables that fit, analyse, structure and cost have stored; make those\n"
       "first. Kept packings can be turned and sliced. What it shows: docs/report.md.");
   command.run([arguments, &code] {
-    write_report(*arguments);
+    if (arguments->figures.path.empty()) {
+      write_page(*arguments);
+    } else {
+      write_figure_folder(*arguments);
+    }
     code = exit_ok;
   });
 }

@@ -46,5 +46,5 @@ export class Table {
 /// Several of up to `most`, spread evenly, the first and the last among them.
 export function spread(list, most) {
   if (list.length <= most) return list;
-  return Array.from({length: most}, (_, i) => list[Math.round(i * (list.length - 1) / (most - 1))]);
+  return Array.from({length: most}, (_, i) => list[Math.floor(i * (list.length - 1) / (most - 1))]);
 }

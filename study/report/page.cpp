@@ -7,8 +7,7 @@
 namespace jostle::inline study {
 namespace {
 
-// Of a page of one file; several share it.
-constexpr std::size_t curve_values = 220'000, table_values = 220'000, packing_bytes = 4'000'000;
+constexpr std::size_t packing_bytes = 4'000'000;  // of a page of one file; several share it
 
 std::string html_text(std::string_view text) {
   std::string escaped;
@@ -49,7 +48,7 @@ std::string filled_template(const std::string& title, const std::string& data) {
 
 std::string report_page(std::span<const PageSource> sources, const Provenance& by, int threads) {
   const std::size_t n = std::max<std::size_t>(1, sources.size());
-  const PageRoom room{curve_values / n, table_values / n, packing_bytes / n};
+  const PageRoom room{DrawnRoom::of_one_in(n), packing_bytes / n};
   Json files = Json::array();
   std::string title;
   for (const PageSource& source : sources) {

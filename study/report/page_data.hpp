@@ -5,13 +5,13 @@
 
 #include "config/json/json.hpp"
 #include "results/results_file.hpp"
+#include "study/report/drawn_results.hpp"
 
 namespace jostle::inline study {
 
 /// What of one file has room in a page.
 struct PageRoom {
-  std::size_t curve_values = 0;   // numbers
-  std::size_t table_values = 0;   // numbers and texts
+  DrawnRoom drawn;
   std::size_t packing_bytes = 0;  // of text
 };
 

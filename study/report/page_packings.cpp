@@ -53,13 +53,6 @@ struct ChosenPackings {
   std::size_t of = 0;
 };
 
-template <class Value>
-std::vector<Value> spread(const std::vector<Value>& all, std::size_t most) {
-  std::vector<Value> chosen;
-  for (const std::size_t i : evenly_spread(all.size(), most)) chosen.push_back(all[i]);
-  return chosen;
-}
-
 /// At most so many of the packings of these points: points first, then taps, then realizations.
 ChosenPackings choose(std::vector<KeptPoint> points, std::size_t most) {
   ChosenPackings chosen;

@@ -13,6 +13,14 @@ namespace jostle::inline study {
 /// evenly spread, the first and the last among them.
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t most);
 
+/// Those of the values that stand at evenly_spread() places.
+template <class Value>
+std::vector<Value> spread(const std::vector<Value>& values, std::size_t most) {
+  std::vector<Value> chosen;
+  for (const std::size_t i : evenly_spread(values.size(), most)) chosen.push_back(values[i]);
+  return chosen;
+}
+
 /// Indices out of 0 .. n - 1, ascending: 0, the last, `per_decade` a decade in equal steps of the
 /// logarithm, and `evenly` in equal steps, so that neither an early nor a late change is lost.
 std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_decade,

@@ -109,6 +109,49 @@ class Sections(Open):
             self.assertIn(statement, text)
 
 
+class SameFigures(Open):
+    """The page and jostle report --figures are written in two languages: they show the same."""
+
+    def test_every_figure_of_the_page_is_one_of_the_folder_with_the_same_values(self):
+        for name in ("whole", "loop", "grains", "cost"):
+            BROWSER.open(FOLDER / f"{name}.html")
+            folder = figures_of(FOLDER / f"{name}-figures")
+            shown = BROWSER.run("""
+                return [...document.querySelectorAll("figure")].map(({figure}) => ({
+                  title: figure.spec.title,
+                  rows: figure.spec.series.filter((one) => !one.isGuide)
+                    .flatMap((one) => one.rows.map((row) => [row.x, row.y])),
+                }));""")
+            self.assertGreater(len(shown), 3)
+            for one in shown:
+                with self.subTest(page=name, figure=one["title"]):
+                    own = numpy.array(folder.pop(one["title"]), dtype=float)
+                    rows = numpy.array(one["rows"], dtype=float)  # null: not a number
+                    own, rows = (each[numpy.isfinite(each).all(axis=1)] for each in (own, rows))
+                    numpy.testing.assert_allclose(own, rows, rtol=1e-5, atol=1e-12)
+            self.assertEqual(set(folder), set(), "not on the page")
+
+
+def figures_of(folder):
+    """{title: [(x, y)]} of the .dat files, of the first sweep point where they show one."""
+    found = {}
+    for path in folder.glob("*.dat"):
+        if re.search(r"-point-\d+$", path.stem) and not path.stem.endswith("-point-0000"):
+            continue
+        text = path.read_text()
+        head = text.split("\n\n")[0]
+        titles = [line[2:].split(". ")[0] for line in head.split("\n#\n")[1:]]
+        series = [block.split("\n") for block in text.split("\n\n")[1:]]
+        series = [[line for line in block if line] for block in series]
+        series = [block for block in series if block and block[0] != "# line to guide the eye"]
+        for title in titles:
+            # Of two panels the second has no errors: its blocks have fewer columns.
+            own = [block for block in series if len(titles) == 1 or
+                   ("residual" in block[1]) == title.startswith("Residuals")]
+            found[title] = [[float(cell) for cell in row.split("\t")[:2]] for block in own for row in block[2:]]
+    return found
+
+
 class Plain(Open):
     name = "plain"
 

@@ -38,6 +38,8 @@ def make_pages(case):
     case.jostle("cost", "cost.json", "--replicates", 2, "--taps", 2, "-o", "cost.h5")
     for name in (*SCENES, "cost"):
         case.jostle("report", f"{name}.h5")
+    for name in ("whole", "loop", "grains", "cost"):
+        case.jostle("report", f"{name}.h5", "--figures", f"{name}-figures")
     case.jostle("report", "plain.h5", "loop.h5", "-o", "two.html")
 
 

@@ -1,25 +1,23 @@
-#include "study/report/page_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "results/tables.hpp"
-#include "study/report/page_json.hpp"
+#include "study/report/drawn_results.hpp"
 #include "study/report/thinning.hpp"
 
 namespace jostle::inline study {
 namespace {
 
-/// A table, and the group that it is kept in.
-struct KeptTable {
-  const char* group;
-  Table table;
-};
-
 /// "point_0003" of its name; empty where it is of all points.
 std::string point_of(const Table& table) {
   return table.name.starts_with("point_") ? table.name.substr(0, table.name.find('/')) : "";
+}
+
+bool is_wanted(const std::string& point, const WantedPoints& wanted) {
+  return point.empty() || wanted.empty() || std::ranges::any_of(wanted, [&](std::uint32_t one) {
+           return point == fmt::format("point_{:04}", one);
+         });
 }
 
 // From the finest on.
@@ -28,18 +26,23 @@ constexpr TableThinning table_thinnings[] = {
 
 }  // namespace
 
-Json page_tables(const ResultsFile& file, std::size_t room, std::vector<std::string>& left_out) {
-  std::vector<KeptTable> kept;
+std::vector<DrawnTable> drawn_tables(const ResultsFile& file, const DrawnRoom& all_room,
+                                     const WantedPoints& wanted,
+                                     std::vector<std::string>& left_out) {
+  const std::size_t room = all_room.table_values;
+  std::vector<DrawnTable> kept;
   for (const char* const group : derived_groups) {
-    for (Table& table : file.tables(group)) kept.push_back({group, std::move(table)});
+    for (Table& table : file.tables(group)) {
+      if (is_wanted(point_of(table), wanted)) kept.push_back({group, std::move(table)});
+    }
   }
   std::size_t before = 0, needed = 0;
-  for (const KeptTable& one : kept) before += n_values(one.table);
-  std::vector<KeptTable> fitting;
+  for (const DrawnTable& one : kept) before += n_values(one.table);
+  std::vector<DrawnTable> fitting;
   for (const TableThinning& thinning : table_thinnings) {
     fitting.clear();
     needed = 0;
-    for (const KeptTable& one : kept) {
+    for (const DrawnTable& one : kept) {
       fitting.push_back({one.group, thinned(one.table, thinning)});
       needed += n_values(fitting.back().table);
     }
@@ -47,7 +50,7 @@ Json page_tables(const ResultsFile& file, std::size_t room, std::vector<std::str
   }
   if (needed < before) left_out.push_back("tables are drawn at some of their taps and places");
   std::vector<std::string> points;
-  for (const KeptTable& one : fitting) {
+  for (const DrawnTable& one : fitting) {
     const std::string point = point_of(one.table);
     if (!point.empty() && std::ranges::find(points, point) == points.end()) points.push_back(point);
   }
@@ -62,10 +65,10 @@ Json page_tables(const ResultsFile& file, std::size_t room, std::vector<std::str
     for (const std::size_t i : evenly_spread(points.size(), most)) chosen.push_back(points[i]);
     points = std::move(chosen);
   }
-  Json tables = Json::array();
+  std::vector<DrawnTable> tables;
   std::size_t taken = 0;
   bool too_large = false;
-  for (const KeptTable& one : fitting) {
+  for (DrawnTable& one : fitting) {
     const std::string point = point_of(one.table);
     if (!point.empty() && !std::ranges::binary_search(points, point)) continue;
     taken += n_values(one.table);
@@ -73,7 +76,7 @@ Json page_tables(const ResultsFile& file, std::size_t room, std::vector<std::str
       too_large = true;
       break;
     }
-    tables.push_back(page_table(one.table, one.group));
+    tables.push_back(std::move(one));
   }
   if (too_large) left_out.push_back("some tables are longer than a page has room for");
   return tables;

@@ -1,0 +1,172 @@
+#include "study/figures/drawn_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "study/report/thinning.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+constexpr std::array<std::array<int, 3>, 10> viridis_stops{{{68, 1, 84},
+                                                            {72, 40, 120},
+                                                            {62, 74, 137},
+                                                            {49, 104, 142},
+                                                            {38, 130, 142},
+                                                            {31, 158, 137},
+                                                            {53, 183, 121},
+                                                            {110, 206, 88},
+                                                            {181, 222, 43},
+                                                            {253, 231, 37}}};
+
+std::string viridis(double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * (viridis_stops.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(place), viridis_stops.size() - 2);
+  std::string text = "#";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double from = viridis_stops[i][k], to = viridis_stops[i + 1][k];
+    text += fmt::format("{:02x}", std::lround(from + (to - from) * (place - double(i))));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string kind_colour(std::size_t i) {
+  static constexpr const char* kinds[] = {"#0072b2", "#d55e00", "#009e73", "#b0578d",
+                                          "#b07800", "#3a93c4", "#555555", "#7a5195"};
+  return kinds[i % std::size(kinds)];
+}
+
+std::string order_colour(std::size_t i, std::size_t n) {
+  const double share = n < 2 ? 0.5 : static_cast<double>(i) / static_cast<double>(n - 1);
+  return viridis(0.02 + 0.78 * share);  // the lightest would not stand out from paper
+}
+
+std::string colour_of(std::size_t i, std::size_t n) {
+  return n <= 4 ? kind_colour(i) : order_colour(i, n);
+}
+
+DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
+                     const std::vector<std::uint32_t>& points)
+    : curves_(drawn_curves(file, room, points, left_out_)),
+      snapshots_(drawn_snapshots(file, points, left_out_)),
+      kept_(drawn_tables(file, room, points, left_out_)),
+      n_realizations_(file.study().realizations),
+      changes_strength_(changes_strength(file)) {
+  for (const StudyPoint& point : file.study().points) labels_.push_back(point.label);
+  for (const DrawnTable& one : kept_) tables_.emplace_back(one);
+  for (const TableView& table : tables_) {  // of a study of cost, the points are settings
+    if (table.is_in("analysis", "cost") && table.axis_texts("setting").size() == labels_.size()) {
+      labels_ = table.axis_texts("setting");
+      break;
+    }
+  }
+  if (has_other_points()) {
+    left_out_.push_back(fmt::format("{} of {} sweep points are drawn, evenly spread", most_shown,
+                                    labels_.size()));
+  }
+}
+
+std::vector<TableView> DrawnFile::made_of(const std::string& group, const std::string& kind) const {
+  std::vector<TableView> made;
+  for (const TableView& table : tables_) {
+    if (table.is_in(group, kind) && !table.is_refused()) made.push_back(table);
+  }
+  return made;
+}
+
+std::vector<TableView> DrawnFile::made_of(const std::string& group) const {
+  std::vector<TableView> made;
+  for (const TableView& table : tables_) {
+    if (table.group() == group && !table.is_refused()) made.push_back(table);
+  }
+  return made;
+}
+
+std::string DrawnFile::label(std::uint32_t point) const {
+  if (point < labels_.size() && !labels_[point].empty()) return labels_[point];
+  return fmt::format("point {}", point);
+}
+
+std::vector<ShownPoint> DrawnFile::shown_points() const {
+  std::vector<ShownPoint> shown;
+  for (const std::size_t i : evenly_spread(curves_.size(), most_shown)) {
+    const std::uint32_t point = curves_[i].point;
+    shown.push_back({point, labels_.size() > 1 ? label(point) : "", colour_of(i, curves_.size())});
+  }
+  return shown;
+}
+
+std::vector<std::uint32_t> DrawnFile::chosen(std::vector<std::uint32_t> numbers) const {
+  std::ranges::sort(numbers);
+  const auto repeated = std::ranges::unique(numbers);
+  numbers.erase(repeated.begin(), repeated.end());
+  return spread(numbers, most_shown);
+}
+
+const DrawnCurve* DrawnFile::curve(std::uint32_t point) const {
+  const auto at = std::ranges::find(curves_, point, &DrawnCurve::point);
+  return at == curves_.end() ? nullptr : &*at;
+}
+
+const DrawnColumn* DrawnFile::column(const std::string& name) const {
+  for (const DrawnCurve& curve : curves_) {
+    for (const DrawnColumn& column : curve.columns) {
+      if (column.label.name == name) return &column;
+    }
+  }
+  return nullptr;
+}
+
+FigureAxis DrawnFile::tap_axis() const {
+  return {"taps t", changes_strength_ ? AxisKind::linear : AxisKind::taps};
+}
+
+std::string words(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+std::string sentence(std::string text) {
+  if (text.empty()) return "Values";
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string unit_text(const std::string& units) {
+  if (units.empty() || units == "1") return "";
+  std::string text = units;
+  for (const auto& [power, sign] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
+    for (std::size_t at = 0; (at = text.find(power)) != std::string::npos;) {
+      text.replace(at, 2, sign);
+    }
+  }
+  return " (" + text + ")";
+}
+
+std::string axis_label(const std::string& name, const std::string& units) {
+  static const std::map<std::string, std::string> symbols{
+      {"mean_height", " ⟨Z⟩"}, {"bottom_fraction", " Φ_b"}, {"corrected_fraction", " ⟨Φ_c⟩"}};
+  const auto symbol = symbols.find(name);
+  return words(name) + (symbol == symbols.end() ? "" : symbol->second) + unit_text(units);
+}
+
+std::vector<FigureRow> rows_of(const std::vector<double>& xs, const std::vector<double>& ys,
+                               const std::vector<double>& errors) {
+  std::vector<FigureRow> rows;
+  for (std::size_t i = 0; i < std::min(xs.size(), ys.size()); ++i) {
+    rows.push_back({.x = xs[i], .y = ys[i], .error = i < errors.size() ? errors[i] : no_value});
+  }
+  return rows;
+}
+
+std::vector<double> as_numbers(const std::vector<std::uint64_t>& values) {
+  return {values.begin(), values.end()};
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+// What a figure of results shows, whoever draws it.
+namespace jostle::inline study {
+
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+enum class AxisKind {
+  linear,
+  logarithmic,
+  taps,  // logarithmic with tap 0 apart; linear where there are few taps
+  names
+};
+
+struct FigureAxis {
+  std::string label{};  // with units; "N_c" has a subscript
+  AxisKind kind = AxisKind::linear;
+  bool from_zero = false;
+  std::vector<std::string> names{};  // of AxisKind::names, at 0, 1, 2, ...
+};
+
+/// A value, with its standard error or the ends of its interval; NaN where there is none.
+struct FigureRow {
+  double x = no_value, y = no_value;
+  double error = no_value;
+  double low = no_value, high = no_value;
+  std::string label{};
+};
+
+enum class Drawn { line, points, joined_points };
+
+/// "#rrggbb", of those that people with any colour vision tell apart: Okabe & Ito's for the i-th
+/// of several kinds, viridis for the i-th of n that have an order.
+std::string kind_colour(std::size_t i);
+std::string order_colour(std::size_t i, std::size_t n);
+/// Of few that have an order, those of kinds.
+std::string colour_of(std::size_t i, std::size_t n);
+
+struct FigureSeries {
+  std::string name{};  // empty: not in the key
+  std::string colour{};
+  Drawn drawn = Drawn::line;
+  std::vector<FigureRow> rows{};
+  std::size_t dash = 0;  // 0: solid
+  std::size_t symbol = 0;
+  bool hollow = false;
+  bool has_band = true;   // of the errors of a line
+  bool is_guide = false;  // a line for the eye: no value of the file
+  bool has_labels = false;
+};
+
+/// A dashed line at a place of one axis.
+struct FigureRule {
+  std::optional<double> x{}, y{};
+};
+
+struct FigurePanel {
+  std::string title{}, caption{};
+  std::string source{};  // paper and equation
+  FigureAxis x{}, y{};
+  std::vector<FigureRule> rules{};
+  std::vector<FigureSeries> series{};
+};
+
+/// One panel, or several over one x axis.
+struct Figure {
+  std::string name;  // of its files: lower-case letters, digits and '-'
+  std::vector<FigurePanel> panels;
+};
+
+}  // namespace jostle::inline study

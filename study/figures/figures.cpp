@@ -1,0 +1,83 @@
+#include "study/figures/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "study/figures/builders.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+bool has_values(const FigurePanel& panel) {
+  return std::ranges::any_of(panel.series, [](const FigureSeries& series) {
+    return std::ranges::any_of(series.rows, [](const FigureRow& row) {
+      return std::isfinite(row.x) && std::isfinite(row.y);
+    });
+  });
+}
+
+/// Two texts may give one word: the second gets a number.
+void name_apart(Figures& figures) {
+  std::set<std::string> taken;
+  for (Figure& figure : figures) {
+    std::string name = figure.name;
+    for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}-{}", figure.name, n);
+    figure.name = name;
+  }
+}
+
+}  // namespace
+
+std::string file_word(const std::string& text) {
+  constexpr std::size_t longest = 80;
+  std::string word;
+  for (char c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const bool is_kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (is_kept) {
+      word += c;
+    } else if (!word.empty() && word.back() != '-') {
+      word += '-';
+    }
+  }
+  word.resize(std::min(word.size(), longest));
+  while (word.ends_with('-')) word.pop_back();
+  return word.empty() ? "figure" : word;
+}
+
+void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
+               Figures& into) {
+  if (!has_values(panel)) return;
+  const std::string number =
+      point && file.n_points() > 1 ? fmt::format("-point-{:04}", *point) : "";
+  const std::string name = file_word(panel.title) + number;
+  if (!number.empty()) panel.caption += fmt::format(" Sweep point {}.", file.label(*point));
+  into.push_back({name, {}});
+  into.back().panels.push_back(std::move(panel));
+}
+
+std::vector<std::uint32_t> points_of(const DrawnFile& file, const std::vector<TableView>& tables) {
+  std::vector<std::uint32_t> points;
+  for (const TableView& table : tables) {
+    if (table.point()) points.push_back(*table.point());
+  }
+  return file.chosen(std::move(points));
+}
+
+DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t>& points,
+                        std::size_t n_files) {
+  const DrawnFile drawn(file, DrawnRoom::of_one_in(n_files), points);
+  Figures figures;
+  for (const auto add :
+       {add_compaction, add_spread, add_fits, add_steady, add_ageing, add_spectra, add_hysteresis,
+        add_sweeps, add_snapshots, add_structure, add_engine, add_cost}) {
+    add(drawn, figures);
+  }
+  name_apart(figures);
+  return {std::move(figures), drawn.left_out(), drawn.has_other_points()};
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ensemble/analysis/table.hpp"
+#include "results/results_file.hpp"
+
+// What of a results file is drawn: the page and the figures show the same.
+namespace jostle::inline study {
+
+/// Numbers that are drawn of one file.
+struct DrawnRoom {
+  std::size_t curve_values = 220'000;
+  std::size_t table_values = 220'000;  // and texts
+
+  /// Several files share it.
+  static DrawnRoom of_one_in(std::size_t n_files);
+};
+
+/// A column of the ensemble at the taps of its curve.
+struct DrawnColumn {
+  Column label;
+  bool is_observable = false;  // else a diagnostic of the engine
+  std::vector<double> mean, error, sigma;
+  std::vector<std::uint32_t> count;
+};
+
+struct DrawnCurve {
+  std::uint32_t point = 0;
+  std::vector<std::size_t> taps;  // ascending, the first and the last among them
+  std::vector<DrawnColumn> columns;
+};
+
+/// n(z) at a tap: fractions of all centres in bins of height, means over realizations.
+struct DrawnHeights {
+  std::uint64_t tap = 0;
+  std::vector<double> n;
+};
+
+/// What the snapshots of a sweep point keep beside positions, as means over realizations.
+struct DrawnSnapshots {
+  std::uint32_t point = 0;
+  std::vector<std::uint64_t> taps;
+  std::vector<double> coordination, coordination_error;  // [taps]
+  double bin_width = 0;                                  // diameters
+  std::vector<DrawnHeights> heights;
+};
+
+/// A derived table, and the group that it is kept in.
+struct DrawnTable {
+  std::string group;
+  Table table;
+};
+
+/// Sweep points that are wanted; none: all.
+using WantedPoints = std::vector<std::uint32_t>;
+
+/// Curves of the sweep points that have values: thinned to what there is room for, and then left
+/// out at some points, evenly spread. What is left out is said in `left_out`.
+std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& room,
+                                     const WantedPoints& wanted,
+                                     std::vector<std::string>& left_out);
+
+/// Of at most 24 sweep points and 64 realizations of each, with at most 6 histograms.
+std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const WantedPoints& wanted,
+                                            std::vector<std::string>& left_out);
+
+/// The derived tables with at most about `room` numbers and texts: thinned along their axes, and
+/// then left out at some sweep points, evenly spread. What is left out is said in `left_out`.
+std::vector<DrawnTable> drawn_tables(const ResultsFile& file, const DrawnRoom& room,
+                                     const WantedPoints& wanted,
+                                     std::vector<std::string>& left_out);
+
+/// Whether the strength of the taps changes on the way: later taps then count as much as early
+/// ones.
+bool changes_strength(const ResultsFile& file);
+
+}  // namespace jostle::inline study
