@@ -42,7 +42,11 @@ std::size_t curve_values(const ResultsFile& file, std::uint32_t point, const Cur
 DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const CurveGrid& grid) {
   DrawnCurve curve{point, grid.taps(file.n_stored_rows(point)), {}};
   const std::size_t n_observables = file.study().points[point].observables.size();
-  for (const EnsembleSeries& series : file.ensemble(point)) {
+  const std::vector<EnsembleSeries> ensemble = file.ensemble(point);
+  for (const EnsembleSeries& series : ensemble) {
+    curve.taps = joined(std::move(curve.taps), extremes_of(series.mean));
+  }
+  for (const EnsembleSeries& series : ensemble) {
     curve.columns.push_back({.label = series.label,
                              .is_observable = curve.columns.size() < n_observables,
                              .mean = at_places(series.mean, curve.taps),
@@ -156,10 +160,9 @@ std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& a
     curves.push_back(drawn_curve(file, point, *grid));
   }
   if (thinned_taps) {
-    left_out.push_back(
-        changing ? fmt::format("curves are drawn at {} taps a decade and {} evenly spread ones",
-                               grid->per_decade, grid->evenly)
-                 : fmt::format("curves are drawn at {} taps a decade", grid->per_decade));
+    left_out.push_back(fmt::format(
+        "curves are drawn at {} taps a decade{}, and where they are highest and lowest",
+        grid->per_decade, changing ? fmt::format(" and {} evenly spread ones", grid->evenly) : ""));
   }
   return curves;
 }

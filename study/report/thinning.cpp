@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace jostle::inline study {
 namespace {
@@ -33,7 +34,56 @@ std::vector<Value> kept_values(const std::vector<Value>& values,
   return out;
 }
 
+/// Places along its last axis where a quantity has its least and its greatest value, of each row at
+/// which it is kept along the axes before.
+std::vector<std::size_t> extreme_places(const Quantity& quantity,
+                                        const std::map<std::string, std::size_t>& lengths,
+                                        const KeptPlaces& kept) {
+  const auto* const values = std::get_if<std::vector<double>>(&quantity.values);
+  if (values == nullptr || quantity.axes.empty() || quantity.name.ends_with("_error")) return {};
+  std::vector<std::size_t> rows = {0};
+  std::size_t n = 1;
+  for (const std::string& axis : quantity.axes) {
+    if (!kept.contains(axis)) return {};
+    n *= lengths.at(axis);
+    if (axis == quantity.axes.back()) break;
+    std::vector<std::size_t> next;
+    for (const std::size_t row : rows) {
+      for (const std::size_t place : kept.at(axis)) next.push_back(row * lengths.at(axis) + place);
+    }
+    rows = std::move(next);
+  }
+  if (n != values->size()) return {};
+  const std::size_t length = lengths.at(quantity.axes.back());
+  std::vector<std::size_t> places;
+  for (const std::size_t row : rows) {
+    const std::span<const double> own = std::span(*values).subspan(row * length, length);
+    for (const std::size_t place : extremes_of(own)) places.push_back(place);
+  }
+  return places;
+}
+
 }  // namespace
+
+std::vector<std::size_t> extremes_of(std::span<const double> values) {
+  std::optional<std::size_t> least, greatest;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    if (!least || values[i] < values[*least]) least = i;
+    if (!greatest || values[i] > values[*greatest]) greatest = i;
+  }
+  if (!least) return {};
+  return {*least, *greatest};
+}
+
+std::vector<std::size_t> joined(std::vector<std::size_t> some,
+                                const std::vector<std::size_t>& others) {
+  some.insert(some.end(), others.begin(), others.end());
+  std::ranges::sort(some);
+  const auto repeated = std::ranges::unique(some);
+  some.erase(repeated.begin(), repeated.end());
+  return some;
+}
 
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t most) {
   std::vector<std::size_t> chosen;
@@ -55,10 +105,7 @@ std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_d
     if (place >= static_cast<double>(n)) break;
     chosen.push_back(static_cast<std::size_t>(place));
   }
-  std::ranges::sort(chosen);
-  const auto repeated = std::ranges::unique(chosen);
-  chosen.erase(repeated.begin(), repeated.end());
-  return chosen;
+  return joined(std::move(chosen), {});
 }
 
 Table thinned(const Table& table, const TableThinning& thinning) {
@@ -73,6 +120,15 @@ Table thinned(const Table& table, const TableThinning& thinning) {
       kept[axis.name] =
           evenly_spread(n, axis.name == "tap" ? thinning.most_taps : thinning.most_places);
     }
+  }
+  KeptPlaces extremes;
+  for (const Quantity& quantity : table.quantities) {
+    for (const std::size_t place : extreme_places(quantity, lengths, kept)) {
+      extremes[quantity.axes.back()].push_back(place);
+    }
+  }
+  for (const auto& [axis, places] : extremes) {
+    if (axis != "tap") kept[axis] = joined(std::move(kept[axis]), places);
   }
   Table out{.name = table.name, .axes = {}, .quantities = {}, .notes = table.notes};
   const auto keep = [&](const Quantity& quantity, const std::vector<std::string>& axes,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ensemble/analysis/table.hpp"
@@ -26,6 +27,13 @@ std::vector<Value> spread(const std::vector<Value>& values, std::size_t most) {
 std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_decade,
                                                 std::size_t evenly);
 
+/// Indices of the least and the greatest value, in this order; none where no value is finite.
+std::vector<std::size_t> extremes_of(std::span<const double> values);
+
+/// All of both, ascending, each once.
+std::vector<std::size_t> joined(std::vector<std::size_t> some,
+                                const std::vector<std::size_t>& others);
+
 /// How much of a table's axes is kept.
 struct TableThinning {
   std::size_t most_taps = 24;     // of the axis `tap`: evenly spread
@@ -33,7 +41,8 @@ struct TableThinning {
   std::size_t per_decade = 24;    // of `t`, the taps of a fitted curve
 };
 
-/// The table with its axes thinned, all quantities along them likewise. A quantity that does not
+/// The table with its axes thinned, all quantities along them likewise. The places where a quantity
+/// is least and greatest stay, at every tap that is kept: no peak is lost. A quantity that does not
 /// have as many values as its axes give is left out.
 Table thinned(const Table& table, const TableThinning& thinning);
 

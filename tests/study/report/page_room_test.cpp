@@ -1,0 +1,212 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../../results/synthetic.hpp"
+#include "../../results/temporary_folder.hpp"
+#include "results/file/results_writer.hpp"
+#include "results/tables.hpp"
+#include "study/report/page.hpp"
+#include "study/report/page_data.hpp"
+#include "study/report/page_json.hpp"
+#include "study/report/page_template.hpp"
+
+// Files that hold more than a page has room for: the page stays small, keeps the ends, and says
+// what it leaves out.
+using namespace jostle;
+
+namespace {
+
+constexpr std::size_t most_bytes = 10'000'000;
+
+struct Sizes {
+  std::uint32_t points = 1, realizations = 1, spheres = 0;  // spheres of each kept packing
+  std::uint64_t taps = 10;
+  std::size_t snapshots = 0;
+};
+
+/// Spheres on a square lattice of width 1.25, in layers.
+std::vector<Vec3> lattice(std::uint32_t n) {
+  constexpr std::uint32_t side = 16;
+  std::vector<Vec3> centres;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    centres.push_back({1.25 * (i % side) + 0.625, 1.25 * (i / side % side) + 0.625,
+                       1.25 * (i / side / side) + 0.625});
+  }
+  return centres;
+}
+
+Study study_of(const Sizes& sizes) {
+  Study study = synthetic::study({.points = sizes.points,
+                                  .realizations = sizes.realizations,
+                                  .spheres = std::max(1u, sizes.spheres),
+                                  .taps = sizes.taps,
+                                  .snapshot_taps = {}});
+  study.resolved_scene = R"({"name": "synthetic", "protocol": [{"count": 1}]})";
+  for (StudyPoint& point : study.points) {
+    point.container = PeriodicBox{20, 20};
+    for (std::size_t k = 0; k < sizes.snapshots; ++k) point.snapshots.taps.push_back(k);
+    point.snapshots.velocities = point.snapshots.contacts = point.snapshots.forces = false;
+    point.snapshots.granular_temperature = point.snapshots.coordination = false;
+    point.snapshots.height_histogram = false;
+  }
+  return study;
+}
+
+/// The curve that is stored, [taps + 1, columns]: one tap of the first column is far above all.
+std::vector<double> rows_of(const Sizes& sizes, std::size_t n_columns, std::uint64_t peak) {
+  std::vector<double> rows;
+  rows.reserve((sizes.taps + 1) * n_columns);
+  for (std::uint64_t tap = 0; tap <= sizes.taps; ++tap) {
+    for (std::size_t c = 0; c < n_columns; ++c) {
+      rows.push_back(c == 0 && tap == peak ? 1e6
+                                           : 0.123456789 * double(c + 1) + 1e-7 * double(tap));
+    }
+  }
+  return rows;
+}
+
+ResultsFile file_of(const Sizes& sizes, const std::string& path, std::uint64_t peak = 7) {
+  const Study study = study_of(sizes);
+  const std::size_t n_columns = study.points.front().n_columns();
+  const std::vector<double> rows = rows_of(sizes, n_columns, peak);
+  const auto realization = [&](RealizationId) {
+    RealizationRecord record;
+    record.status = RealizationStatus::done;
+    record.state.emplace();
+    record.state->rows = sizes.taps + 1;
+    record.rows = rows;
+    for (std::size_t k = 0; k < sizes.snapshots; ++k) {
+      SnapshotRecord snapshot;
+      snapshot.tap = k;
+      snapshot.centres = lattice(sizes.spheres);
+      record.snapshots.push_back(std::move(snapshot));
+    }
+    return in_memory(std::move(record), n_columns);
+  };
+  write_results(path, {study, {}, {synthetic::provenance()}, "run", realization});
+  return ResultsFile(path);
+}
+
+/// A table of profiles at a sweep point.
+Table profile_of(std::uint32_t point, std::size_t number) {
+  constexpr std::size_t n_taps = 4, n_places = 120;
+  std::vector<std::uint64_t> taps{0, 1, 10, 100};
+  std::vector<double> places(n_places), values(n_taps * n_places);
+  for (std::size_t i = 0; i < n_places; ++i) places[i] = 0.1 * double(i);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.123456789 * double(i + point);
+  return {.name = fmt::format("point_{:04}/profile/part_{}", point, number),
+          .axes = {{.name = "tap", .axes = {"tap"}, .values = taps},
+                   {.name = "height", .axes = {"height"}, .values = places}},
+          .quantities = {{.name = "phi", .axes = {"tap", "height"}, .values = values}}};
+}
+
+Json data_of(const ResultsFile& file) {
+  return page_data(file, "", {.drawn = DrawnRoom::of_one_in(1), .packing_bytes = 4'000'000}, 2);
+}
+
+std::string said(const Json& data) {
+  std::string text;
+  for (const Json& one : data.at("left_out").elements()) text += one.text() + "\n";
+  return text;
+}
+
+std::size_t page_bytes(const ResultsFile& file) {
+  const PageSource source{file, ""};
+  return report_page({&source, 1}, synthetic::provenance(), 2).size();
+}
+
+}  // namespace
+
+TEST_CASE("curves of hundreds of sweep points are thinned to the room, ends and peaks kept") {
+  const TemporaryFolder folder;
+  const ResultsFile file = file_of({.points = 700, .taps = 300}, folder / "many.h5", 187);
+  const Json data = data_of(file);
+  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 5 taps a decade"));
+  CHECK_THAT(said(data), Catch::Contains("of 700 sweep points, evenly spread"));
+  const auto& curves = data.at("curves").elements();
+  REQUIRE(curves.size() > 300);
+  CHECK(curves.size() < 700);
+  CHECK(curves.front().at("point").whole_number() == 0);
+  CHECK(curves.back().at("point").whole_number() > 690);
+  for (const Json& curve : {curves.front(), curves.back()}) {
+    const auto& taps = curve.at("taps").elements();
+    const auto& mean = curve.at("columns").elements().front().at("mean").elements();
+    REQUIRE(taps.size() == mean.size());
+    CHECK(taps.front().whole_number() == 0);
+    CHECK(taps.back().whole_number() == 300);
+    const auto peak =
+        std::ranges::find_if(taps, [](const Json& tap) { return tap.whole_number() == 187; });
+    REQUIRE(peak != taps.end());
+    CHECK(mean[static_cast<std::size_t>(peak - taps.begin())].number() == 1e6);
+    CHECK(std::ranges::is_sorted(taps, {}, [](const Json& tap) { return tap.whole_number(); }));
+  }
+  CHECK(data.at("points").elements().size() == 700);
+  CHECK(page_bytes(file) < most_bytes);
+}
+
+TEST_CASE("a very long series is thinned and says so") {
+  const TemporaryFolder folder;
+  const ResultsFile file = file_of({.taps = 300'000}, folder / "long.h5", 123'457);
+  const Json data = data_of(file);
+  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 40 taps a decade"));
+  const auto& taps = data.at("curves").elements().front().at("taps").elements();
+  CHECK(taps.size() < 300);
+  CHECK(taps.back().whole_number() == 300'000);
+  CHECK(std::ranges::any_of(taps, [](const Json& tap) { return tap.whole_number() == 123'457; }));
+  CHECK(page_bytes(file) < 1'000'000);
+}
+
+TEST_CASE("packings of many realizations are chosen, the first and the last tap kept") {
+  const TemporaryFolder folder;
+  const ResultsFile file =
+      file_of({.points = 2, .realizations = 120, .spheres = 2816, .taps = 3, .snapshots = 3},
+              folder / "packings.h5");
+  const Json data = data_of(file);
+  CHECK_THAT(said(data),
+             Catch::Contains("kept packings are drawn: evenly spread over sweep points"));
+  CHECK_THAT(said(data), Catch::Contains("20 realizations of each"));
+  const auto& packings = data.at("packings").elements();
+  CHECK(packings.size() > 30);
+  CHECK(packings.size() < 2 * 20 * 3);
+  CHECK(packings.front().at("tap").whole_number() == 0);
+  CHECK(packings.back().at("tap").whole_number() == 2);
+  CHECK(packings.back().at("point").whole_number() == 1);
+  const std::size_t bytes = script_text(data).size() + page_template().size();
+  CHECK(bytes > 3'000'000);  // it does use its room
+  CHECK(bytes < most_bytes);
+}
+
+TEST_CASE("tables of hundreds of sweep points are thinned, and then left out at some points") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "tables.h5";
+  { const ResultsFile file = file_of({.points = 500}, path); }
+  std::vector<Table> tables;
+  for (std::uint32_t point = 0; point < 500; ++point) {
+    for (std::size_t number = 0; number < 3; ++number) tables.push_back(profile_of(point, number));
+  }
+  store_tables(path, "structure", tables, synthetic::provenance());
+  const ResultsFile file(path);
+  const Json data = data_of(file);
+  CHECK_THAT(said(data), Catch::Contains("tables are drawn at some of their taps and places"));
+  CHECK_THAT(said(data), Catch::Contains("of 500 sweep points, evenly spread"));
+  const auto& kept = data.at("tables").elements();
+  CHECK(kept.size() > 300);
+  CHECK(kept.size() < tables.size());
+  CHECK(kept.front().at("name").text() == "point_0000/profile/part_0");
+  CHECK(kept.back().at("name").text() == "point_0499/profile/part_2");
+  const std::size_t bytes = page_bytes(file);
+  CHECK(bytes > 1'000'000);
+  CHECK(bytes < most_bytes);
+}
+
+TEST_CASE("files on one page share its room") {
+  const TemporaryFolder folder;
+  const Sizes sizes{.points = 300, .realizations = 2, .spheres = 64, .taps = 300, .snapshots = 2};
+  const ResultsFile one = file_of(sizes, folder / "one.h5"),
+                    two = file_of(sizes, folder / "two.h5");
+  const PageSource sources[] = {{one, ""}, {two, ""}};
+  CHECK(report_page(sources, synthetic::provenance(), 2).size() < most_bytes);
+}
