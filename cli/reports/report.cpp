@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -85,12 +86,16 @@ std::string fitting_line(const ResultsFile& file, std::uint32_t point) {
     }
   }
   if (!(mean.spheres_moved > 0)) return "";
+  const std::string central =
+      std::isfinite(mean.central_fraction_before) && std::isfinite(mean.central_fraction_after)
+          ? fmt::format("{:.4f} -> {:.4f}", mean.central_fraction_before,
+                        mean.central_fraction_after)
+          : "not known, the bed is too shallow for it";
   return fmt::format(
       "fitting between the walls moved {:.0f} of {} spheres, up by {:.2f} d on average: "
-      "corrected fraction {:.4f} -> {:.4f}, away from the walls {:.4f} -> {:.4f}\n",
+      "corrected fraction {:.4f} -> {:.4f}, away from the walls {}\n",
       mean.spheres_moved, file.study().points[point].n_spheres, mean.mean_rise,
-      mean.corrected_fraction_before, mean.corrected_fraction_after, mean.central_fraction_before,
-      mean.central_fraction_after);
+      mean.corrected_fraction_before, mean.corrected_fraction_after, central);
 }
 
 /// Realizations of one point by how they ended, and what they cost.

@@ -35,8 +35,11 @@ constexpr CurveGrid changing_grids[] = {{40, 400}, {20, 100}, {10, 40}, {5, 20}}
 constexpr std::size_t arrays_of_a_column = 4;
 
 std::size_t curve_values(const ResultsFile& file, std::uint32_t point, const CurveGrid& grid) {
-  return grid.taps(file.n_stored_rows(point)).size() *
-         (1 + arrays_of_a_column * file.study().points[point].n_columns());
+  const std::size_t n_columns = file.study().points[point].n_columns();
+  const std::size_t n_extremes = 2 * n_columns;  // at most, of taps
+  return std::min<std::size_t>(grid.taps(file.n_stored_rows(point)).size() + n_extremes,
+                               file.n_stored_rows(point)) *
+         (1 + arrays_of_a_column * n_columns);
 }
 
 DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const CurveGrid& grid) {

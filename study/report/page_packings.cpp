@@ -17,8 +17,8 @@
 namespace jostle::inline study {
 namespace {
 
-/// Text of a sphere: 6 bytes of position and 4 of columns, in base64.
-constexpr double bytes_of_a_sphere = 10 * 4.0 / 3;
+/// Text of a sphere: 6 bytes of position and 5 of columns, in base64.
+constexpr double bytes_of_a_sphere = 11 * 4.0 / 3;
 
 struct KeptRealization {
   RealizationId id;
@@ -118,7 +118,33 @@ std::string encoded(const std::vector<ParticleColumn>& columns, const char* name
   return base64(bytes);
 }
 
-Json page_packing(RealizationId id, std::uint64_t tap, const Packing& packing) {
+/// The sum of the normal forces on each sphere, m g; of the floor and the sides too.
+std::vector<double> forces_on(std::size_t n_spheres, const std::vector<Contact>& contacts) {
+  std::vector<double> forces(n_spheres);
+  for (const Contact& contact : contacts) {
+    for (const std::uint32_t sphere : {contact.first, contact.second}) {
+      if (sphere < n_spheres) forces[sphere] += contact.normal_force;  // others are walls
+    }
+  }
+  return forces;
+}
+
+void add_forces(Json& json, std::size_t n_spheres, const std::vector<Contact>& contacts) {
+  if (contacts.empty() || n_spheres == 0) return;
+  const std::vector<double> forces = forces_on(n_spheres, contacts);
+  const double greatest = std::ranges::max(forces);
+  if (!(greatest > 0) || !std::isfinite(greatest)) return;
+  std::vector<std::uint8_t> bytes;
+  for (const double force : forces) {
+    const double share = std::clamp(force / greatest, 0.0, 1.0);
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * share)));
+  }
+  json["force"] = base64(bytes);
+  json["greatest_force"] = page_number(greatest);
+}
+
+Json page_packing(RealizationId id, std::uint64_t tap, const Packing& packing,
+                  const std::vector<Contact>& contacts) {
   const Vec3 upper = upper_corner(packing);
   Json json{{"point", id.point},
             {"realization", id.realization},
@@ -140,6 +166,7 @@ Json page_packing(RealizationId id, std::uint64_t tap, const Packing& packing) {
   } catch (const std::invalid_argument&) {  // a centre outside, of another program
     json["position"] = encoded_positions(packing, upper);
   }
+  add_forces(json, packing.centres.size(), contacts);
   return json;
 }
 
@@ -175,9 +202,13 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
                     most_points, most_realizations));
   }
   std::vector<Packing> packings;
+  std::vector<std::vector<Contact>> contacts;
   for (const auto& [id, tap] : chosen.packings) {
-    packings.push_back({file.study().points[id.point].container,
-                        file.realization(id)->vectors(tap, kept_positions)});
+    const auto realization = file.realization(id);
+    packings.push_back(
+        {file.study().points[id.point].container, realization->vectors(tap, kept_positions)});
+    contacts.push_back(file.study().points[id.point].snapshots.contacts ? realization->contacts(tap)
+                                                                        : std::vector<Contact>{});
   }
   std::vector<Json> made(packings.size());
   std::atomic<std::size_t> next = 0;
@@ -185,7 +216,8 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   on_threads(threads, [&] {
     for (std::size_t i = next++; i < packings.size(); i = next++) {
       try {
-        made[i] = page_packing(chosen.packings[i].first, chosen.packings[i].second, packings[i]);
+        made[i] = page_packing(chosen.packings[i].first, chosen.packings[i].second, packings[i],
+                               contacts[i]);
       } catch (...) {
         failures[i] = std::current_exception();
       }

@@ -181,6 +181,41 @@ class Grains(Open):
         for word in ("Kinetic energy", "Contacts"):
             self.assertIn(word, titles)
 
+    def test_forces_are_those_of_the_contacts(self):
+        packings = self.data()["files"][0]["packings"]
+        self.assertEqual([(one["realization"], one["tap"]) for one in packings],
+                         [(0, 0), (0, 2), (1, 0), (1, 2)])
+        with h5py.File(FOLDER / "grains.h5") as file:
+            for one in packings:
+                group = file[f"particles/point_0000_realization_{one['realization']:05}"]
+                step = list(group["position/step"][()]).index(one["tap"])
+                ends = [*group["contacts/offset"][()], len(group["contacts/first"])]
+                own = slice(ends[step], ends[step + 1])
+                force = numpy.zeros(60)
+                for key in ("first", "second"):
+                    sphere = group[f"contacts/{key}"][own]
+                    is_sphere = sphere < 60
+                    numpy.add.at(force, sphere[is_sphere], group["contacts/normal_force"][own][is_sphere])
+                drawn = numpy.frombuffer(base64.b64decode(one["force"]), numpy.uint8)
+                self.assertAlmostEqual(one["greatest_force"], force.max(), delta=1e-5 * force.max())
+                self.assertGreater(force.max(), 1)
+                numpy.testing.assert_allclose(drawn / 255 * force.max(), force, atol=force.max() / 500)
+
+    def test_spheres_are_coloured_by_force(self):
+        BROWSER.show(BROWSER.find("canvas.packing"))
+        menu = next(Select(one.find_element(By.TAG_NAME, "select")) for one in BROWSER.find_all("label.chooser")
+                    if one.text.startswith("Colour by"))
+        before = BROWSER.picture(BROWSER.find("canvas.packing"))
+        menu.select_by_visible_text("force")
+        self.assertNotEqual(BROWSER.picture(BROWSER.find("canvas.packing")), before)
+        key = BROWSER.find(".packing-panel .key").text
+        self.assertIn("sum of the normal forces on a sphere, m g", key)
+        self.assertRegex(key, r"\d and more")
+        BROWSER.run("document.querySelector('.packing-panel details').open = true")
+        rows = BROWSER.wait(lambda: BROWSER.find_all(".packing-panel details tbody tr"))
+        self.assertEqual(sum(int(row.find_elements(By.TAG_NAME, "td")[0].text) for row in rows), 60)
+        self.assertIn("and more", rows[-1].text)
+
 
 class Cost(Open):
     name = "cost"

@@ -33,9 +33,18 @@ export const colourings = {
        values: (packing) => Float32Array.from(bytesOf(packing.q6 ?? ""), (value) => value / 255), range: () => [0.25, 0.6]},
   local_fraction: {label: "local packing fraction", title: "sphere volume over the volume of its Voronoi cell",
                    values: (packing) => Float32Array.from(bytesOf(packing.local_fraction ?? ""), (value) => value / 255), range: () => [0.4, 0.75]},
+  force: {label: "force", title: "sum of the normal forces on a sphere, m g", openEnded: true,
+          values: (packing) => Float32Array.from(bytesOf(packing.force ?? ""), (value) => value / 255 * packing.greatest_force),
+          range: (packing) => [0, mostForces(packing)]},
   height: {label: "height", title: "height of the centre, diameters", values: (packing, centres) => centres.filter((_, i) => i % 3 === 2),
            range: (packing) => [0, packing.upper[2]]},
 };
+
+/// What 19 of 20 spheres do not exceed: few bear very much, and would leave the others one colour.
+function mostForces(packing) {
+  const bytes = bytesOf(packing.force).sort();
+  return Math.max(bytes[Math.floor(0.95 * (bytes.length - 1))], 1) / 255 * packing.greatest_force;
+}
 
 export function possible(packing) {
   return Object.keys(colourings).filter((name) => name === "height" || packing[name]);
@@ -58,7 +67,8 @@ export function keyOf(name, packing) {
   if (one.names) return {names: one.names.map((text, i) => [text, hex(structureColours[i])])};
   const [low, high] = one.range(packing);
   const stops = Array.from({length: 11}, (_, i) => hex(viridis(i / 10)));
-  return {bar: `linear-gradient(to right, ${stops.join(",")})`, low: number(low, 3), high: number(high, 3)};
+  return {bar: `linear-gradient(to right, ${stops.join(",")})`, low: number(low, 3),
+          high: one.openEnded ? `${number(high, 3)} and more` : number(high, 3)};
 }
 
 /// How many spheres have which value, for those who do not see the picture.
@@ -74,6 +84,7 @@ export function tally(name, packing, values, isShown) {
     counts.set(bin, (counts.get(bin) ?? 0) + 1);
   });
   const label = (bin) => typeof bin === "string" ? bin : one.whole ? String(bin)
+    : one.openEnded && bin === 9 ? `${number(low + bin * width, 3)} and more`
     : `${number(low + bin * width, 3)} to ${number(low + (bin + 1) * width, 3)}`;
   return {total, rows: [...counts].sort(([a], [b]) => a < b ? -1 : 1).map(([bin, n]) => [label(bin), String(n), `${(100 * n / total).toFixed(1)} %`])};
 }

@@ -13,7 +13,7 @@ class PackingPanel {
     this.point = this.packings[0].point;
     this.realization = this.packings[0].realization;
     this.index = this.taps().length - 1;
-    this.colouring = possible(this.packings[0])[0];
+    this.colouring = this.wanted = possible(this.packings[0])[0];
     this.slices = {z: [0, 1], x: [0, 1], y: [0, 1]};
     this.canvas = element("canvas", {class: "packing", tabindex: 0, role: "img"});
     this.status = element("p", {class: "packing-status", "aria-live": "polite"});
@@ -35,6 +35,10 @@ class PackingPanel {
 
   series() {
     return this.packings.filter((one) => one.point === this.point && one.realization === this.realization);
+  }
+  /// What any packing can be coloured by; one that cannot has its first.
+  choices() {
+    return Object.keys(colourings).filter((name) => this.packings.some((one) => possible(one).includes(name)));
   }
   taps() { return this.series().map((one) => one.tap); }
   packing() { return this.series()[this.index]; }
@@ -74,9 +78,9 @@ class PackingPanel {
         this.choose();
       }) : "",
       taps.length > 1 ? element("label", {class: "chooser wide"}, element("span", {}, "Tap"), slider, this.tapText) : this.tapText,
-      chooser("Colour by", possible(this.packings[0]).map((name) => [name, colourings[name].label]), this.colouring, (value) => {
-        this.colouring = value;
-        this.paint();
+      chooser("Colour by", this.choices().map((name) => [name, colourings[name].label]), this.wanted, (value) => {
+        this.wanted = value;
+        this.choose();
       }),
       this.slice("z", "height"), this.slice("x", "x"), this.slice("y", "y"),
       element("div", {class: "actions"},
@@ -140,7 +144,7 @@ class PackingPanel {
     this.centres = centresOf(packing);
     this.tapText.textContent = `tap ${packing.tap}`;
     this.slider.setAttribute("aria-valuetext", `tap ${packing.tap}`);
-    if (!possible(packing).includes(this.colouring)) this.colouring = possible(packing)[0];
+    this.colouring = possible(packing).includes(this.wanted) ? this.wanted : possible(packing)[0];
     this.paint();
   }
 

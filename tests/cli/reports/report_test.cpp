@@ -1,6 +1,7 @@
 #include "cli/reports/report.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
@@ -41,6 +42,48 @@ std::string report_of_height(double last) {
 }
 
 }  // namespace
+
+namespace {
+
+/// The line about fitting, of realizations with these fractions away from the walls.
+std::string fitting_line_of(const std::vector<double>& before) {
+  const TemporaryFolder folder;
+  const auto n = static_cast<std::uint32_t>(before.size());
+  const Study study =
+      synthetic::study({.points = 1, .realizations = n, .taps = 0, .snapshot_taps = {}});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  for (std::uint32_t r = 0; r < n; ++r) {
+    store->begin({0, r});
+    store->append({0, r}, synthetic::expected_row(study, {0, r}, 0));
+    RealizationState state;
+    state.rows = 1;
+    state.fitting = {.spheres_moved = 3,
+                     .mean_rise = 1.5,
+                     .corrected_fraction_before = 0.58,
+                     .corrected_fraction_after = 0.51,
+                     .central_fraction_before = before[r],
+                     .central_fraction_after = before[r] - 0.01};
+    store->end({0, r}, state, {.status = RealizationStatus::done, .reason = {}});
+  }
+  store->finish();
+  const std::string text = report(ResultsFile(folder / "a.h5"));
+  const std::size_t at = text.find("fitting between the walls");
+  return at == std::string::npos ? text : text.substr(at, text.find("\n\n", at) - at);
+}
+
+}  // namespace
+
+TEST_CASE("A report tells what fitting did, and never a number that there is not") {
+  const double nan = std::nan("");
+  CHECK(fitting_line_of({0.6, 0.62}).find("away from the walls 0.6100 -> 0.6000") !=
+        std::string::npos);
+  CHECK(fitting_line_of({nan, 0.62}).find("away from the walls 0.6200 -> 0.6100") !=
+        std::string::npos);
+  const std::string shallow = fitting_line_of({nan, nan});
+  CAPTURE(shallow);
+  CHECK(shallow.find("away from the walls not known") != std::string::npos);
+  CHECK(shallow.find("nan") == std::string::npos);
+}
 
 TEST_CASE("A report says where taps make a bed grow without end") {
   CHECK(report_of_height(49).find("<Z> has grown") == std::string::npos);
