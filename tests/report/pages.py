@@ -20,7 +20,7 @@ GRAINS = {
     "name": "grains", "seed": 2010, "realizations": 2, "spheres": 60,
     "container": {"sides": "periodic", "width": 4}, "start": {"random_settle": {"dilute_fraction": 0.2}},
     "engine": {"discrete_element": {}}, "observe": ["mean_height"],
-    "snapshots": {"taps": [0, 2], "contacts": True},
+    "snapshots": {"taps": [0, 2]},
     "protocol": [{"tap": {"half_sine": {"amplitude": 0.4413, "frequency": 7.5}}, "count": 2}]}
 PLAIN = changed(TINY, name="plain", snapshots={"taps": []}, realizations=1)
 del PLAIN["sweep"]
