@@ -78,6 +78,7 @@ set(JOSTLE_PUBLIC_HEADERS
     results/record.hpp
     results/results_file.hpp
     results/run_store.hpp
+    results/slurm_job.hpp
     results/stored_realization.hpp
     results/study.hpp
     results/tables.hpp
@@ -92,9 +93,12 @@ set(JOSTLE_PUBLIC_HEADERS
     structure/voids/voronoi.hpp
     study/available_cpus.hpp
     study/bad_input.hpp
+    study/cluster/job_plan.hpp
+    study/cluster/shards.hpp
     study/cost/cost_run.hpp
     study/cost/cost_study.hpp
     study/cost/pilot.hpp
+    study/cost/scene_pilot.hpp
     study/merge.hpp
     study/observable_series.hpp
     study/provenance.hpp

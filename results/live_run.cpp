@@ -38,11 +38,11 @@ std::pair<std::uint64_t, long> version_of(const std::string& path) {
   return {status.st_ino, status.st_mtim.tv_nsec};
 }
 
-RunStatus look_once(const std::string& results_path) {
-  const ResultsFile file(results_path);
+RunStatus status_of(const ResultsFile& file, Realizations which, const std::string& results_path,
+                    SlurmQueue& queue) {
   RunStatus status{.state = file.state(),
-                   .owner = lock_owner(results_path),
-                   .realizations = file.realizations()};
+                   .owner = lock_owner(results_path, queue),
+                   .realizations = file.realizations(which)};
   take_parts(file, status.realizations);
   struct stat on_disk {};
   if (::stat(results_path.c_str(), &on_disk) == 0)
@@ -135,11 +135,25 @@ void write_copy(const std::string& named, const std::string& output, bool live) 
 
 RunStatus run_status(const std::string& named) {
   const std::string results_path = end_of_links(named);
+  SlurmQueue queue;
   for (;;) {
     const auto before = version_of(results_path);
-    const RunStatus status = look_once(results_path);
+    const RunStatus status =
+        status_of(ResultsFile(results_path), Realizations::all, results_path, queue);
     // Parts that a fold meanwhile took away are in the new file.
     if (version_of(results_path) == before) return status;
+  }
+}
+
+LiveLook look_at_run(const std::string& named, SlurmQueue& queue, const ResultsFile* sibling) {
+  const std::string results_path = end_of_links(named);
+  for (;;) {
+    const auto before = version_of(results_path);
+    ResultsFile file = sibling == nullptr
+                           ? ResultsFile(results_path, Verify::end_of_file)
+                           : ResultsFile(results_path, Verify::end_of_file, *sibling);
+    RunStatus status = status_of(file, Realizations::of_its_share, results_path, queue);
+    if (version_of(results_path) == before) return {std::move(file), std::move(status)};
   }
 }
 

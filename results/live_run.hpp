@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "results/results_file.hpp"
+#include "results/slurm_job.hpp"
 
 namespace jostle::inline results {
 
@@ -14,9 +15,12 @@ struct LockOwner {
   std::string host;
   long pid = 0;
   std::uint64_t start_time = 0;  // field 22 of /proc/PID/stat
-  bool alive = false;            // known only on its own host; elsewhere taken to be alive
+  std::optional<SlurmJob> job;   // where it is part of one
+  bool alive = false;  // known on its own host, and where Slurm knows its job; else taken to be
 };
 std::optional<LockOwner> lock_owner(const std::string& results_path);
+/// Of many files: Slurm is asked once for all.
+std::optional<LockOwner> lock_owner(const std::string& results_path, SlurmQueue& queue);
 
 /// A file and, where a run goes on or was killed, its parts.
 struct RunStatus {
@@ -28,6 +32,16 @@ struct RunStatus {
 
 /// Looks without disturbing: a live run may go on while this reads.
 RunStatus run_status(const std::string& results_path);
+
+/// A file and its status, of the realizations of its share. Of the file's checksum it is only
+/// looked whether there is one: a glance at many files does not read all of them.
+struct LiveLook {
+  ResultsFile file;
+  RunStatus status;
+};
+/// `sibling`: a file of the same study, if there is one; it makes this quicker.
+LiveLook look_at_run(const std::string& results_path, SlurmQueue& queue,
+                     const ResultsFile* sibling = nullptr);
 
 /// The file as it would be if the run stopped at its last checkpoints; where it has no parts, the
 /// file itself. Nothing beside it is touched: what is joined is a temporary file, in the folder

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
 #include "results/file/results_writer.hpp"
+#include "results/merge_inputs.hpp"
 #include "results/results_file.hpp"
 
 namespace jostle::inline results {
@@ -20,7 +22,7 @@ namespace {
 
 /// Where a realization of the merged study is read from.
 struct Source {
-  const ResultsFile* file;
+  std::size_t file;      // its number among the inputs
   RealizationId stored;  // by the file's own numbers of points
 };
 using Owners = std::map<RealizationId, Source>;
@@ -46,15 +48,14 @@ void check_same_starts(const ResultsFile& first, const ResultsFile& other) {
                                    *point, first.path()));
 }
 
-void claim(Owners& owners, const ResultsFile& file, const Study& study) {
-  if (file.state() != RunState::complete || parts_exist(file.path()))
-    throw ResultsError(file.path(), "is not finished; resume its run to the end");
+void claim(Owners& owners, MergeInputs& inputs, std::size_t number, const Study& study) {
+  const ResultsFile& file = inputs.open(number);
   if (file.study().realizations != study.realizations)
     throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; resume "
                                                 "its run with more",
                                                 file.study().realizations, study.realizations));
   const PointNumbers numbers(study);
-  for (const RealizationSummary& summary : file.realizations()) {
+  for (const RealizationSummary& summary : file.realizations(Realizations::of_its_share)) {
     if (summary.status == RealizationStatus::missing) continue;
     const auto point = numbers.of(file.study().points[summary.id.point].id);
     if (!point)
@@ -62,19 +63,63 @@ void claim(Owners& owners, const ResultsFile& file, const Study& study) {
                                                   "merged scene",
                                                   summary.id.point));
     const RealizationId id{*point, summary.id.realization};
-    const auto [owner, is_new] = owners.emplace(id, Source{&file, summary.id});
+    const auto [owner, is_new] = owners.emplace(id, Source{number, summary.id});
     if (!is_new)
-      throw ResultsError(file.path(), fmt::format("overlaps {}: both hold {}",
-                                                  owner->second.file->path(), named(id)));
+      throw ResultsError(file.path(),
+                         fmt::format("overlaps {}: both hold {}",
+                                     inputs.files()[owner->second.file].path(), named(id)));
   }
 }
 
-void check_gaps(const Owners& owners, const Study& study, const std::string& output) {
-  for (const RealizationId id : realizations_of(study, {}))
-    if (!owners.contains(id))
-      throw ResultsError(output, fmt::format("cannot be merged: no input holds {}; a shard or "
-                                             "a point of the joined sweep is missing",
-                                             named(id)));
+/// Shares of which no file is there, as "3, 7 of 40"; empty where the files are no shares of one
+/// run.
+std::string missing_shares(const std::vector<ResultsFile>& files) {
+  const std::uint32_t count = files.front().shard().count;
+  std::vector<bool> is_there(count + 1, false);
+  for (const ResultsFile& file : files) {
+    if (file.shard().count != count) return "";
+    is_there[file.shard().index] = true;
+  }
+  constexpr std::size_t most = 50;
+  std::string text;
+  std::size_t n = 0;
+  for (std::uint32_t index = 1; index <= count; ++index) {
+    if (is_there[index] || ++n > most) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", index);
+  }
+  if (n > most) text += fmt::format(" and {} more", n - most);
+  return n == 0 ? "" : fmt::format("{} of {}", text, count);
+}
+
+void check_gaps(const Owners& owners, const Study& study, const std::vector<ResultsFile>& files,
+                const std::string& output) {
+  for (const RealizationId id : realizations_of(study, {})) {
+    if (owners.contains(id)) continue;
+    if (const std::string shares = missing_shares(files); !shares.empty())
+      throw ResultsError(output, fmt::format("cannot be merged: no input holds shard {} ({}, for "
+                                             "one)",
+                                             shares, named(id)));
+    throw ResultsError(output, fmt::format("cannot be merged: no input holds {}; a shard or "
+                                           "a point of the joined sweep is missing",
+                                           named(id)));
+  }
+}
+
+/// Every unfinished file is named, so that all can be resumed at once.
+void require_finished(const std::vector<ResultsFile>& files) {
+  constexpr std::size_t most = 20;
+  std::vector<std::string> unfinished;
+  for (const ResultsFile& file : files)
+    if (file.state() != RunState::complete || parts_exist(file.path()))
+      unfinished.push_back(file.path());
+  if (unfinished.empty()) return;
+  std::string others;
+  for (std::size_t i = 1; i < std::min(unfinished.size(), most); ++i)
+    others += (i > 1 ? ", " : "") + unfinished[i];
+  if (unfinished.size() > most) others += fmt::format(" and {} more", unfinished.size() - most);
+  throw ResultsError(unfinished.front(), fmt::format("is not finished{}; resume {} to the end",
+                                                     others.empty() ? "" : ", nor are " + others,
+                                                     others.empty() ? "its run" : "their runs"));
 }
 
 /// The merged file holds what its inputs hold, compressed alike.
@@ -115,24 +160,25 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
         "choose another name, or discard them",
         ResultsError::Force::helps);
   if (inputs.empty()) throw ResultsError(output, "nothing to merge");
-  std::vector<ResultsFile> files;
-  for (const std::string& input : inputs) files.emplace_back(input);
+  MergeInputs read(inputs);
+  const std::vector<ResultsFile>& files = read.files();
+  require_finished(files);
   Owners owners;
-  for (const ResultsFile& file : files) {
-    if (!whole) check_same_study(files.front(), file);
-    check_same_starts(files.front(), file);
-    claim(owners, file, whole ? *whole : files.front().study());
+  for (std::size_t number = 0; number < files.size(); ++number) {
+    if (!whole) check_same_study(files.front(), files[number]);
+    check_same_starts(files.front(), files[number]);
+    claim(owners, read, number, whole ? *whole : files.front().study());
   }
-  check_gaps(owners, whole ? *whole : files.front().study(), output);
+  check_gaps(owners, whole ? *whole : files.front().study(), files, output);
   // Scenes that mean the same may be written differently: whatever the order of the inputs, one is
   // kept.
-  const Study& study = whole ? *whole : owners.begin()->second.file->study();
+  const Study& study = whole ? *whole : files[owners.begin()->second.file].study();
   require_free_space(output, bytes_of(inputs));
   write_results(output,
                 {study, Shard{}, all_processes(files, provenance), random_identity(),
                  [&](RealizationId id) {
                    const Source& source = owners.at(id);
-                   return source.file->realization(source.stored);
+                   return read.realization(source.file, source.stored);
                  }},
                 [&] { remove_parts(output); });
 }

@@ -1,11 +1,15 @@
 #include "results/results_file.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <span>
 
 #include "results/checkpoints/part.hpp"
+#include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/seal.hpp"
 #include "results/file/axes.hpp"
 #include "results/file/layout.hpp"
@@ -30,8 +34,8 @@ const char* name_of(RunState state) {
 
 namespace {
 
-Hdf5Handle open_sealed(const std::string& path, const std::string& known_as) {
-  verify_seal(path);
+Hdf5Handle open_sealed(const std::string& path, const std::string& known_as, Verify verify) {
+  verify == Verify::whole_file ? verify_seal(path) : require_seal(path);
   silence_hdf5();
   return naming_file(known_as, [&] { return open_to_read(path); });
 }
@@ -62,13 +66,48 @@ void require_rows(const PointTables& tables, const StudyPoint& point) {
 
 }  // namespace
 
-ResultsFile::Impl::Impl(const std::string& name, const std::string& known_as)
-    : path(known_as), file(open_sealed(name, known_as)) {
+ResultsFile::Impl::Impl(const std::string& name, const std::string& known_as, Verify verify,
+                        const Impl* sibling)
+    : path(known_as),
+      name_(name),
+      file_(open_sealed(name, known_as, verify)),
+      version_(version_of(name)),
+      shared_study_(naming_file(known_as,
+                                [&]() -> std::shared_ptr<const Study> {
+                                  if (sibling != nullptr && has_study(file_, sibling->study))
+                                    return sibling->shared_study_;
+                                  return std::make_shared<const Study>(read_study(file_));
+                                })),
+      study(*shared_study_) {
   naming_file(path, [&] {
-    study = read_study(file);
-    provenance = read_provenance(file);
+    provenance = read_provenance(file_);
     validate(study, provenance);
   });
+}
+
+ResultsFile::Impl::Version ResultsFile::Impl::version_of(const std::string& name) {
+  struct stat status {};
+  if (::stat(name.c_str(), &status) != 0) fail_on_disk(name, "open", errno);
+  return {status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
+          static_cast<std::uint64_t>(status.st_mtim.tv_sec),
+          static_cast<std::uint64_t>(status.st_mtim.tv_nsec)};
+}
+
+const Hdf5Handle& ResultsFile::Impl::file() const {
+  if (file_ < 0) {
+    if (version_of(name_) != version_)
+      throw ResultsError(path, "has changed since it was first read");
+    file_ = open_to_read(name_);
+  }
+  return file_;
+}
+
+void ResultsFile::Impl::rest() {
+  cached_.reset();
+  row_blocks_.clear();
+  for (auto& blocks : profile_blocks_) blocks.clear();
+  frames_.clear();
+  file_ = Hdf5Handle();
 }
 
 PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
@@ -82,17 +121,17 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
     tables.work.resize(study.realizations);
     return tables;
   }
-  const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+  const Hdf5Handle observables = open_group(file(), "observables/" + point_name(point));
   const Shape each{study.realizations};
   tables.statuses = read_numbers<std::uint8_t>(observables, "status", &each);
   tables.rows = read_numbers<std::uint64_t>(observables, "rows", &each);
   require_shape(observables, "reason", each);
   tables.reasons = read_texts(observables, "reason");
   require_rows(tables, study.points.at(point));
-  const Hdf5Handle timing = open_group(file, "timing/" + point_name(point));
+  const Hdf5Handle timing = open_group(file(), "timing/" + point_name(point));
   tables.work = read_work(timing, each);
   const Shape taken{study.points.at(point).snapshots.taps.size(), study.realizations};
-  const Hdf5Handle snapshots = open_group(file, "snapshots/" + point_name(point));
+  const Hdf5Handle snapshots = open_group(file(), "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
     tables.coordination = read_numbers<double>(snapshots, "coordination", &taken);
   tables.forces = read_bed_forces(snapshots, study.points[point], study.realizations);
@@ -107,9 +146,12 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   return tables;
 }
 
-ResultsFile::ResultsFile(const std::string& path) : ResultsFile(path, path) {}
+ResultsFile::ResultsFile(const std::string& path, Verify verify)
+    : impl_(std::make_unique<Impl>(path, path, verify)) {}
 ResultsFile::ResultsFile(const std::string& path, const std::string& known_as)
-    : impl_(std::make_unique<Impl>(path, known_as)) {}
+    : impl_(std::make_unique<Impl>(path, known_as, Verify::whole_file)) {}
+ResultsFile::ResultsFile(const std::string& path, Verify verify, const ResultsFile& sibling)
+    : impl_(std::make_unique<Impl>(path, path, verify, sibling.impl_.get())) {}
 ResultsFile::~ResultsFile() = default;
 ResultsFile::ResultsFile(ResultsFile&&) noexcept = default;
 
@@ -132,11 +174,19 @@ const std::vector<Provenance>& ResultsFile::provenance() const {
   return impl_->provenance.processes;
 }
 
-std::vector<RealizationSummary> ResultsFile::realizations() const {
+void ResultsFile::rest() const {
+  impl_->rest();
+}
+void ResultsFile::forget_rows() const {
+  impl_->forget_rows();
+}
+
+std::vector<RealizationSummary> ResultsFile::realizations(Realizations which) const {
   return naming_file(impl_->path, [&] {
     std::vector<RealizationSummary> all;
     for (std::uint32_t p = 0; p < study().points.size(); ++p) {
       for (std::uint32_t r = 0; r < study().realizations; ++r) {
+        if (which == Realizations::of_its_share && !in_share(shard(), study(), {p, r})) continue;
         RealizationSummary summary{.id = {p, r}, .reason = {}};
         const PointTables& tables = impl_->tables(p);
         summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
@@ -162,7 +212,7 @@ std::vector<Series> ResultsFile::series(std::uint32_t point) const {
 std::uint64_t ResultsFile::n_stored_rows(std::uint32_t point) const {
   return naming_file(impl_->path, [&]() -> std::uint64_t {
     if (!impl_->has_point(point)) return 0;
-    return impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point);
+    return impl_->stored_rows(open_group(impl_->file(), "observables/" + point_name(point)), point);
   });
 }
 
@@ -177,7 +227,7 @@ std::vector<double> ResultsFile::block(std::uint32_t point, const std::string& c
   const std::uint64_t n_taps = taps.end - taps.first, n_realizations = chosen.end - chosen.first;
   return naming_file(impl_->path, [&] {
     if (!impl_->has_point(point)) return std::vector<double>(n_taps * n_realizations, std::nan(""));
-    const Hdf5Handle group = open_group(impl_->file, "observables/" + point_name(point));
+    const Hdf5Handle group = open_group(impl_->file(), "observables/" + point_name(point));
     const std::uint64_t rows = impl_->stored_rows(group, point);
     require_shape(group, column, {rows, study().realizations});
     const std::uint64_t stored = std::min(taps.end, rows) - std::min(taps.first, rows);
@@ -191,9 +241,9 @@ std::vector<EnsembleSeries> ResultsFile::ensemble(std::uint32_t point) const {
   return naming_file(impl_->path, [&] {
     std::vector<EnsembleSeries> all;
     if (!impl_->has_point(point)) return all;
-    const Hdf5Handle group = open_group(impl_->file, "ensemble/" + point_name(point));
+    const Hdf5Handle group = open_group(impl_->file(), "ensemble/" + point_name(point));
     const Shape taps{
-        impl_->stored_rows(open_group(impl_->file, "observables/" + point_name(point)), point)};
+        impl_->stored_rows(open_group(impl_->file(), "observables/" + point_name(point)), point)};
     for (const Column& label : study().points.at(point).columns())
       all.push_back({label, read_numbers<double>(group, label.name + "_mean", &taps),
                      read_numbers<double>(group, label.name + "_sigma", &taps),
@@ -207,8 +257,8 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
   return naming_file(impl_->path, [&] {
     std::vector<RealizationValues> all;
     const std::string folder = std::string(fitting_folder) + "/" + point_name(point);
-    if (!exists(impl_->file, folder)) return all;
-    const Hdf5Handle group = open_group(impl_->file, folder);
+    if (!exists(impl_->file(), folder)) return all;
+    const Hdf5Handle group = open_group(impl_->file(), folder);
     const Shape each{study().realizations};
     for (const FittingColumn& column : fitting_columns)
       all.push_back({{column.name, column.units, column.long_name, "jostle"},
@@ -233,8 +283,8 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
   return naming_file(impl_->path, [&]() -> std::optional<RealizationState> {
     const std::string name =
         "restart/" + point_name(id.point) + "/" + realization_name(id.realization);
-    if (!impl_->has_point(id.point) || !exists(impl_->file, name)) return std::nullopt;
-    const auto bytes = read_numbers<std::uint8_t>(impl_->file, name);
+    if (!impl_->has_point(id.point) || !exists(impl_->file(), name)) return std::nullopt;
+    const auto bytes = read_numbers<std::uint8_t>(impl_->file(), name);
     ByteReader reader(std::as_bytes(std::span(bytes)));
     try {
       RealizationState state = get_realization_state(reader);

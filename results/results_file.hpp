@@ -56,6 +56,12 @@ struct RealizationValues {
 /// What of a realization is wanted.
 enum class Content { everything, without_snapshots };
 
+/// What of a file is looked at before it is read: all of it, against its checksum, or whether it
+/// ends with one.
+enum class Verify { whole_file, end_of_file };
+
+enum class Realizations { all, of_its_share };
+
 struct RealizationSummary {
   RealizationId id;
   RealizationStatus status = RealizationStatus::missing;
@@ -69,7 +75,9 @@ struct RealizationSummary {
 /// ResultsFile.
 class ResultsFile {
  public:
-  explicit ResultsFile(const std::string& path);
+  explicit ResultsFile(const std::string& path, Verify verify = Verify::whole_file);
+  /// One of many files of a study: it shares the study of `sibling` where it has the same.
+  ResultsFile(const std::string& path, Verify verify, const ResultsFile& sibling);
   /// One that stands in for `known_as`: path() and errors name that.
   ResultsFile(const std::string& path, const std::string& known_as);
   ~ResultsFile();
@@ -83,8 +91,8 @@ class ResultsFile {
   /// Marks this run's parts; random.
   const std::string& run_id() const;
 
-  /// Every (point, realization), points outermost.
-  std::vector<RealizationSummary> realizations() const;
+  /// Every (point, realization), points outermost; or those of its share alone.
+  std::vector<RealizationSummary> realizations(Realizations which = Realizations::all) const;
   /// The observables, then the diagnostics of the engine.
   std::vector<Series> series(std::uint32_t point) const;
   /// Labels of the same.
@@ -110,6 +118,10 @@ class ResultsFile {
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
   /// Its kept positions alone: tap and centres.
   std::vector<SnapshotRecord> positions(RealizationId id) const;
+  /// Gives back the file's descriptor and what was kept of it in memory, until it is read again.
+  void rest() const;
+  /// Gives back what was kept of its series.
+  void forget_rows() const;
   /// Derived tables of a group (results/tables.hpp), in the order of their names; none where there
   /// is no such group.
   std::vector<Table> tables(const std::string& group) const;

@@ -82,6 +82,7 @@ class RunStore::Impl {
   std::map<RealizationId, RealizationSummary> in_parts;  // last checkpoints
   std::mutex mutex;  // of `recorders`, `in_parts` and everything that touches HDF5
   std::map<RealizationId, std::unique_ptr<Recorder>> recorders;
+  RunLock lock;
 
  private:
   void open_file();
@@ -89,7 +90,6 @@ class RunStore::Impl {
   void check_shard_and_points() const;
   void fold_parts_of_the_stored_points();
 
-  RunLock lock;
   FileIdentity opened;  // of the file that `file` reads
 };
 
@@ -255,6 +255,10 @@ std::unique_ptr<RunStore> RunStore::resume(
 
 ResultsFile RunStore::close(std::unique_ptr<RunStore> store) {
   return std::move(*store->impl_->file);
+}
+
+std::string RunStore::lock_warning() const {
+  return impl_->lock.warning();
 }
 
 const ResultsFile& RunStore::results() const {

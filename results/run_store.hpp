@@ -44,6 +44,8 @@ class RunStore : public Sink {
   /// Ends a store: gives the lock back, and its file as the last fold left it, open and verified.
   static ResultsFile close(std::unique_ptr<RunStore> store);
 
+  /// What is to be told of its lock: that flock does not work here. Else empty.
+  std::string lock_warning() const;
   /// The file as the last fold left it, until the next one.
   const ResultsFile& results() const;
   /// Every (point, realization), points outermost, with the checkpoints that are newer than the

@@ -28,6 +28,8 @@ class StoredRealization {
   StoredRealization& operator=(const StoredRealization&) = delete;
   virtual ~StoredRealization() = default;
 
+  /// Realizations with the same are quickest read one after another.
+  virtual const void* source() const { return nullptr; }
   /// To be called once: where it goes on is not kept.
   virtual RealizationHead head() = 0;
   virtual std::uint64_t n_rows() const = 0;

@@ -219,9 +219,9 @@ std::vector<Table> ResultsFile::tables(const std::string& group) const {
     const auto read = [&](hid_t table, const std::string& name) {
       tables.push_back(read_table(table, name));
     };
-    if (exists(impl_->file, group)) {
+    if (exists(impl_->file(), group)) {
       Walk walk;
-      for_each_table(open_group(impl_->file, group), "", walk, read);
+      for_each_table(open_group(impl_->file(), group), "", walk, read);
     }
     return tables;
   });
@@ -233,8 +233,8 @@ std::vector<std::string> ResultsFile::table_names() const {
     const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
     Walk walk;
     for (const std::string group : derived_groups)
-      if (exists(impl_->file, group))
-        for_each_table(open_group(impl_->file, group), group, walk, name);
+      if (exists(impl_->file(), group))
+        for_each_table(open_group(impl_->file(), group), group, walk, name);
     std::ranges::sort(names);
     return names;
   });

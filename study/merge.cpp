@@ -12,14 +12,23 @@
 #include "study/scenes/stored_scene.hpp"
 
 namespace jostle::inline study {
+namespace {
+
+/// One file open at a time: there may be thousands. Whoever reads them verifies them.
+bool have_one_scene(std::span<const std::string> inputs) {
+  const ResultsFile first(inputs.front(), Verify::end_of_file);
+  return std::ranges::all_of(inputs, [&](const std::string& input) {
+    return ResultsFile(input, Verify::end_of_file, first).study().resolved_scene ==
+           first.study().resolved_scene;
+  });
+}
+
+}  // namespace
 
 std::optional<Study> joined_study(std::span<const std::string> inputs) {
+  if (inputs.empty() || have_one_scene(inputs)) return std::nullopt;
   std::vector<ResultsFile> files;
   for (const std::string& input : inputs) files.emplace_back(input);
-  const auto same = [&](const ResultsFile& file) {
-    return file.study().resolved_scene == files.front().study().resolved_scene;
-  };
-  if (std::ranges::all_of(files, same)) return std::nullopt;
   Json scene = stored_scene(files.front());
   ParsedScene joined;
   for (const ResultsFile& file : files) {

@@ -112,6 +112,8 @@ class SceneRun {
   const Progress& progress() const { return progress_; }
   /// Realizations of this run so far.
   const RunSummary& summary() const { return summary_; }
+  /// What is to be told of the file's lock; empty where all is well.
+  std::string lock_warning() const { return store_->lock_warning(); }
   /// Derived tables that the file had before: they do not outlive the data they were made of.
   const std::vector<std::string>& tables_before() const { return tables_before_; }
 

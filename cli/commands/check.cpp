@@ -19,7 +19,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
-#include "study/cost/pilot.hpp"
+#include "study/cost/scene_pilot.hpp"
 #include "study/scenes/grain_summary.hpp"
 #include "study/scenes/scene_file.hpp"
 #include "study/scenes/scene_warnings.hpp"
@@ -27,21 +27,11 @@
 namespace jostle::inline cli {
 namespace {
 
-constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
-constexpr double process_bytes = 40e6;               // libraries and bookkeeping
-
 struct CheckArguments {
   std::string scene;
   int threads = 0;  // 0: what the process may use
   bool no_pilot = false;
 };
-
-/// First, middle and last point: costs differ along a sweep.
-std::vector<std::size_t> pilot_points(std::size_t n_points) {
-  std::vector<std::size_t> points{0, n_points / 2, n_points - 1};
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
 
 void print_size(const LoadedScene& loaded, const Study& study) {
   std::uint64_t taps = 0;
@@ -100,40 +90,18 @@ void print_grains(const LoadedScene& loaded) {
   if (!text.empty()) print_wrapped("discrete elements\n" + text);
 }
 
-PilotEstimate tried(const Plan& plan, std::uint64_t budget) {
-  try {
-    return pilot(plan, budget);
-  } catch (const StartError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw BadInput(fmt::format("{}{}the pilot failed: {}", plan.label,
-                               plan.label.empty() ? "" : ": ", error.what()));
-  }
-}
-
 void print_pilot(const LoadedScene& loaded, int cpus) {
   print("cost, extrapolated from the first taps of a pilot\n");
-  const auto points = pilot_points(loaded.plans.size());
-  Seconds mean{0};
-  std::size_t bytes = 0;
-  bool settled = true;
-  for (const std::size_t point : points) {
-    const PilotEstimate estimate = tried(loaded.plans[point], pilot_budget / points.size());
-    print_pilot_line(loaded.plans[point], estimate);
-    mean += estimate.realization / static_cast<double>(points.size());
-    bytes = std::max(bytes, estimate.bytes);
-    settled = settled && estimate.settled;
-  }
+  const ScenePilot pilot(loaded, print_pilot_line);
   const std::size_t realizations = loaded.plans.size() * loaded.scene.realizations;
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t turns = (realizations + threads - 1) / threads;
-  const char* const about = settled ? "about" : "at least";
-  print_wrapped(fmt::format("  time: {} {} on {}, {:.3g} core-hours\n", about,
-                            format_duration(mean * static_cast<double>(turns)),
-                            counted(threads, "thread"),
-                            mean.count() * static_cast<double>(realizations) / 3600));
-  print_wrapped(fmt::format("  memory: about {}\n",
-                            format_bytes(process_bytes + static_cast<double>(threads * bytes))));
+  const Seconds mean = pilot.mean_realization();
+  print_wrapped(fmt::format(
+      "  time: {} {} on {}, {:.3g} core-hours\n", pilot.settled() ? "about" : "at least",
+      format_duration(mean * static_cast<double>(turns)), counted(threads, "thread"),
+      mean.count() * static_cast<double>(realizations) / 3600));
+  print_wrapped(fmt::format("  memory: about {}\n", format_bytes(pilot.bytes(threads))));
 }
 
 /// With its description a line at a time, which a scene may have.
@@ -163,11 +131,7 @@ void check(const CheckArguments& arguments) {
   const std::vector<std::string> warnings = scene_warnings(loaded);
   if (!warnings.empty()) print_wrapped(fmt::format("warnings\n  {}\n", joined(warnings, "\n  ")));
   if (arguments.no_pilot) return;
-  try {
-    print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());
-  } catch (const StartError& error) {
-    throw BadInput(fmt::format("{}: /start: {}", arguments.scene, error.what()));
-  }
+  print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());
 }
 
 }  // namespace

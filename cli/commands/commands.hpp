@@ -15,6 +15,8 @@ void add_schema(Command& app, int& code);
 void add_info(Command& app, int& code);
 void add_merge(Command& app, int& code);
 void add_bench(Command& app, int& code);
+void add_slurm(Command& app, int& code);
+void add_status(Command& app, int& code);
 void add_selftest(Command& app, int& code);
 void add_fit(Command& app, int& code);
 void add_analyse(Command& app, int& code);

@@ -14,6 +14,7 @@
 #include "results/merge.hpp"
 #include "study/available_cpus.hpp"
 #include "study/bad_input.hpp"
+#include "study/cluster/shards.hpp"
 #include "study/merge.hpp"
 #include "study/provenance.hpp"
 #include "study/scenes/scene_tables.hpp"
@@ -22,6 +23,7 @@ namespace jostle::inline cli {
 namespace {
 
 struct MergeArguments {
+  std::vector<std::string> named;  // files and folders
   std::vector<std::string> inputs;
   std::string output;
   bool force = false;
@@ -48,8 +50,9 @@ void add_merge(Command& app, int& code) {
   auto arguments = std::make_shared<MergeArguments>();
   command
       .add_option(
-          "files", arguments->inputs,
-          "Results: the shards, in any order, or runs of one scene with other values of its sweep")
+          "files", arguments->named,
+          "Results: the shards, in any order, or the folder they are in; or runs of one scene with "
+          "other values of its sweep")
       .required()
       .offers_files({"h5"});
   command.add_option("-o,--output", arguments->output, "The file to write")
@@ -62,11 +65,13 @@ void add_merge(Command& app, int& code) {
       "  jostle run scene.json --shard 1/2 -o a.h5\n"
       "  jostle run scene.json --shard 2/2 -o b.h5\n"
       "  jostle merge a.h5 b.h5 -o all.h5       the digest of all.h5 is that of an undivided run\n"
+      "  jostle merge scene.shards -o merged.h5  the shards of a folder\n"
       "  jostle merge low.h5 high.h5 -o all.h5  one sweep of two with other values of it\n"
       "\n"
       "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
       "scenes that differ in more than the values of their sweeps, naming which.");
   command.run([arguments, &code] {
+    arguments->inputs = results_files(arguments->named);
     require_output(*arguments);
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"), arguments->force,
                 joined_study(arguments->inputs));

@@ -37,6 +37,8 @@ void describe_program(CommandLine& line, int& code) {
   add_schema(app, code);
   add_info(app, code);
   add_merge(app, code);
+  add_slurm(app, code);
+  add_status(app, code);
   add_bench(app, code);
   add_selftest(app, code);
   add_fit(app, code);

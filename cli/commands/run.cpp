@@ -206,7 +206,9 @@ int run(const RunArguments& arguments) {
   settings.stop = &stop.flag();
   RunDisplay display(progress_style(arguments), settings.output, threads, !arguments.quiet);
   SceneRun run(loaded, settings, display);
-  for (const std::string& warning : scene_warnings(loaded))
+  std::vector<std::string> warnings = scene_warnings(loaded);
+  if (const std::string lock = run.lock_warning(); !lock.empty()) warnings.push_back(lock);
+  for (const std::string& warning : warnings)
     log_line(fmt::format("warning: {}", printable(warning)));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);

@@ -8,9 +8,13 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <cstring>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
+#include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
@@ -44,13 +48,44 @@ std::uint64_t start_time_of(long pid) {
   return rest ? std::stoull(word) : 0;
 }
 
+/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name". Whether it is alive
+/// is not in it.
 std::optional<LockOwner> parse_owner(const std::string& text) {
   std::istringstream words(text);
   LockOwner owner;
   if (!(words >> owner.host >> owner.pid >> owner.start_time)) return std::nullopt;
-  const std::uint64_t start_time = start_time_of(owner.pid);
-  owner.alive = owner.host != this_host() || (start_time != 0 && start_time == owner.start_time);
+  std::string kind;
+  SlurmJob job;
+  const bool is_job =
+      words >> kind >> job.cluster >> job.id >> job.restarts >> job.name && kind == "slurm";
+  if (is_job) owner.job = job;
   return owner;
+}
+
+std::string text_of_this_process() {
+  std::string text = fmt::format("{} {} {}", this_host(), ::getpid(), start_time_of(::getpid()));
+  if (const auto job = this_slurm_job())
+    text += fmt::format(" slurm {} {} {} {}", job->cluster, job->id, job->restarts, job->name);
+  return text + "\n";
+}
+
+/// `lock`: the user whose lock it is. Of another user's jobs Slurm may be silent.
+bool is_alive(const LockOwner& owner, uid_t lock, SlurmQueue& queue) {
+  if (owner.host == this_host()) {
+    const std::uint64_t start_time = start_time_of(owner.pid);
+    return start_time != 0 && start_time == owner.start_time;
+  }
+  if (!owner.job || lock != ::getuid()) return true;
+  const auto own = this_slurm_job();
+  const bool same = own && own->cluster == owner.job->cluster && own->id == owner.job->id;
+  // Slurm starts a job again when its last start is over.
+  if (same) return own->restarts <= owner.job->restarts;
+  return queue.runs(*owner.job).value_or(true);
+}
+
+std::string who(const LockOwner& owner) {
+  const std::string process = fmt::format("process {} on host {}", owner.pid, owner.host);
+  return owner.job ? fmt::format("{} (Slurm job {})", process, owner.job->name) : process;
 }
 
 std::string read_all(const std::string& path, int descriptor) {
@@ -69,18 +104,19 @@ bool is_still_at(const std::string& path, int descriptor) {
 }
 
 void refuse_living_owner(const std::string& path, const LockOwner& owner, bool force) {
+  if (!owner.alive) return;
   if (owner.host != this_host()) {
     if (force) return;
     throw ResultsError(path,
-                       fmt::format("process {} on host {} may still be working on this file; if it "
-                                   "is not, take the file over",
-                                   owner.pid, owner.host),
+                       fmt::format("{} may still be working on this file; if it is not, take the "
+                                   "file over",
+                                   who(owner)),
                        ResultsError::Force::helps);
   }
-  if (owner.alive && owner.pid != ::getpid())
-    throw ResultsError(path, fmt::format("process {} on this host is working on this file; wait "
-                                         "for it, or stop it",
-                                         owner.pid));
+  if (owner.pid == ::getpid()) return;
+  throw ResultsError(path, fmt::format("process {} on this host is working on this file; wait "
+                                       "for it, or stop it",
+                                       owner.pid));
 }
 
 /// Empty, or cut short, as a process of this host leaves it that was killed while it wrote.
@@ -94,6 +130,12 @@ bool is_half_written(const std::string& text) {
   throw ResultsError(path,
                      "is no lock of jostle, which needs this name: move it away, or name the "
                      "results file otherwise");
+}
+
+/// The system's words; errno 524, which servers send on, has none there.
+std::string reason_of(int error) {
+  constexpr int not_supported_by_server = 524;  // ENOTSUPP of the kernel
+  return std::strerror(error == not_supported_by_server ? ENOTSUP : error);
 }
 
 /// What a lock holds. It is written in place: what is no lock of ours must not be written over.
@@ -112,31 +154,90 @@ Descriptor open_lock(const std::string& path, int flags) {
       ::open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));
 }
 
-/// The lock file, opened and flocked; none if it was taken away meanwhile.
-Descriptor try_open(const std::string& path) {
-  Descriptor file = open_lock(path, O_RDWR | O_CREAT);
-  if (!file && (errno == EISDIR || errno == ENXIO || errno == ELOOP)) refuse_foreign(path);
-  if (!file) fail_on_disk(path, "create", errno);
-  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    const auto owner = parse_owner(read_lock(path, file.get()));
-    throw ResultsError(path,
-                       fmt::format("process {} is working on this file; wait for it, or "
-                                   "stop it",
-                                   owner ? fmt::format("{} on host {}", owner->pid, owner->host)
-                                         : std::string("unknown")));
+uid_t user_of(const std::string& path, int descriptor) {
+  struct stat status;
+  if (::fstat(descriptor, &status) != 0) fail_on_disk(path, "read", errno);
+  return status.st_uid;
+}
+
+/// Refuses a lock that a living process holds.
+void refuse_if_held(const std::string& path, const Descriptor& file, bool force) {
+  auto owner = parse_owner(read_lock(path, file.get()));
+  if (!owner) return;
+  SlurmQueue queue;
+  owner->alive = is_alive(*owner, user_of(path, file.get()), queue);
+  refuse_living_owner(path, *owner, force);
+}
+
+/// A lock file, and what this process knows of it.
+struct OpenedLock {
+  Descriptor file;
+  bool created = false;  // by this process: nobody else has it
+  int flock_error = 0;   // why flock does not work here
+};
+
+/// None if it was taken away meanwhile.
+OpenedLock try_open(const std::string& path) {
+  OpenedLock lock{open_lock(path, O_RDWR)};
+  if (!lock.file && errno == ENOENT) {
+    lock.file = open_lock(path, O_RDWR | O_CREAT | O_EXCL);
+    if (!lock.file && errno == EEXIST) return {};
+    lock.created = true;
   }
-  if (!is_still_at(path, file.get())) return {};
-  return file;
+  if (!lock.file && (errno == EISDIR || errno == ENXIO || errno == ELOOP)) refuse_foreign(path);
+  if (!lock.file) fail_on_disk(path, "create", errno);
+  int result = 0;
+  do {
+    result = ::flock(lock.file.get(), LOCK_EX | LOCK_NB);
+  } while (result != 0 && errno == EINTR);
+  if (result != 0 && errno == EWOULDBLOCK) {
+    const auto owner = parse_owner(read_lock(path, lock.file.get()));
+    throw ResultsError(path, fmt::format("{} is working on this file; wait for it, or stop it",
+                                         owner ? who(*owner) : "process unknown"));
+  }
+  if (result != 0) lock.flock_error = errno;
+  return is_still_at(path, lock.file.get()) ? std::move(lock) : OpenedLock{};
+}
+
+/// Where flock does not work, a lock that is there is another's: empty while that one writes it,
+/// which takes no second.
+void await_text(const std::string& path, const Descriptor& file) {
+  constexpr int most_looks = 20;
+  for (int looks = 0; looks < most_looks; ++looks) {
+    if (!is_half_written(read_lock(path, file.get()))) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+/// Takes a dead process's lock away, `seen` in it, so that this one can make its own. Between the
+/// look and the move another may have done the same: its lock is put back.
+void take_away(const std::string& path, const std::string& seen) {
+  const std::string aside = fmt::format("{}.{}", path, random_identity().substr(0, 8));
+  if (::rename(path.c_str(), aside.c_str()) != 0) {
+    if (errno == ENOENT) return;
+    fail_on_disk(path, "rename", errno);
+  }
+  const Descriptor file = open_lock(aside, O_RDONLY);
+  if (file && read_all(aside, file.get()) != seen) ::link(aside.c_str(), path.c_str());
+  ::unlink(aside.c_str());
 }
 
 }  // namespace
 
 RunLock::RunLock(const std::string& results_path, bool force) : path_(lock_path(results_path)) {
-  while (!file_) file_ = try_open(path_);
-  if (const auto owner = parse_owner(read_lock(path_, file_.get())))
-    refuse_living_owner(path_, *owner, force);
-  const std::string text =
-      fmt::format("{} {} {}\n", this_host(), ::getpid(), start_time_of(::getpid()));
+  OpenedLock lock;
+  for (;;) {
+    lock = try_open(path_);
+    if (!lock.file) continue;
+    const bool without_flock = lock.flock_error != 0 && !lock.created;
+    if (without_flock) await_text(path_, lock.file);
+    refuse_if_held(path_, lock.file, force);
+    if (!without_flock) break;
+    take_away(path_, read_all(path_, lock.file.get()));
+  }
+  file_ = std::move(lock.file);
+  flock_error_ = lock.flock_error;
+  const std::string text = text_of_this_process();
   if (::ftruncate(file_.get(), 0) != 0 ||
       ::pwrite(file_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
     const int error = errno;
@@ -149,12 +250,26 @@ RunLock::~RunLock() {
   if (is_still_at(path_, file_.get())) ::unlink(path_.c_str());
 }
 
-std::optional<LockOwner> lock_owner(const std::string& results_path) {
+std::string RunLock::warning() const {
+  if (flock_error_ == 0) return "";
+  return fmt::format(
+      "{}: this file system has no flock ({}); the file itself keeps other processes out", path_,
+      reason_of(flock_error_));
+}
+
+std::optional<LockOwner> lock_owner(const std::string& results_path, SlurmQueue& queue) {
   const std::string path = lock_path(results_path);
   const Descriptor file = open_lock(path, O_RDONLY);
   struct stat status;
   if (!file || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  return parse_owner(read_all(path, file.get()));
+  auto owner = parse_owner(read_all(path, file.get()));
+  if (owner) owner->alive = is_alive(*owner, status.st_uid, queue);
+  return owner;
+}
+
+std::optional<LockOwner> lock_owner(const std::string& results_path) {
+  SlurmQueue queue;
+  return lock_owner(results_path, queue);
 }
 
 }  // namespace jostle::inline results

@@ -62,16 +62,8 @@ std::string line_for(const std::string& path, const Descriptor& file, std::uint6
   return std::string(line_start) + hex(sum.finish()) + "\n";
 }
 
-}  // namespace
-
-void seal(const std::string& path) {
-  const Descriptor file = open_or_fail(path, O_RDWR | O_APPEND | O_NOFOLLOW);
-  const std::string line = line_for(path, file, size_of(path, file));
-  write_all(path, file.get(), std::as_bytes(std::span(line)));
-}
-
-void verify_seal(const std::string& path, const Take& take) {
-  const Descriptor file = open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+/// The last line of a results file, its checksum.
+std::string read_seal(const std::string& path, const Descriptor& file) {
   struct stat status;
   if (::fstat(file.get(), &status) != 0) fail_on_disk(path, "read", errno);
   if (!S_ISREG(status.st_mode))
@@ -80,12 +72,30 @@ void verify_seal(const std::string& path, const Take& take) {
     throw ResultsError(path, "not an HDF5 file");
   const std::uint64_t size = size_of(path, file);
   if (size < line_size) throw ResultsError(path, "truncated");
-  const std::string line = read_at(path, file, size - line_size, line_size);
+  std::string line = read_at(path, file, size - line_size, line_size);
   if (!line.starts_with(line_start))
     throw ResultsError(path,
                        "truncated, changed by another program, or not written by jostle (it does "
                        "not end with its checksum); restore it from a copy");
-  if (line != line_for(path, file, size - line_size, take))
+  return line;
+}
+
+}  // namespace
+
+void seal(const std::string& path) {
+  const Descriptor file = open_or_fail(path, O_RDWR | O_APPEND | O_NOFOLLOW);
+  const std::string line = line_for(path, file, size_of(path, file));
+  write_all(path, file.get(), std::as_bytes(std::span(line)));
+}
+
+void require_seal(const std::string& path) {
+  read_seal(path, open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY));
+}
+
+void verify_seal(const std::string& path, const Take& take) {
+  const Descriptor file = open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+  const std::string line = read_seal(path, file);
+  if (line != line_for(path, file, size_of(path, file) - line_size, take))
     throw ResultsError(path,
                        "damaged, or changed by another program (its checksum is wrong); restore it "
                        "from a copy");

@@ -12,6 +12,9 @@ namespace jostle::inline results {
 /// Appends the line to a file. Throws ResultsError.
 void seal(const std::string& path);
 
+/// Throws ResultsError where the file does not end as one that is whole. Reads its ends alone.
+void require_seal(const std::string& path);
+
 /// Throws ResultsError saying what is wrong with the file: missing, not HDF5, truncated, changed.
 /// `take` is given the whole file, piece by piece, before that is known: one reading is enough to
 /// verify and to copy.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include "engine/bed/random.hpp"
 #include "results/checkpoints/part.hpp"
@@ -19,6 +21,16 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// All NaN look alike in the file.
 double canonical(double value) {
   return std::isnan(value) ? nan : value;
+}
+
+/// Numbers of realizations, those of one source together.
+std::vector<std::uint32_t> by_source(
+    const std::vector<std::unique_ptr<StoredRealization>>& realizations) {
+  std::vector<std::uint32_t> order(realizations.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, std::less{},
+                           [&](std::uint32_t r) { return realizations[r]->source(); });
+  return order;
 }
 
 }  // namespace
@@ -118,11 +130,12 @@ void PointWriter::write_series(hid_t group, const Hdf5Handle& taps,
   }
   EnsembleWriter ensemble(group_under("ensemble"), labels_, n_taps);
   const std::uint64_t a_block = rows_a_block(n_realizations_, labels_.size());
+  const std::vector<std::uint32_t> order = by_source(realizations_);
   std::vector<double> rows;
   for (std::uint64_t first = 0; first < n_taps; first += a_block) {
     const std::uint64_t n = std::min(a_block, n_taps - first);
     SeriesBlock block(labels_.size(), first, n, n_realizations_);
-    for (std::uint32_t r = 0; r < n_realizations_; ++r) {
+    for (const std::uint32_t r : order) {
       const std::uint64_t end = std::clamp(rows_[r], first, first + n);
       rows.resize((end - first) * labels_.size());
       if (rows.empty()) continue;

@@ -24,6 +24,8 @@ class RecentlyUsed {
     return values_.front().second;
   }
 
+  void clear() { values_.clear(); }
+
  private:
   using Entry = std::pair<Key, Value>;
   std::list<Entry> values_;

@@ -35,7 +35,14 @@ struct PointTables {
 /// An open file, and the blocks of it that were read last.
 class ResultsFile::Impl {
  public:
-  Impl(const std::string& name, const std::string& known_as);
+  /// Keeps the study of `sibling` for its own where both have one scene.
+  Impl(const std::string& name, const std::string& known_as, Verify verify,
+       const Impl* sibling = nullptr);
+
+  /// Opened anew where rest() closed it. Throws ResultsError where another was put in its place.
+  const Hdf5Handle& file() const;
+  void rest();
+  void forget_rows() { row_blocks_.clear(); }
 
   /// Taps that the columns of a point hold: those beyond which no realization has come are left
   /// out.
@@ -50,7 +57,7 @@ class ResultsFile::Impl {
 
   /// Whether the file has the groups of a point: not before one of its realizations has begun.
   bool has_point(std::uint32_t point) const {
-    return exists(file, "observables/" + point_name(point));
+    return exists(file(), "observables/" + point_name(point));
   }
 
   const PointTables& tables(std::uint32_t point) {
@@ -62,7 +69,7 @@ class ResultsFile::Impl {
   const std::vector<std::vector<double>>& row_block(std::uint32_t point, std::uint64_t row) {
     const std::uint64_t first = row / block_rows(point) * block_rows(point);
     return row_blocks_.get({point, first}, [&] {
-      const Hdf5Handle observables = open_group(file, "observables/" + point_name(point));
+      const Hdf5Handle observables = open_group(file(), "observables/" + point_name(point));
       const std::uint64_t rows = stored_rows(observables, point);
       const std::uint64_t n = std::min(block_rows(point), rows - std::min(first, rows));
       std::vector<std::vector<double>> columns;
@@ -87,7 +94,7 @@ class ResultsFile::Impl {
     const std::uint64_t n_a_block = chunk_along_first(all)[0];
     const std::uint64_t first = snapshot / n_a_block * n_a_block;
     const auto& block = profile_blocks_[which].get({id.point, first}, [&] {
-      const Hdf5Handle group = open_group(file, "snapshots/" + point_name(id.point));
+      const Hdf5Handle group = open_group(file(), "snapshots/" + point_name(id.point));
       return read_block(group, height_profiles[which].name, {first, 0, 0},
                         {std::min(n_a_block, n_taps - first), study.realizations, n_bins});
     });
@@ -98,18 +105,28 @@ class ResultsFile::Impl {
   const ParticleFrames& frames(RealizationId id) {
     return frames_.get(id, [&] {
       const StudyPoint& point = study.points.at(id.point);
-      return ParticleFrames(file, particles_name(id), point.n_spheres, point.container);
+      return ParticleFrames(file(), particles_name(id), point.n_spheres, point.container);
     });
   }
 
   std::string path;
-  Hdf5Handle file;
-  Study study;
+
+ private:
+  /// Device, number, size and time of change.
+  using Version = std::array<std::uint64_t, 5>;
+  static Version version_of(const std::string& name);
+  PointTables read_tables(std::uint32_t point) const;
+
+  std::string name_;
+  mutable Hdf5Handle file_;
+  Version version_;
+  std::shared_ptr<const Study> shared_study_;
+
+ public:
+  const Study& study;
   FileProvenance provenance;
 
  private:
-  PointTables read_tables(std::uint32_t point) const;
-
   std::optional<PointTables> cached_;
   using Block = std::pair<std::uint32_t, std::uint64_t>;  // of a point, from a row or a snapshot on
   // Two, as what is written from them comes in other blocks where it has more realizations.

@@ -186,6 +186,15 @@ Study read_study(hid_t file) {
   return study;
 }
 
+bool has_study(hid_t file, const Study& study) {
+  check_layout(file);
+  const Hdf5Handle scene = open_group(file, "scene");
+  return read_text(scene, "resolved") == study.resolved_scene &&
+         read_text(scene, "verbatim") == study.scene &&
+         read_number_attribute<std::uint32_t>(scene, "realizations") == study.realizations &&
+         std::ranges::all_of(study.points, &std::string::empty, &StudyPoint::start_sum);
+}
+
 FileProvenance read_provenance(hid_t file) {
   const Hdf5Handle group = open_group(file, "provenance");
   FileProvenance provenance;

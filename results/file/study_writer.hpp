@@ -15,6 +15,9 @@ void write_provenance(hid_t file, const FileContent& content, RunState state);
 
 /// The same read back. Throw Hdf5Error.
 Study read_study(hid_t file);
+/// Whether that would give this study. Only the scenes are compared, so that it says no where they
+/// do not tell all: of starts from files.
+bool has_study(hid_t file, const Study& study);
 struct FileProvenance {
   std::string run_id;
   RunState state = RunState::running;

@@ -70,6 +70,8 @@ Hdf5Handle open_to_read(const std::string& path) {
   cache.decr_mode = H5C_decr__off;
   cache.flash_incr_mode = H5C_flash_incr__add_space;
   checked(H5Pset_mdc_config(access, &cache));
+  // What is read is never written in place; and where there is no flock, HDF5 would open nothing.
+  checked(H5Pset_file_locking(access, false, true));
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
 }
 

@@ -199,6 +199,7 @@ class Pilot {
             .units_per_second = units > 0 ? static_cast<double>(units) / moving_time_.count() : 0,
             .rounds_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
             .settled = settled_ && bed_.as_deep,
+            .start = scale * start_time,
             .realization = scale * (start_time + taps_time),
             .bytes = static_cast<std::size_t>(
                 scale * (static_cast<double>(dynamics_->bytes()) + observed))};

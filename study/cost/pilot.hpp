@@ -18,6 +18,7 @@ struct PilotEstimate {
   double rounds_per_tap = 0;    // units / spheres, mean over the protocol; a lower bound where
                                 // `settled` is false
   bool settled = false;         // whether start and taps met their stop rules within the budget
+  Seconds start{0};             // of that, until tap 0 is recorded
   Seconds realization{0};       // a whole one on one core; a lower bound likewise
   std::size_t bytes = 0;        // held by one running realization
 };

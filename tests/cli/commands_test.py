@@ -11,7 +11,7 @@ from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
         for command in ("new", "run", "check", "schema", "info", "merge", "fit", "bench",
-                        "selftest", "export", "report"):
+                        "selftest", "export", "report", "slurm", "status"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
                 self.assertIn("Example", text)

@@ -13,7 +13,7 @@ import unittest
 from support import JOSTLE, PLAIN, SOURCE, Case, changed
 
 COMMANDS = ("new", "run", "check", "cost", "schema", "info", "merge", "bench", "selftest", "fit",
-            "analyse", "structure", "export", "report")
+            "analyse", "structure", "export", "report", "slurm", "status")
 
 # A hundred taps of a small bed, with everything that quickstart observes and keeps.
 QUICK = {
@@ -53,7 +53,7 @@ INSTEAD_IN_DOCS = {
     "jostle cost scene.json --target 0.001 --observable bottom_fraction":
         "jostle cost scene.json --target 0.001 --observable bottom_fraction --replicates 2 --force",
     "jostle merge a.h5 b.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
-    "jostle merge part*.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
+    "jostle slurm scene.json": "jostle slurm scene.json --hours 1 --cpus 1 --jobs 1",
     "jostle fit data.csv": "jostle fit measured.csv",
     "jostle fit data.csv --realizations": "jostle fit experiments.csv --realizations",
     "jostle fit file.csv --model pore_tail": "jostle fit volumes.csv --model pore_tail",
@@ -111,9 +111,19 @@ class Examples(Case):
                                         1e-3 * math.cos(t * t * r) for r in (1, 2, 3)))
             for t in range(1, 200)))
         (self.folder / "of.json").unlink()
+        (self.folder / "scene.shards").mkdir()
+        for shard in (1, 2):
+            self.jostle("run", "scene.json", "--quiet", "--shard", f"{shard}/2", "-o",
+                        f"scene.shards/{shard}.h5")
         self.program = self.folder / "bin"
         self.program.mkdir()
         (self.program / "jostle").symlink_to(JOSTLE)
+
+    def copy_files(self, folder):
+        for path in self.folder.iterdir():
+            if path.is_file():
+                shutil.copy(path, folder)
+        shutil.copytree(self.folder / "scene.shards", folder / "scene.shards")
 
     def run_all(self, commands, folder, instead=instead):
         environment = {**PLAIN, "PATH": f"{self.program}:{os.environ['PATH']}"}
@@ -133,9 +143,7 @@ class Examples(Case):
             n += len(found)
             folder = self.folder / f"of_{command}"
             folder.mkdir()
-            for path in self.folder.iterdir():
-                if path.is_file():
-                    shutil.copy(path, folder)
+            self.copy_files(folder)
             self.run_all(found, folder)
         self.assertGreater(n, 35)
 
@@ -151,9 +159,7 @@ class Examples(Case):
             n += len(found)
             folder = self.folder / f"of_{page.parent.name}_{page.stem}"
             (folder / "config/scenes").mkdir(parents=True)
-            for path in self.folder.iterdir():
-                if path.is_file():
-                    shutil.copy(path, folder)
+            self.copy_files(folder)
             shipped = json.loads((SOURCE / "config/scenes/tutorial.json").read_text())
             small = {**shipped, "spheres": 30, "realizations": 4,
                      "container": {"sides": "periodic", "width": 3}, "relax": LONG["relax"]}

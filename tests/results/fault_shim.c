@@ -22,7 +22,9 @@
  *                        interrupted  the call alone fails with EINTR, if it reads or writes
  *                        shortened    half the bytes of a read or a write, one at least
  *
- * No action or no number: calls are only counted. */
+ * No action or no number: calls are only counted. Besides, and whatever these say:
+ *
+ *   JOSTLE_NO_FLOCK      the errno that every flock fails with, as on a file system that has none */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -32,6 +34,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -245,6 +248,13 @@ int rmdir(const char* path) {
   if (!counts_path(path)) return NEXT(rmdir)(path);
   note("rmdir", path);
   ACT(others, NEXT(rmdir)(path));
+}
+
+int flock(int descriptor, int operation) {
+  const char* error = getenv("JOSTLE_NO_FLOCK");
+  if (!error) return NEXT(flock)(descriptor, operation);
+  errno = atoi(error);
+  return -1;
 }
 
 __attribute__((destructor)) static void report(void) {

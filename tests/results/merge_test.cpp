@@ -84,7 +84,7 @@ TEST_CASE("what cannot be merged is refused by name, and nothing is written") {
   };
   SECTION("a gap") {
     CHECK_THROWS_WITH(merging({shards[0], shards[2]}),
-                      Contains("no input holds realization 0 of sweep point 1"));
+                      Contains("no input holds shard 2 of 3 (realization 0 of sweep point 1"));
   }
   SECTION("an overlap") {
     std::filesystem::copy(shards[1], folder / "again.h5");

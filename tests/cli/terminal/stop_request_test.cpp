@@ -25,6 +25,18 @@ TEST_CASE("The first cause of a stop is the one named") {
   CHECK(stop.reason() == "SIGUSR1");
 }
 
+TEST_CASE("A signal after a stop does not end the process") {
+  {
+    const StopRequest stop;
+    std::raise(SIGTERM);
+  }
+  std::raise(SIGUSR1);
+  std::raise(SIGTERM);
+  std::signal(SIGUSR1, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  SUCCEED();
+}
+
 TEST_CASE("The time limit sets the flag and is named") {
   StopRequest stop;
   stop.stop_after(Seconds(0.01));

@@ -1,0 +1,202 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands/commands.hpp"
+#include "cli/reports/batch_script.hpp"
+#include "cli/reports/durations.hpp"
+#include "cli/tables/wrapped.hpp"
+#include "cli/terminal/keep_tables.hpp"
+#include "cli/terminal/output_file.hpp"
+#include "cli/terminal/screen.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/slurm_job.hpp"
+#include "study/cluster/job_plan.hpp"
+#include "study/cost/scene_pilot.hpp"
+#include "study/provenance.hpp"
+
+namespace jostle::inline cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SlurmArguments {
+  std::string scene, output, folder;
+  double hours = 0;
+  std::uint32_t cpus = 0, jobs = 0;
+  std::uint32_t most_tasks = 0;  // 0: ask Slurm
+  bool force = false;
+};
+
+/// What a text in the script must be: one line.
+std::string one_line(const std::string& text, const char* what) {
+  if (std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; }))
+    throw BadInput(
+        fmt::format("{} \"{}\" has a character that no line of a script can hold: "
+                    "take another name",
+                    what, text));
+  return text;
+}
+
+/// Slurm counts whole minutes.
+Seconds time_limit(const SlurmArguments& arguments) {
+  return Seconds(60 * std::max(1.0, std::ceil(arguments.hours * 60 - 1e-6)));
+}
+
+SceneCost cost_of(const LoadedScene& loaded, const ScenePilot& pilot) {
+  SceneCost cost{.realization = {},
+                 .realizations = loaded.scene.realizations,
+                 .start = pilot.start(),
+                 .bytes_on_disk = disk_estimate(study_of(loaded), Shard{})};
+  for (std::size_t point = 0; point < loaded.plans.size(); ++point)
+    cost.realization.push_back(pilot.realization(point));
+  return cost;
+}
+
+/// Half as much again as the estimate, in pieces of 64 MiB.
+std::uint64_t megabytes_to_ask_for(double bytes) {
+  constexpr double margin = 1.5, piece = 64, least = 512;
+  const double wanted = std::max(least, margin * bytes / (1 << 20));
+  return static_cast<std::uint64_t>(std::ceil(wanted / piece) * piece);
+}
+
+std::string estimate_line(const JobPlan& plan, const SlurmArguments& arguments, bool settled) {
+  const char* const about = settled ? "about" : "at least";
+  return fmt::format("{}, {} on {} each: {} {:.3g} core-hours; the longest task {} {} of {}",
+                     counted(plan.tasks, "task"), counted(plan.shards, "shard"),
+                     counted(arguments.cpus, "CPU"), about, plan.core_time.count() / 3600, about,
+                     format_duration(plan.longest_task), format_duration(time_limit(arguments)));
+}
+
+std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& arguments,
+                                     const SceneCost& cost) {
+  std::vector<std::string> warnings;
+  if (plan.starts > 1) {
+    warnings.push_back(fmt::format(
+        "the longest task is not done in {}: it takes about {} more submissions, for which the "
+        "script puts itself back into the queue. More --jobs or --hours make it fewer",
+        format_duration(time_limit(arguments)), plan.starts - 1));
+  }
+  if (plan.most_realizations < arguments.cpus) {
+    warnings.push_back(fmt::format(
+        "a job has at most {}, a CPU each: {} of its {} CPUs have nothing to do. Take --cpus {}, "
+        "or fewer --jobs",
+        counted(plan.most_realizations, "realization"), arguments.cpus - plan.most_realizations,
+        arguments.cpus, plan.most_realizations));
+  }
+  const std::size_t points = cost.realization.size();
+  constexpr std::uint64_t large = 1 << 30;
+  if (cost.bytes_on_disk > large && plan.shards % points != 0 && points % plan.shards != 0) {
+    warnings.push_back(fmt::format(
+        "every shard holds some realizations of all {} sweep points, which makes files and merges "
+        "larger: a multiple or a divisor of {} as --jobs gives it whole points",
+        points, points));
+  }
+  return warnings;
+}
+
+BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loaded,
+                       const JobPlan& plan, const ScenePilot& pilot) {
+  const std::string& name = loaded.scene.name;
+  return {.name = name,
+          .scene = one_line(arguments.scene, "the scene"),
+          .results =
+              one_line(arguments.folder.empty() ? name + ".shards" : arguments.folder, "--folder"),
+          .folder = one_line(fs::current_path().string(), "the folder"),
+          .program = one_line(fs::read_symlink("/proc/self/exe").string(), "the program"),
+          .made_by = shell_words(command_line()),
+          .cpus = arguments.cpus,
+          .time_limit = time_limit(arguments),
+          .megabytes = megabytes_to_ask_for(
+              pilot.bytes(std::min<std::uint64_t>(arguments.cpus, plan.most_realizations))),
+          .estimate = estimate_line(plan, arguments, pilot.settled())};
+}
+
+void say(const std::string& text) {
+  print_to_standard_error(wrapped(fmt::format("jostle: {}\n", text), screen().width));
+}
+
+void write_script(const SlurmArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene);
+  require_text_output("-o", arguments.output, loaded.files, arguments.force);
+  if (arguments.jobs > 1 && !loaded.scene.until.targets.empty()) {
+    throw BadInput(
+        "this scene runs until a target precision is reached (\"until\"), which a share of its "
+        "realizations cannot tell: take --jobs 1, or take \"until\" out");
+  }
+  constexpr std::uint32_t usual_array = 1001;  // MaxArraySize of Slurm, one more than the last task
+  const std::uint64_t largest = arguments.most_tasks > 0
+                                    ? arguments.most_tasks
+                                    : slurm_max_array_size().value_or(usual_array) - 1;
+  const ScenePilot pilot(loaded);
+  const SceneCost cost = cost_of(loaded, pilot);
+  const JobPlan plan = plan_jobs(
+      cost,
+      {.time_limit = time_limit(arguments),
+       .cpus = arguments.cpus,
+       .shards = arguments.jobs,
+       .most_tasks = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(largest, 1, 1u << 20))});
+  const BatchScript script = script_for(arguments, loaded, plan, pilot);
+  const std::string text = slurm_script(script, plan);
+  if (arguments.output.empty()) {
+    print_exactly(text);
+  } else {
+    write_text(arguments.output, text);
+  }
+  say(script.estimate);
+  for (const std::string& warning : warnings_of(plan, arguments, cost)) say("warning: " + warning);
+  const std::string file = arguments.output.empty() ? script.name + ".sbatch" : arguments.output;
+  say(fmt::format("next:\n  {}\n  {}\n  {}", shell_words({"sbatch", file}),
+                  shell_words({"jostle", "status", script.results}),
+                  shell_words({"jostle", "merge", script.results, "-o", script.name + ".h5"})));
+}
+
+}  // namespace
+
+void add_slurm(Command& app, int& code) {
+  Command command =
+      app.add_command("slurm", "Print a batch script that runs a scene as a Slurm job array");
+  auto arguments = std::make_shared<SlurmArguments>();
+  command.add_option("scene", arguments->scene, "The scene, a JSON file")
+      .required()
+      .offers_files({"json"});
+  command.add_option("--hours", arguments->hours, "Time limit of a job")
+      .required()
+      .positive_number();
+  command.add_option("--cpus", arguments->cpus, "CPUs of a job: realizations at once")
+      .required()
+      .whole_from(1);
+  command.add_option("--jobs", arguments->jobs, "Shards, each a job and a results file")
+      .required()
+      .whole_from(1);
+  command.add_option("--folder", arguments->folder,
+                     "Where the shards' files go (default: the scene's name + .shards)");
+  command
+      .add_option("--array-limit", arguments->most_tasks,
+                  "Tasks that an array may have (default: asks Slurm, else 1000); more shards run "
+                  "one after another in a task")
+      .whole_from(1);
+  command.add_option("-o,--output", arguments->output, "Write the script there, not on the screen")
+      .file_to_write();
+  command.add_flag("--force", arguments->force, "Replace the script if it exists");
+  command.footer(
+      "Examples:\n"
+      "  jostle slurm scene.json --hours 12 --cpus 4 --jobs 2 > scene.sbatch\n"
+      "  jostle slurm scene.json --hours 0.5 --cpus 1 --jobs 4 -o quick.sbatch\n"
+      "\n"
+      "Time and memory come from the pilot of jostle check, up to about ten seconds. A job is "
+      "told\n"
+      "to stop before its time is up, goes back into the queue and goes on there.");
+  command.run([arguments, &code] {
+    write_script(*arguments);
+    code = exit_ok;
+  });
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "study/cluster/job_plan.hpp"
+
+namespace jostle::inline cli {
+
+/// What a batch script must know besides.
+struct BatchScript {
+  std::string name;             // of the scene: letters, digits, dots, hyphens, underscores
+  std::string scene;            // its file
+  std::string results;          // the folder of the shards' files
+  std::string folder;           // where it runs, absolute
+  std::string program;          // jostle, absolute
+  std::string made_by;          // a command line
+  std::uint32_t cpus = 1;       // of a job
+  Seconds time_limit{0};        // of a job
+  std::uint64_t megabytes = 0;  // of a job
+  std::string estimate;         // a line for people
+};
+
+/// A complete script for Slurm's sbatch: an array of jobs that runs every shard, stops before its
+/// time is up, goes back into the queue, and goes on there.
+std::string slurm_script(const BatchScript& script, const JobPlan& plan);
+
+/// "2-00:30:00", "12:00:00": as Slurm takes them; whole minutes, rounded up.
+std::string slurm_time(Seconds time);
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,249 @@
+#include "cli/reports/status_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+
+#include "cli/reports/durations.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/error.hpp"
+#include "results/export/input_file.hpp"
+#include "study/provenance.hpp"
+
+namespace jostle::inline cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr ShardState all_states[] = {ShardState::done, ShardState::running, ShardState::stopped,
+                                     ShardState::dead, ShardState::missing};
+
+/// The folder of all files; nothing where they lie in several.
+std::optional<fs::path> common_folder(const ShardsStatus& study) {
+  std::optional<fs::path> folder;
+  for (const ShardStatus& shard : study.shards) {
+    if (shard.path.empty()) continue;
+    const fs::path own = fs::path(shard.path).parent_path();
+    if (folder && *folder != own) return std::nullopt;
+    folder = own;
+  }
+  return folder;
+}
+
+/// The number behind "key=" in the script's line of variables.
+std::optional<std::uint32_t> variable(const std::string& script, const std::string& key) {
+  for (const char* const before : {"\n", " "}) {
+    const std::size_t at = script.find(before + key + "=");
+    if (at == std::string::npos) continue;
+    const char* const digits = script.data() + at + key.size() + 2;
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(digits, script.data() + script.size(), number);
+    if (error == std::errc{} && number > 0) return number;
+  }
+  return std::nullopt;
+}
+
+/// Words of a line that shell_words() made.
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words;
+  bool in_word = false, quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == ' ' && !quoted) {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) words.emplace_back();
+    in_word = true;
+    if (c == '\'') {
+      quoted = !quoted;
+    } else if (c == '\\' && !quoted && i + 1 < line.size()) {
+      words.back() += line[++i];
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+/// Puts a value in the place of an option's, whichever way it was given, or adds it.
+void set_option(std::vector<std::string>& words, const std::vector<std::string>& names,
+                const std::string& value) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    for (const std::string& name : names) {
+      if (words[i] == name && i + 1 < words.size()) {
+        words[i + 1] = value;
+        return;
+      }
+      if (name.starts_with("--") && words[i].starts_with(name + "=")) {
+        words[i] = name + "=" + value;
+        return;
+      }
+    }
+  }
+  words.push_back(names.front());
+  words.push_back(value);
+}
+
+/// The command that goes on with a shard, as another, or its own last one, was run.
+std::string command_for(const std::string& last, std::uint32_t index, std::size_t count,
+                        const std::string& output) {
+  std::vector<std::string> words = words_of(last);
+  std::erase(words, "--force");
+  if (std::ranges::find(words, "--resume") == words.end()) words.emplace_back("--resume");
+  if (count > 1) set_option(words, {"--shard"}, fmt::format("{}/{}", index, count));
+  set_option(words, {"-o", "--output"}, output);
+  return shell_words(words);
+}
+
+bool is_open(const ShardStatus& shard) {
+  return shard.state != ShardState::done && shard.state != ShardState::running;
+}
+
+std::string who(const LockOwner& owner) {
+  const std::string process = fmt::format("process {} on {}", owner.pid, owner.host);
+  return owner.job ? fmt::format("job {}, {}", owner.job->name, process) : process;
+}
+
+/// Of a few shards, what there is to know of each.
+std::string remark(const ShardStatus& shard) {
+  if (shard.state == ShardState::dead) {
+    return shard.owner ? who(*shard.owner) + ", has ended" : "killed";
+  }
+  return shard.owner ? who(*shard.owner) : "";
+}
+
+std::string state_line(const ShardsStatus& study, ShardState state) {
+  constexpr std::size_t most_remarks = 3;
+  const std::vector<std::uint32_t> indices = study.indices(state);
+  std::string text = fmt::format("  {:<13}{}", name_of(state), indices.size());
+  if (indices.empty()) return text + "\n";
+  text += fmt::format(": {}", ranges_text(indices));
+  if (indices.size() <= most_remarks) {
+    for (const std::uint32_t index : indices) {
+      const std::string of_it = remark(study.shards[index - 1]);
+      if (!of_it.empty()) text += fmt::format("; {}: {}", index, of_it);
+    }
+  }
+  return text + "\n";
+}
+
+struct Sums {
+  std::uint64_t done = 0, failed = 0, realizations = 0, rows = 0, all_rows = 0;
+};
+Sums sums_of(const ShardsStatus& study) {
+  Sums sums;
+  for (const ShardStatus& shard : study.shards) {
+    sums.done += shard.done;
+    sums.failed += shard.failed;
+    sums.realizations += shard.realizations;
+    sums.rows += shard.rows;
+    sums.all_rows += shard.all_rows;
+  }
+  return sums;
+}
+
+double hours(Seconds time) {
+  return time.count() / 3600;
+}
+
+}  // namespace
+
+JobArray job_array(const ShardsStatus& study) {
+  const auto folder = common_folder(study);
+  if (!folder) return {};
+  const std::string path = (*folder / "job.sbatch").string();
+  std::error_code unreadable;
+  if (!fs::is_regular_file(path, unreadable)) return {};
+  try {
+    const std::string script = read_text_file(path);
+    const auto shards = variable(script, "shards"), a_task = variable(script, "a_task");
+    if (shards == study.shards.size() && a_task) return {path, *a_task};
+  } catch (const ResultsError&) {  // unreadable: as if it were not there
+  }
+  return {};
+}
+
+std::vector<std::string> redo_commands(const ShardsStatus& study, const JobArray& array) {
+  std::vector<std::uint32_t> tasks;
+  std::vector<std::string> commands;
+  const auto known = std::ranges::find_if(
+      study.shards, [](const ShardStatus& shard) { return !shard.command.empty(); });
+  const fs::path folder = common_folder(study).value_or("");
+  for (const ShardStatus& shard : study.shards) {
+    if (!is_open(shard)) continue;
+    if (!array.script.empty()) {
+      const std::uint32_t task = (shard.index - 1) / array.shards_a_task + 1;
+      if (tasks.empty() || tasks.back() != task) tasks.push_back(task);
+    } else if (known != study.shards.end()) {
+      const std::string output =
+          shard.path.empty() ? (folder / fmt::format("{}.h5", shard.index)).string() : shard.path;
+      commands.push_back(command_for(shard.command.empty() ? known->command : shard.command,
+                                     shard.index, study.shards.size(), output));
+    }
+  }
+  if (!tasks.empty()) {
+    commands.push_back(
+        shell_words({"sbatch", fmt::format("--array={}", ranges_text(tasks)), array.script}));
+  }
+  return commands;
+}
+
+std::string status_text(const ShardsStatus& study) {
+  const Sums sums = sums_of(study);
+  std::string text = fmt::format("{}: {}\n", study.scene, counted(study.shards.size(), "shard"));
+  for (const ShardState state : all_states) text += state_line(study, state);
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  {:<13}{}\n", key, value);
+  };
+  line("realizations", fmt::format("{} of {} done{}", sums.done, sums.realizations,
+                                   sums.failed > 0 ? fmt::format(", {} failed", sums.failed) : ""));
+  line("taps", fmt::format("{} of {}", sums.rows, sums.all_rows));
+  line("core-hours", fmt::format("{:.3g} used, {}", hours(study.used),
+                                 study.left ? fmt::format("about {:.3g} left", hours(*study.left))
+                                            : "what is left is not known before the first tap"));
+  for (const std::string& path : study.twice)
+    line("twice", path + " holds a shard that another file holds");
+  return text;
+}
+
+Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo) {
+  const Sums sums = sums_of(study);
+  Json shards = Json::array(), commands = Json::array(), twice = Json::array();
+  for (const ShardStatus& shard : study.shards) {
+    Json one{{"index", std::uint64_t{shard.index}},
+             {"state", name_of(shard.state)},
+             {"realizations", shard.realizations},
+             {"done", shard.done},
+             {"failed", shard.failed},
+             {"taps_recorded", shard.rows},
+             {"taps", shard.all_rows}};
+    if (!shard.path.empty()) one["file"] = shard.path;
+    if (shard.owner) {
+      one["host"] = shard.owner->host;
+      if (shard.owner->job) one["job"] = shard.owner->job->name;
+    }
+    shards.push_back(one);
+  }
+  for (const std::string& command : redo) commands.push_back(command);
+  for (const std::string& path : study.twice) twice.push_back(path);
+  Json counts = Json::object();
+  for (const ShardState state : all_states)
+    counts[name_of(state)] = static_cast<std::uint64_t>(study.indices(state).size());
+  Json json{{"scene", study.scene},
+            {"counts", counts},
+            {"realizations", sums.realizations},
+            {"realizations_done", sums.done},
+            {"realizations_failed", sums.failed},
+            {"core_hours_used", hours(study.used)},
+            {"shards", shards},
+            {"redo", commands},
+            {"twice", twice}};
+  json["core_hours_left"] = study.left ? Json(hours(*study.left)) : Json(nullptr);
+  return json;
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,239 @@
+#include "study/cluster/shards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "results/error.hpp"
+#include "study/bad_input.hpp"
+#include "study/scenes/stored_scene.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Numbers in names count as numbers: 2.h5 stands before 10.h5.
+bool comes_before(const std::string& a, const std::string& b) {
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto number_at = [&](const std::string& text, std::size_t at) {
+    std::size_t end = at;
+    while (end < text.size() && is_digit(text[end])) ++end;
+    while (at + 1 < end && text[at] == '0') ++at;
+    return std::pair(text.substr(at, end - at), end);
+  };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const auto [one, end_of_one] = number_at(a, i);
+      const auto [other, end_of_other] = number_at(b, j);
+      if (one.size() != other.size()) return one.size() < other.size();
+      if (one != other) return one < other;
+      i = end_of_one;
+      j = end_of_other;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+    }
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".h5" && !entry->is_directory(error))
+      files.push_back(entry->path().string());
+  }
+  if (error) throw ResultsError(folder, "cannot list: " + error.message());
+  std::ranges::sort(files, comes_before);
+  return files;
+}
+
+ShardState state_of(const RunStatus& status) {
+  if (status.owner && status.owner->alive) return ShardState::running;
+  const bool killed = status.owner || status.parts_bytes > 0 || status.state == RunState::running;
+  if (status.state == RunState::complete && status.parts_bytes == 0) return ShardState::done;
+  return killed ? ShardState::dead : ShardState::stopped;
+}
+
+/// What was done and is left of a sweep point, over all shares.
+struct PointWork {
+  double seconds = 0;
+  std::uint64_t rows = 0, rows_left = 0;
+};
+
+/// A study while its files are read.
+struct Gathered {
+  ShardsStatus status;
+  std::vector<PointWork> points;
+};
+
+void gather(Gathered& study, const std::string& path, const LiveLook& look) {
+  const auto& [file, status] = look;
+  ShardStatus shard{
+      .index = file.shard().index, .state = state_of(status), .path = path, .owner = status.owner};
+  if (!file.provenance().empty()) shard.command = file.provenance().back().command_line;
+  for (const RealizationSummary& one : status.realizations) {
+    const std::uint64_t rows = file.study().points[one.id.point].taps + 1;
+    PointWork& point = study.points[one.id.point];
+    ++shard.realizations;
+    shard.all_rows += rows;
+    shard.rows += one.rows;
+    point.seconds += one.work.seconds;
+    point.rows += one.rows;
+    if (one.status == RealizationStatus::done) ++shard.done;
+    if (one.status == RealizationStatus::failed) ++shard.failed;
+    const bool ended = one.status == RealizationStatus::failed;
+    point.rows_left += ended ? 0 : rows - std::min(one.rows, rows);
+  }
+  ShardStatus& place = study.status.shards.at(shard.index - 1);
+  if (place.state != ShardState::missing) return study.status.twice.push_back(shard.path);
+  place = std::move(shard);
+}
+
+void count_missing(Gathered& study, const Study& stored) {
+  const std::uint64_t points = stored.points.size(), all = points * stored.realizations;
+  const std::uint64_t count = study.status.shards.size();
+  for (ShardStatus& shard : study.status.shards) {
+    if (shard.state != ShardState::missing) continue;
+    for (std::uint64_t n = shard.index - 1; n < all; n += count) {
+      const std::uint64_t rows = stored.points[n % points].taps + 1;
+      ++shard.realizations;
+      shard.all_rows += rows;
+      study.points[n % points].rows_left += rows;
+    }
+  }
+}
+
+/// What is left takes what was done took, row by row of the same sweep point, or of all where that
+/// has not begun.
+void estimate_left(Gathered& study) {
+  double seconds = 0, rows = 0, left = 0;
+  for (const PointWork& point : study.points) {
+    seconds += point.seconds;
+    rows += static_cast<double>(point.rows);
+  }
+  study.status.used = Seconds(seconds);
+  if (rows == 0) return;
+  for (const PointWork& point : study.points) {
+    const double a_row =
+        point.rows > 0 ? point.seconds / static_cast<double>(point.rows) : seconds / rows;
+    left += a_row * static_cast<double>(point.rows_left);
+  }
+  study.status.left = Seconds(left);
+}
+
+/// A study, and the first of its files, which keeps nothing open.
+struct KnownStudy {
+  Gathered gathered;
+  ResultsFile first;
+};
+/// By the scene and the number of shares.
+using KnownStudies = std::map<std::pair<std::string, std::uint32_t>, KnownStudy>;
+
+void look_at(KnownStudies& studies, const ResultsFile*& last, const std::string& path,
+             SlurmQueue& queue) {
+  LiveLook look = look_at_run(path, queue, last);
+  const Study& study = look.file.study();
+  const std::uint32_t count = look.file.shard().count;
+  auto found = studies.find({study.resolved_scene, count});
+  if (found == studies.end()) {
+    Gathered fresh;
+    const Json scene = stored_scene(look.file);
+    const Json* const name = scene.find("name");
+    fresh.status.scene = name != nullptr ? name->text() : "";
+    fresh.points.resize(study.points.size());
+    for (std::uint32_t i = 1; i <= count; ++i) fresh.status.shards.push_back({.index = i});
+    gather(fresh, path, look);
+    look.file.rest();
+    found = studies
+                .emplace(std::pair(study.resolved_scene, count),
+                         KnownStudy{std::move(fresh), std::move(look.file)})
+                .first;
+  } else {
+    gather(found->second.gathered, path, look);
+  }
+  last = &found->second.first;
+}
+
+}  // namespace
+
+std::vector<std::string> results_files(std::span<const std::string> named) {
+  std::vector<std::string> files;
+  for (const std::string& one : named) {
+    std::error_code unreadable;
+    if (!fs::is_directory(one, unreadable)) {
+      files.push_back(one);
+      continue;
+    }
+    const std::vector<std::string> found = files_in(one);
+    if (found.empty()) throw BadInput(fmt::format("{}: no file in it ends in .h5", one));
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+const char* name_of(ShardState state) {
+  switch (state) {
+    case ShardState::done:
+      return "done";
+    case ShardState::running:
+      return "running";
+    case ShardState::stopped:
+      return "stopped";
+    case ShardState::dead:
+      return "dead";
+    case ShardState::missing:
+      return "missing";
+  }
+  return "unknown";
+}
+
+std::vector<std::uint32_t> ShardsStatus::indices(ShardState state) const {
+  std::vector<std::uint32_t> found;
+  for (const ShardStatus& shard : shards)
+    if (shard.state == state) found.push_back(shard.index);
+  return found;
+}
+
+Overview overview_of(std::span<const std::string> files) {
+  Overview overview;
+  KnownStudies studies;
+  const ResultsFile* last = nullptr;  // of the study that the next file probably has
+  SlurmQueue queue;
+  for (const std::string& path : files) {
+    try {
+      look_at(studies, last, path, queue);
+    } catch (const ResultsError& error) {
+      overview.bad_files.push_back({path, error.what()});
+    }
+  }
+  for (auto& [key, known] : studies) {
+    count_missing(known.gathered, known.first.study());
+    estimate_left(known.gathered);
+    overview.studies.push_back(std::move(known.gathered.status));
+  }
+  return overview;
+}
+
+std::string ranges_text(std::span<const std::uint32_t> ascending) {
+  std::string text;
+  for (std::size_t i = 0; i < ascending.size();) {
+    std::size_t last = i;
+    while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+    if (!text.empty()) text += ',';
+    text += fmt::to_string(ascending[i]);
+    if (last > i) text += fmt::format("{}{}", last > i + 1 ? '-' : ',', ascending[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "results/live_run.hpp"
+#include "results/slurm_job.hpp"
+#include "study/seconds.hpp"
+
+// The files of a run that many jobs share.
+namespace jostle::inline study {
+
+/// Results files where folders are named: all that end in .h5, in the order of the numbers in their
+/// names. A file stays as it is. Throws BadInput for a folder without any.
+std::vector<std::string> results_files(std::span<const std::string> named);
+
+/// How a shard stands. `stopped`: in good order, by a signal or a time limit; `dead`: its process
+/// was killed; `missing`: no file holds it. All three go on with a resume.
+enum class ShardState { done, running, stopped, dead, missing };
+const char* name_of(ShardState state);
+
+struct ShardStatus {
+  std::uint32_t index = 1;
+  ShardState state = ShardState::missing;
+  std::string path{};                // empty where it is missing
+  std::optional<LockOwner> owner{};  // of a lock
+  std::uint64_t done = 0, failed = 0, realizations = 0;
+  std::uint64_t rows = 0, all_rows = 0;  // taps recorded and to record, starts included
+  std::string command{};                 // that worked on it last
+};
+
+/// All shares of one study.
+struct ShardsStatus {
+  std::string scene;                // its name
+  std::vector<ShardStatus> shards;  // [count], by their indices
+  Seconds used{0};                  // of processors
+  std::optional<Seconds> left;      // estimated of what was done; nothing before the first tap
+  std::vector<std::string> twice;   // files that hold a share another file holds
+
+  std::vector<std::uint32_t> indices(ShardState state) const;
+};
+
+/// A file that cannot be read, and why.
+struct BadFile {
+  std::string path, reason;
+};
+
+struct Overview {
+  std::vector<ShardsStatus> studies;  // one for each scene and number of shares
+  std::vector<BadFile> bad_files;
+};
+
+/// Looks at the files and their checkpoints without disturbing their runs. Checksums of results
+/// files are not verified: it reads little of each.
+Overview overview_of(std::span<const std::string> files);
+
+/// 1, 3, 4, 5 as "1,3-5".
+std::string ranges_text(std::span<const std::uint32_t> ascending);
+
+}  // namespace jostle::inline study
