@@ -144,6 +144,7 @@ TEST_CASE("A stop is honoured within a slice, by every realization") {
     REQUIRE(record.outcome);
     if (record.outcome->status == RealizationStatus::done) continue;
     CHECK(record.outcome->status == RealizationStatus::running);
+    if (record.state->engine.empty()) continue;  // stopped before it had a start
     CHECK(monte_carlo_state(record.state->engine).progress.trials % plans[id.point].n_spheres == 0);
   }
 }
