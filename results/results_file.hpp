@@ -134,9 +134,9 @@ class ResultsFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// SHA-256, in hex, over every dataset and attribute outside /provenance and /timing, in order of
-/// their paths: path, type, shape and values, whatever the chunks and compression. The file's
-/// checksum is verified first.
+/// SHA-256, in hex, over every dataset and attribute outside /provenance, /timing and /h5md, in
+/// order of their paths: path, type, shape and values, whatever the chunks and compression. The
+/// file's checksum is verified first.
 std::string digest_of(const std::string& path);
 
 }  // namespace jostle::inline results

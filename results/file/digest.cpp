@@ -91,7 +91,8 @@ void Digest::add_members(hid_t group, const std::string& path) {
   for (const Member& member : members) paths[member.address] = path + "/" + member.name;
   for (const Member& member : members) {
     const std::string& member_path = path + "/" + member.name;
-    if (member_path == "/provenance" || member_path == "/timing" || is_derived(member_path))
+    if (member_path == "/provenance" || member_path == "/timing" || member_path == "/h5md" ||
+        is_derived(member_path))
       continue;
     add_object(group, member, member_path, paths);
   }
