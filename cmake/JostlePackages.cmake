@@ -1,6 +1,6 @@
 # cpack -G DEB: jostle (the program), libjostle-dev (its libraries) and python3-jostle, from what
-# cmake --install installs. ./dev package runs it. The same commit, folder and SOURCE_DATE_EPOCH
-# give the same bytes.
+# cmake --install installs. ./dev package runs it. The same commit and SOURCE_DATE_EPOCH give the
+# same bytes in any folder.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME jostle)
 set(CPACK_PACKAGE_CONTACT "The jostle authors <jostle@example.org>")  # -D at a release

@@ -3,6 +3,9 @@
 add_library(jostle_options INTERFACE)
 target_compile_features(jostle_options INTERFACE cxx_std_20)
 target_compile_options(jostle_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+# Assertions name their sources from the root: the same bytes, whatever folder this is built in.
+target_compile_options(jostle_options INTERFACE
+                       $<$<CONFIG:Release>:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>)
 # The trial loop joins conditions with | where a branch would cost.
 target_compile_options(jostle_options
                        INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)

@@ -66,6 +66,14 @@ class Packages(unittest.TestCase):
         for needed in ("libc6", "libhdf5-103", "libmuparser2v5", "libtbb12", "libssl3"):
             self.assertIn(needed, field("jostle", "Depends"))
 
+    def test_no_file_names_the_folder_it_was_built_in(self):
+        folder = self.folder()
+        for name in NAMES:
+            run("dpkg-deb", "--extract", package(name), folder / name)
+            for path in (folder / name).rglob("*"):
+                if path.is_file():
+                    self.assertNotIn(os.fsencode(SOURCE), path.read_bytes(), path)
+
     def test_the_installed_libraries_are_found_and_linked(self):
         folder = self.folder()
         run("dpkg-deb", "--extract", package("libjostle-dev"), folder / "root")
