@@ -3,13 +3,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/run_parts.hpp"
+#include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 #include "results/file/results_writer.hpp"
 
@@ -51,26 +50,6 @@ RunStatus status_of(const ResultsFile& file, Realizations which, const std::stri
   return status;
 }
 
-/// A folder of its own among the temporary files, gone with this.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "jostle-live-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) fail_on_disk(name, "make", errno);
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Writes the file and these of its parts in one to `output`. Throws ResultsError also where a fold
 /// takes parts away meanwhile.
 void write_joined(const ResultsFile& file, const std::string& results_path,
@@ -92,7 +71,7 @@ ResultsFile joined_once(const std::string& results_path, const std::string& know
   ResultsFile file(results_path, known_as);
   const auto with_parts = realizations_with_parts(results_path);
   if (with_parts.empty()) return file;
-  const TemporaryFolder folder;
+  const ScratchFolder folder("live");
   const std::string joined = (folder.path() / "live.h5").string();
   write_joined(file, results_path, with_parts, joined, content);
   return {joined, known_as};  // open, it outlives its name

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/live_input.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/options/values.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/live_input.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/shown_tables.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/reports/cost_report.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/tables/table_output.hpp"
 #include "cli/terminal/failure.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"

@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/live_input.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/tables/text_table.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/live_input.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/export.hpp"

@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/live_input.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/options/values.hpp"
 #include "cli/reports/fit_output.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/live_input.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/tables/tables_display.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"

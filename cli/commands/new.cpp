@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/output_file.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"

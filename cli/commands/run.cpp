@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
@@ -18,7 +19,6 @@
 #include "cli/tables/wrapped.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/log.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/run_display.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"

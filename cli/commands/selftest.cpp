@@ -1,41 +1,16 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
+#include "results/checkpoints/scratch_folder.hpp"
+#include "results/error.hpp"
 #include "study/bad_input.hpp"
 #include "study/self_checks.hpp"
 
 namespace jostle::inline cli {
 namespace {
-
-/// A folder of its own within another, removed with all that is in it.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const std::filesystem::path& within)
-      : path_(within / "jostle-selftest-XXXXXX") {
-    if (::mkdtemp(path_.data()) == nullptr) {
-      const std::string reason = std::generic_category().message(errno);
-      throw BadInput(fmt::format("{}: cannot make a folder there ({}): name another with --folder",
-                                 within.string(), reason));
-    }
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 const char* remedy(SelfCheck::Finds finds) {
   switch (finds) {
@@ -62,11 +37,19 @@ bool print_check(const SelfCheck& check) {
   }
 }
 
+ScratchFolder scratch_folder(const std::string& folder) {
+  if (folder.empty()) return ScratchFolder("selftest");
+  try {
+    return ScratchFolder("selftest", folder);
+  } catch (const ResultsError& error) {
+    throw BadInput(fmt::format("{}: name another with --folder", error.what()));
+  }
+}
+
 int selftest(const std::string& folder) {
-  const ScratchFolder scratch(folder.empty() ? std::filesystem::temp_directory_path()
-                                             : std::filesystem::path(folder));
+  const ScratchFolder scratch = scratch_folder(folder);
   int code = exit_ok;
-  for (const SelfCheck& check : self_checks(scratch.path())) {
+  for (const SelfCheck& check : self_checks(scratch.path().string())) {
     if (!print_check(check)) code = exit_io_error;
   }
   return code;

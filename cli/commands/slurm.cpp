@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/reports/batch_script.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/tables/wrapped.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/output_file.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -190,9 +190,8 @@ void add_slurm(Command& app, int& code) {
       "  jostle slurm scene.json --hours 12 --cpus 4 --jobs 2 > scene.sbatch\n"
       "  jostle slurm scene.json --hours 0.5 --cpus 1 --jobs 4 -o quick.sbatch\n"
       "\n"
-      "Time and memory come from the pilot of jostle check, up to about ten seconds. A job is "
-      "told\n"
-      "to stop before its time is up, goes back into the queue and goes on there.");
+      "Time and memory come from the pilot of jostle check, up to about ten seconds. A job is\n"
+      "told to stop before its time is up, goes back into the queue and goes on there.");
   command.run([arguments, &code] {
     write_script(*arguments);
     code = exit_ok;

@@ -78,9 +78,8 @@ void add_status(Command& app, int& code) {
       "  jostle status scene.shards     done, running, dead and missing shards, core-hours left\n"
       "  jostle status low.h5 high.h5 --json\n"
       "\n"
-      "dead: its process was killed, and a resume goes on from its checkpoints. The last line is "
-      "the\n"
-      "command that redoes what is missing, and nothing else.");
+      "dead: its process was killed, and a resume goes on from its checkpoints. The last line\n"
+      "is the command that redoes what is missing, and nothing else.");
   command.run([arguments, &code] { code = show_status(*arguments); });
 }
 

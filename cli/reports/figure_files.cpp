@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <set>
 
-#include "cli/terminal/gnuplot.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/output_file.hpp"
+#include "cli/files/gnuplot.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/output_file.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
 #include "study/figures/figures.hpp"

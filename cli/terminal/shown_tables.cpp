@@ -4,11 +4,11 @@
 
 #include <utility>
 
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/live_input.hpp"
 #include "cli/tables/table_output.hpp"
 #include "cli/tables/table_text.hpp"
 #include "cli/terminal/exit_codes.hpp"
-#include "cli/terminal/keep_tables.hpp"
-#include "cli/terminal/live_input.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "study/tables/analyse.hpp"

@@ -16,19 +16,6 @@ namespace {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
-}  // namespace
-
-void write_boundary(const Hdf5Handle& box, const Container& container) {
-  const Boundary boundary(container);
-  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
-  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
-                                            word(boundary.periodic_z)};
-  write_attribute(box, "dimension", std::uint32_t{3});
-  write_attribute(box, "boundary", words);
-}
-
-namespace {
-
 /// H5MD's box. An open top ends at the highest point any frame reaches.
 void write_box(hid_t group, const Container& container, double highest) {
   const Boundary boundary(container);
@@ -64,6 +51,15 @@ void write_element(hid_t group, const SphereVector& what, std::uint32_t n_sphere
 }
 
 }  // namespace
+
+void write_boundary(const Hdf5Handle& box, const Container& container) {
+  const Boundary boundary(container);
+  const auto word = [](bool periodic) { return std::string(periodic ? "periodic" : "none"); };
+  const std::array<std::string, 3> words = {word(boundary.periodic_x), word(boundary.periodic_y),
+                                            word(boundary.periodic_z)};
+  write_attribute(box, "dimension", std::uint32_t{3});
+  write_attribute(box, "boundary", words);
+}
 
 void write_particles(hid_t file, const std::string& name, const Container& container,
                      std::uint32_t n_spheres, const std::vector<SnapshotOutline>& snapshots,

@@ -1,11 +1,11 @@
-#include "cli/terminal/keep_tables.hpp"
+#include "cli/files/keep_tables.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 
 #include <cerrno>
 
-#include "cli/terminal/output_file.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"

@@ -1,9 +1,8 @@
-#include "cli/terminal/gnuplot.hpp"
+#include "cli/files/gnuplot.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,33 +12,13 @@
 #include <iterator>
 #include <system_error>
 
+#include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 
 namespace jostle::inline cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "jostle-figures-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw ResultsError(name, "cannot make it: " + std::generic_category().message(errno));
-    }
-    path_ = name;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 void write_file(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
@@ -101,7 +80,7 @@ int call_gnuplot(const std::string& script, const fs::path& folder, const fs::pa
 
 std::vector<NamedText> run_gnuplot(const std::string& script, const std::vector<NamedText>& files,
                                    const std::vector<std::string>& wanted) {
-  const ScratchFolder folder;
+  const ScratchFolder folder("figures");
   for (const NamedText& file : files) write_file(folder.path() / file.name, file.text);
   const fs::path messages = folder.path() / "messages.txt";
   const int status = call_gnuplot(script, folder.path(), messages);

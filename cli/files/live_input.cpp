@@ -1,4 +1,4 @@
-#include "cli/terminal/live_input.hpp"
+#include "cli/files/live_input.hpp"
 
 #include <fmt/format.h>
 
