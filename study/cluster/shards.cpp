@@ -77,6 +77,8 @@ struct Gathered {
 
 void gather(Gathered& study, const std::string& path, const LiveLook& look) {
   const auto& [file, status] = look;
+  ShardStatus& place = study.status.shards.at(file.shard().index - 1);
+  if (place.state != ShardState::missing) return study.status.twice.push_back(path);
   ShardStatus shard{
       .index = file.shard().index, .state = state_of(status), .path = path, .owner = status.owner};
   if (!file.provenance().empty()) shard.command = file.provenance().back().command_line;
@@ -93,8 +95,6 @@ void gather(Gathered& study, const std::string& path, const LiveLook& look) {
     const bool ended = one.status == RealizationStatus::failed;
     point.rows_left += ended ? 0 : rows - std::min(one.rows, rows);
   }
-  ShardStatus& place = study.status.shards.at(shard.index - 1);
-  if (place.state != ShardState::missing) return study.status.twice.push_back(shard.path);
   place = std::move(shard);
 }
 

@@ -271,8 +271,11 @@ class Status(Case):
 
     def test_a_share_in_two_files_is_told(self):
         self.shard(1, 2)
+        alone = self.status()["studies"][0]
         (self.folder / "shards/copy.h5").write_bytes((self.folder / "shards/1.h5").read_bytes())
-        self.assertEqual(self.status()["studies"][0]["twice"], ["shards/copy.h5"])
+        told = self.status()["studies"][0]
+        self.assertEqual(told["twice"], ["shards/copy.h5"])
+        self.assertEqual(told["core_hours_used"], alone["core_hours_used"])
         self.assertIn("shards/copy.h5", self.jostle("status", "shards").stdout)
 
     def test_failed_realizations_are_counted(self):
