@@ -328,6 +328,10 @@ void RunStore::end(RealizationId id, const RealizationState& state, const Outcom
   impl_->recorders.erase(id);
 }
 
+std::uint64_t RunStore::bytes_to_fold() const {
+  return file_bytes(impl_->path) + parts_bytes(impl_->path);
+}
+
 void RunStore::finish(const StoringProgress& progress) {
   const std::lock_guard guard(impl_->mutex);
   impl_->recorders.clear();

@@ -97,11 +97,13 @@ bool SceneRun::compute(std::optional<std::uint32_t> first) {
     });
   }
   const RunSummary made = run(pending);
-  fold();
+  const bool is_complete = made.done + made.failed == pending.size();
+  left_in_parts_ = !is_complete && store_->bytes_to_fold() > settings_.most_bytes_folded_at_stop;
+  if (!left_in_parts_) fold();
   summary_.done += made.done;
   summary_.failed += made.failed;
   summary_.interrupted += made.interrupted;
-  return made.done + made.failed == pending.size();
+  return is_complete;
 }
 
 RunSummary SceneRun::run(const std::vector<RealizationId>& pending) {

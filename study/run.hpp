@@ -28,6 +28,10 @@ struct RunSettings {
   int threads = 1;
   Seconds checkpoint_every{60};
   const std::atomic<bool>* stop = nullptr;  // stops all realizations at the end of a sweep
+  /// A stop is soon over: where the results are larger, it leaves the parts beside the file, for
+  /// the resume to go on from and the end of the run to fold. Some 20 s at the slowest rate of a
+  /// fold.
+  std::uint64_t most_bytes_folded_at_stop = 600'000'000;
 };
 
 /// The results file is there already, and may neither be resumed nor replaced.
@@ -97,7 +101,8 @@ class SceneRun {
   SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunObserver& observer);
 
   /// Computes what is pending and folds it into the file, realizations of sweep point `first`
-  /// before the others. Returns whether all of it was computed, not stopped. Throws ResultsError.
+  /// before the others. Returns whether all of it was computed, not stopped; after a stop the file
+  /// may have been left as it was, see left_in_parts(). Throws ResultsError.
   bool compute(std::optional<std::uint32_t> first = std::nullopt);
   /// The same, and more realizations until the scene's targets are met, if it has any.
   bool compute_until_precise();
@@ -110,6 +115,8 @@ class SceneRun {
   /// Every (point, realization), with checkpoints that are newer than the file.
   std::vector<RealizationSummary> realizations() const { return store_->realizations(); }
   const Progress& progress() const { return progress_; }
+  /// Whether a stop left what was computed in the parts, because to fold it would take long.
+  bool left_in_parts() const { return left_in_parts_; }
   /// Realizations of this run so far.
   const RunSummary& summary() const { return summary_; }
   /// What is to be told of the file's lock; empty where all is well.
@@ -133,7 +140,8 @@ class SceneRun {
   std::unique_ptr<RunStore> store_;
   std::vector<std::string> tables_before_;
   std::uint64_t taps_recorded_ = 0;  // of pending realizations, by earlier processes
-  bool retry_failed_ = false;        // those that failed are tried once, before others are added
+  bool left_in_parts_ = false;
+  bool retry_failed_ = false;  // those that failed are tried once, before others are added
   Progress progress_;
   RunSummary summary_;
 };

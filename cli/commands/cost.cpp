@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -26,7 +25,7 @@ namespace {
 constexpr std::uint64_t default_taps = 10;
 
 struct CostArguments {
-  std::string scene, output, observable, point, csv, figure;
+  std::string scene, output, observable, point, csv;
   double target = 0;
   Seconds budget{600};
   std::uint32_t replicates = 0;  // 0: as many as the budget allows
@@ -44,8 +43,6 @@ void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
   require_not_read("-o", output, taken);
   taken.push_back(output);
   require_text_output("--csv", arguments.csv, taken, arguments.force);
-  if (!arguments.csv.empty()) taken.push_back(arguments.csv);
-  require_text_output("--figure", arguments.figure, taken, arguments.force);
 }
 
 void write_reports(const CostArguments& arguments, const CostStudy& study, const Scene& scene,
@@ -61,12 +58,6 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
     std::string csv;
     for (const Table& table : tables) csv += table_csv(table);
     write_text(arguments.csv, csv);
-  }
-  if (!arguments.figure.empty()) {
-    const std::string image =
-        std::filesystem::path(arguments.figure).replace_extension(".svg").string();
-    write_text(arguments.figure, cost_figure(study, *cost, scene.realizations, image));
-    print(fmt::format("gnuplot {} draws {}\n", arguments.figure, image));
   }
   keep_tables(output, "analysis", tables, by);
 }
@@ -160,12 +151,9 @@ void add_cost(Command& app, int& code) {
       .file_to_write()
       .offers_files({"h5"});
   command.add_flag("--resume", a.resume, "Go on with the output file");
-  command.add_flag(
-      "--force", a.force,
-      "Replace existing output files; with --resume, only those of --csv and --figure");
+  command.add_flag("--force", a.force,
+                   "Replace existing output files; with --resume, only that of --csv");
   command.add_option("--csv", a.csv, "Also write the tables to this file").file_to_write();
-  command.add_option("--figure", a.figure, "Also write a gnuplot script to this file")
-      .file_to_write();
   add_wide(command, a.layout);
   command.add_flag("--no-progress", a.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");
@@ -177,9 +165,8 @@ void add_cost(Command& app, int& code) {
       "Carlo:\n"
       "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour "
       "between\n"
-      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. "
-      "docs/accuracy.md\n"
-      "says how to read it.");
+      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. jostle report\n"
+      "of the results draws accuracy against time; docs/accuracy.md says how to read it.");
   command.run([arguments, &code] { code = run_cost(*arguments); });
 }
 

@@ -40,7 +40,7 @@ const char* name(RealizationStatus status) {
 std::string state_of(const RunStatus& status) {
   if (status.owner && status.owner->alive) return "running";
   if (status.state != RunState::running) return name_of(status.state);
-  return "killed; --resume goes on";
+  return fmt::format("{}; --resume goes on", status.owner ? "killed" : "stopped");
 }
 
 Json realization_json(const RealizationSummary& one, std::string unit) {

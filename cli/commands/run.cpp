@@ -167,10 +167,18 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const auto began = std::chrono::steady_clock::now();
   const bool stopped = !run.compute_until_precise();
   if (!arguments.quiet) {
-    print_report(report(run.results(), arguments.layout) +
+    print_report((run.left_in_parts() ? "" : report(run.results(), arguments.layout)) +
                  wrapped(process_line(run.progress(), std::chrono::steady_clock::now() - began,
                                       settings.threads, run.results().study().points),
                          arguments.layout.width));
+  }
+  if (run.left_in_parts()) {
+    print_to_standard_error(
+        fmt::format("jostle: what was computed is in {}.parts, not in {} itself: "
+                    "to fold it in takes longer than a stop should, and is done "
+                    "at the end of the run; jostle info shows it, and the "
+                    "other commands read it with --live\n",
+                    settings.output, settings.output));
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);

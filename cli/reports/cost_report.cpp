@@ -178,29 +178,4 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
   return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(below, layout.width);
 }
 
-std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
-                        std::uint32_t scene_realizations, const std::string& image) {
-  std::string data;
-  for (std::size_t p = 0; p < study.settings().size(); ++p) {
-    if (p == study.reference().last) continue;
-    const SettingCost& setting = cost.setting_costs[p];
-    if (std::isnan(setting.bias)) continue;
-    data += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} \"{}\"\n", setting.realization_seconds,
-                        std::abs(setting.bias), setting.bias_error,
-                        total_error(setting, scene_realizations), study.settings()[p].name);
-  }
-  return fmt::format(
-      "# |bias| of {0} after tap {1}, against {2}, and the total error with {3} realizations.\n"
-      "$settings << END\n{4}END\n"
-      "set terminal svg size 800,600\nset output '{5}'\nset logscale xy\n"
-      "set xlabel 'core time of a realization, s'\nset ylabel 'error of {0}' noenhanced\n"
-      "set key outside bottom\n"
-      "plot $settings using 1:2:3 with yerrorbars pointtype 7 title '|bias|', \\\n"
-      "     $settings using 1:4 with points pointtype 4 title 'with the statistical error of {3} "
-      "realizations', \\\n"
-      "     $settings using 1:2:5 with labels offset 0,1 font ',9' noenhanced notitle\n",
-      cost.label.name, study.pilot_taps(), study.settings()[study.reference().last].name,
-      scene_realizations, data, image);
-}
-
 }  // namespace jostle::inline cli

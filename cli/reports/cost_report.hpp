@@ -15,9 +15,4 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
                       std::uint32_t scene_realizations, std::optional<double> target,
                       const Layout& layout);
 
-/// A gnuplot script, data included, that draws |bias| and the total error of each setting against
-/// the core time of a realization into `image` (SVG).
-std::string cost_figure(const CostStudy& study, const CostOfObservable& cost,
-                        std::uint32_t scene_realizations, const std::string& image);
-
 }  // namespace jostle::inline cli

@@ -110,10 +110,8 @@ std::string who(const LockOwner& owner) {
 
 /// Of a few shards, what there is to know of each.
 std::string remark(const ShardStatus& shard) {
-  if (shard.state == ShardState::dead) {
-    return shard.owner ? who(*shard.owner) + ", has ended" : "killed";
-  }
-  return shard.owner ? who(*shard.owner) : "";
+  if (!shard.owner) return "";
+  return who(*shard.owner) + (shard.state == ShardState::dead ? ", has ended" : "");
 }
 
 std::string state_line(const ShardsStatus& study, ShardState state) {

@@ -96,11 +96,6 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
   return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
 }
 
-double total_error(const SettingCost& setting, std::uint64_t realizations) {
-  const double statistical = setting.sigma / std::sqrt(static_cast<double>(realizations));
-  return std::hypot(largest_bias(setting), statistical);
-}
-
 std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target) {
   std::optional<Recommendation> best;
   for (std::size_t i = 0; i < settings.size(); ++i) {

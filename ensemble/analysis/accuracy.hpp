@@ -58,16 +58,14 @@ struct SettingCost {
   double realization_seconds = 0;   // of a whole one, on one core
 };
 
-/// |bias| + its error, and sigma / M^(1/2), in quadrature.
-double total_error(const SettingCost& setting, std::uint64_t realizations);
-
 struct Recommendation {
   std::size_t setting = 0;
   std::uint64_t realizations = 0;  // at least 2
   double core_seconds = 0;
 };
 
-/// The setting and number of realizations that reach a total error of at most `target` (above 0)
+/// The setting and number of realizations that reach a total error (the bias with its error, and
+/// sigma / M^(1/2), in quadrature) of at most `target` (above 0)
 /// for the least core time; nothing where every bias is too large. Settings without a known bias
 /// are passed over.
 std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);

@@ -51,6 +51,7 @@ function axisOf(axis, values) {
     }
     return {
       place: (value) => value > 0 ? value : NaN,
+      placeLow: (value) => Math.max(value, domain[0]),
       scale: {type: "log", domain},
       ticks: ticks.sort((a, b) => a - b), minor,
       tickFormat: (value) => {
@@ -92,11 +93,22 @@ function bounds(row) {
   return Number.isFinite(row.error) ? [row.y - row.error, row.y + row.error] : [row.y, row.y];
 }
 
+/// What an axis of y has to hold. On a logarithmic one an error as large as its value would reach down without end,
+/// and a law beside the data, without a band, be of any size.
+function extentOf(series, axis) {
+  const isEven = axis.type !== "log";
+  return series.filter((one) => isEven || one.band !== false).flatMap((one) => one.rows.flatMap((row) => {
+    const [low, high] = bounds(row);
+    return isEven || low > row.y / 10 ? [row.y, low, high] : [row.y, high];
+  }));
+}
+
 /// Rows with their places, those that cannot be drawn left out.
 function placed(series, xAxis, yAxis) {
   return series.map((one, i) => ({...one, i, rows: one.rows.map((row) => {
     const [low, high] = bounds(row);
-    const at = {x: xAxis.place(row.x), y: yAxis.place(row.y), low: yAxis.place(low), high: yAxis.place(high)};
+    const at = {x: xAxis.place(row.x), y: yAxis.place(row.y), low: (yAxis.placeLow ?? yAxis.place)(low),
+                high: yAxis.place(high)};
     return {...at, row, series: one};
   }).filter((at) => Number.isFinite(at.x) && Number.isFinite(at.y))}))
     .map((one) => ({...one, rows: thinned(one.rows, xAxis.isTaps)}));
@@ -120,7 +132,7 @@ function marksOf(one, colour, xAxis, ink) {
       marks.push(Plot.areaY(banded, {x: "x", y1: "low", y2: "high", fill: colour, fillOpacity: 0.2}));
     }
     marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: one.width ?? 1.8, strokeDasharray: one.dash,
-                                     strokeLinejoin: "round", sort: one.sorted === false ? null : undefined}));
+                                     strokeLinejoin: "round", clip: one.band === false, sort: one.sorted === false ? null : undefined}));
     if (alone.length > 0 && !one.isGuide) {
       marks.push(Plot.ruleX(ruled(alone), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.2}));
       marks.push(Plot.dot(alone, {...along, fill: colour, r: 3.2}));
@@ -202,7 +214,7 @@ export function drawn(spec, {width, dark, still = false}) {
   const height = Math.round(spec.height ?? Math.min(Math.max(width * 0.58, 240), 400));
   const all = spec.series.flatMap((one) => one.rows);
   const xAxis = axisOf(narrow ? {...spec.x, ticks: 5} : spec.x, [...all.map((row) => row.x), ...(spec.rules ?? []).map((rule) => rule.x ?? NaN)]);
-  const yAxis = axisOf(spec.y, all.flatMap((row) => [row.y, ...bounds(row)]));
+  const yAxis = axisOf(spec.y, extentOf(spec.series, spec.y));
   const series = placed(spec.series, xAxis, yAxis);
   const colours = new Map(series.map((one, i) => [one, one.ink ? theme.ink
     : typeof one.colour === "function" ? one.colour(dark) : kindColour(one.kind ?? i, dark)]));

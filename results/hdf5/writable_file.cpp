@@ -198,6 +198,11 @@ WritableHdf5File::WritableHdf5File(const std::string& path, Begin begin)
   driver_ = Hdf5Handle(H5FDregister(&driver), H5FDunregister);
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   checked(H5Pset_obj_track_times(creation, false));
+  // Room that a replaced table leaves is used again, also by a later process.
+  constexpr bool across_processes = true;
+  constexpr hsize_t least_room = 1;
+  checked(H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_FSM_AGGR, across_processes,
+                                     least_room));
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   const DriverSettings settings{error_.get(), begin == Begin::as_it_is};
   checked(H5Pset_driver(access, driver_, &settings));

@@ -12,8 +12,9 @@
 namespace jostle::inline study {
 namespace {
 
-constexpr double least_notice = 120;     // seconds; Slurm's signal comes up to 60 s early or late
-constexpr double bytes_a_second = 50e6;  // a slow disk, for what a stop stores
+// Seconds. Slurm's signal comes up to 60 s early or late, and a stop folds no more than takes some
+// 20 (RunSettings::most_bytes_folded_at_stop).
+constexpr double most_notice = 120;
 constexpr double most_of_the_limit = 0.25;
 
 /// Realizations of share `index` of `count` (Shard), each on the CPU that is free first.
@@ -31,10 +32,8 @@ Seconds shard_time(const SceneCost& cost, const JobRequest& request, std::uint64
   return Seconds(last);
 }
 
-Seconds notice_before_end(const SceneCost& cost, const JobRequest& request) {
-  const double stored = static_cast<double>(cost.bytes_on_disk) / request.shards;
-  const double wanted = std::max(least_notice, 60 + stored / bytes_a_second);
-  return Seconds(std::ceil(std::min(wanted, most_of_the_limit * request.time_limit.count())));
+Seconds notice_before_end(const JobRequest& request) {
+  return Seconds(std::ceil(std::min(most_notice, most_of_the_limit * request.time_limit.count())));
 }
 
 }  // namespace
@@ -61,7 +60,7 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
     }
     plan.longest_task = std::max(plan.longest_task, time);
   }
-  plan.notice = notice_before_end(cost, request);
+  plan.notice = notice_before_end(request);
   const Seconds usable = request.time_limit - plan.notice;
   if (cost.start > usable) {
     throw BadInput(

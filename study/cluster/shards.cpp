@@ -58,9 +58,8 @@ std::vector<std::string> files_in(const std::string& folder) {
 
 ShardState state_of(const RunStatus& status) {
   if (status.owner && status.owner->alive) return ShardState::running;
-  const bool killed = status.owner || status.parts_bytes > 0 || status.state == RunState::running;
   if (status.state == RunState::complete && status.parts_bytes == 0) return ShardState::done;
-  return killed ? ShardState::dead : ShardState::stopped;
+  return status.owner ? ShardState::dead : ShardState::stopped;  // a killed process leaves its lock
 }
 
 /// What was done and is left of a sweep point, over all shares.

@@ -138,7 +138,7 @@ class Words(Refused):
                           ["merge", "tiny.h5", "-o"], ["export", "tiny.h5", "--format", "vtp", "-o"],
                           ["fit", "tiny.h5", "--observable", "mean_height", "--csv"],
                           ["structure", "tiny.h5", "--csv"],
-                          ["cost", "scene.json", "--figure"],
+                          ["cost", "scene.json", "--csv"],
                           ["analyse", "tiny.h5", *STEADY, "--csv"]):
             for name in ("", "-"):
                 self.refused(*arguments, name, answer=f'"{name}" is no file\'s name')

@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import unittest
 
 SOURCE = pathlib.Path(os.environ["SOURCE"])
@@ -31,6 +32,11 @@ class Documents(unittest.TestCase):
         pages = {path.name for path in (SOURCE / "docs").glob("*.md")} - {"README.md"}
         self.assertGreater(len(pages), 15)
         self.assertEqual([page for page in sorted(pages) if f"]({page})" not in index], [])
+
+    def test_the_scene_reference_is_what_the_schema_makes(self):
+        made = subprocess.run([sys.executable, SOURCE / "config/scene_reference.py", "--check"],
+                              capture_output=True, text=True)
+        self.assertEqual((made.returncode, made.stderr), (0, ""))
 
     def test_links_lead_somewhere(self):
         wrong, n = [], 0

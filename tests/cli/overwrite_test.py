@@ -64,9 +64,7 @@ class Text(Kept):
                           ["structure", "tiny.h5", "--settings", "settings.json", "--csv",
                            "settings.json"],
                           [*cost, "--csv", "scene.json"],
-                          [*cost, "--figure", "scene.json"],
-                          [*cost, "--csv", "tiny-cost.h5"],
-                          [*cost, "--csv", "both.csv", "--figure", "both.csv"]):
+                          [*cost, "--csv", "tiny-cost.h5"]):
             self.never_replaced(*arguments, answer="works with that file")
 
     def test_a_file_that_exists_is_kept_without_force(self):

@@ -154,6 +154,25 @@ def figures_of(folder):
     return found
 
 
+class Spread(Open):
+    name = "spread"
+
+    def test_an_error_as_large_as_its_value_leaves_a_logarithmic_axis_as_it_is(self):
+        BROWSER.draw_everything()
+        figure = next(one for one in BROWSER.find_all("figure")
+                      if one.find_element(By.TAG_NAME, "h4").get_attribute("textContent") == "Pores by volume")
+        axis = BROWSER.run("""
+            const svg = arguments[0].querySelector(".canvas svg"), scale = svg.scale("y");
+            return {type: scale.type, domain: scale.domain};""", figure)
+        with h5py.File(FOLDER / "spread.h5") as file:
+            values = []
+            file["structure"].visititems(lambda name, item: values.extend(item[()].ravel())
+                                         if name.endswith("/rho_v") else None)
+        least = min(value for value in values if value > 0)
+        self.assertEqual(axis["type"], "log")
+        self.assertGreater(axis["domain"][0], least / 10)
+
+
 class Plain(Open):
     name = "plain"
 

@@ -3,7 +3,10 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <set>
+#include <thread>
 
+#include "results/live_run.hpp"
+#include "study/cluster/shards.hpp"
 #include "study/scenes/point_scenes.hpp"
 #include "study/scenes/scene_tables.hpp"
 #include "tests/results/temporary_folder.hpp"
@@ -163,6 +166,58 @@ TEST_CASE("A stop leaves a file that goes on to the same digest") {
   SceneRun again(loaded, {.output = folder / "out.h5", .existing = Existing::resume}, nobody);
   CHECK(again.compute());
   CHECK(digest_of(folder / "out.h5") == digest_of(folder / "whole.h5"));
+}
+
+TEST_CASE("A stop that would fold much leaves it in the parts, and goes on to the same digest") {
+  const TemporaryFolder folder;
+  std::string text = scene_text();
+  text.replace(text.find("\"count\": 12"), 11, "\"count\": 400");
+  const LoadedScene loaded = load(folder, text);
+  RunObserver nobody;
+  CHECK(SceneRun(loaded, {.output = folder / "whole.h5"}, nobody).compute());
+
+  std::atomic<bool> stop = false;
+  /// Stops the run from another thread once it has made a tap.
+  class Stopper : public RunObserver {
+   public:
+    explicit Stopper(std::atomic<bool>& stop) : stop_(stop) {}
+    void computing(const Progress& progress, const WorkAhead&, std::uint64_t,
+                   std::uint64_t) override {
+      watcher_ = std::jthread([this, &progress] {
+        while (progress.taps_done == 0) std::this_thread::yield();
+        stop_ = true;
+      });
+    }
+    void stored() override { stores = true; }
+    bool stores = false;
+
+   private:
+    std::atomic<bool>& stop_;
+    std::jthread watcher_;
+  } stopper(stop);
+  const std::string output = folder / "out.h5";
+  {
+    SceneRun run(loaded, {.output = output, .stop = &stop, .most_bytes_folded_at_stop = 0},
+                 stopper);
+    REQUIRE_FALSE(run.compute());
+    CHECK(run.left_in_parts());
+  }
+  CHECK_FALSE(stopper.stores);
+  const RunStatus status = run_status(output);
+  CHECK(status.state == RunState::running);
+  CHECK_FALSE(status.owner);
+  CHECK(status.parts_bytes > 0);
+  CHECK(live_results(output).series(0).front().n_taps > 0);
+  const std::string files[] = {output};
+  const Overview overview = overview_of(files);
+  REQUIRE(overview.studies.size() == 1);
+  CHECK(overview.studies[0].shards[0].state == ShardState::stopped);
+
+  SceneRun again(loaded, {.output = output, .existing = Existing::resume}, nobody);
+  CHECK(again.compute());
+  CHECK_FALSE(again.left_in_parts());
+  CHECK(digest_of(output) == digest_of(folder / "whole.h5"));
+  CHECK(run_status(output).parts_bytes == 0);
 }
 
 TEST_CASE("The scenes of sweep points are those of their plans") {

@@ -63,11 +63,11 @@ TEST_CASE("what is not done in a job's time takes more starts, each without the 
   CHECK(plan.notice == Seconds(120));
   CHECK(plan.starts == 3);
   CHECK(plan_jobs(cost({3.9}, 4), request(4, 1, 4)).starts == 1);
-  // A short limit keeps three quarters of it, and much to store takes longer.
-  CHECK(plan_jobs(cost({0.001}, 4), request(1.0 / 60, 1, 4)).notice == Seconds(15));
-  SceneCost large = cost({1}, 4);
+  // A short limit keeps three quarters of it, and so does one with much to store.
+  SceneCost large = cost({0.001}, 4);
   large.bytes_on_disk = 40'000'000'000;
-  CHECK(plan_jobs(large, request(4, 1, 4)).notice == Seconds(260));
+  CHECK(plan_jobs(large, request(1.0 / 60, 1, 4)).notice == Seconds(15));
+  CHECK(plan_jobs(large, request(4, 1, 4)).notice == Seconds(120));
 }
 
 TEST_CASE("jobs without work, and starts that no job can end, are refused") {
