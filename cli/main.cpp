@@ -9,6 +9,7 @@
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/export/printable.hpp"
+#include "results/hdf5/at_exit.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline cli {
@@ -55,5 +56,6 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   jostle::reserve_standard_fds();
+  jostle::close_nothing_at_exit();
   return jostle::run_program(argc, argv);
 }

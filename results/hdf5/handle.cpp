@@ -1,9 +1,15 @@
 #include "results/hdf5/handle.hpp"
 
+#include "results/hdf5/at_exit.hpp"
+
 namespace jostle::inline results {
 
 void silence_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+void close_nothing_at_exit() {
+  H5dont_atexit();
 }
 
 std::string hdf5_reason() {

@@ -343,6 +343,18 @@ class Crafted(Case):
     def test_their_kin(self):
         self.try_all({kind: change for kind, change in KIN.items() if "escapes" not in kind})
 
+    def test_a_damaged_record_of_free_room(self):
+        data = bytearray((self.folder / "good.h5").read_bytes()[:-SEAL])
+        header, record = data.index(b"FSHD"), data.index(b"FSSE")
+        for at in (header + 12, header + 28, record + 6):
+            changed_data = data.copy()
+            changed_data[at] ^= 0xff
+            (self.folder / "kept.h5").write_bytes(sealed(bytes(changed_data)))
+            for command in COMMANDS:
+                with self.subTest(at=at - header, command=" ".join(command)):
+                    shutil.copy(self.folder / "kept.h5", self.folder / "file.h5")
+                    self.use(command)
+
     def test_snapshots_of_grains(self):
         grains = changed(SMALL, spheres=20, realizations=2, observe=["mean_height"], name="file",
                          start={"random_settle": {}}, snapshots={"taps": [0, 2]},
