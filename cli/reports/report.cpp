@@ -123,12 +123,22 @@ std::string failure_line(const RealizationSummary& failed, const StudyPoint& poi
                      failed.reason);
 }
 
+constexpr std::size_t most_failures = 20;  // that are told one by one
+
+std::string further_failures(std::size_t n) {
+  return n <= most_failures ? ""
+                            : fmt::format("and {} more failed: jostle info --json lists them\n",
+                                          n - most_failures);
+}
+
 std::string failures_of(const StudyPoint& point, std::span<const RealizationSummary> realizations) {
   std::string lines;
+  std::size_t n = 0;
   for (const auto& one : realizations) {
-    if (one.status == RealizationStatus::failed) lines += failure_line(one, point);
+    if (one.status == RealizationStatus::failed && ++n <= most_failures)
+      lines += failure_line(one, point);
   }
-  return lines;
+  return lines + further_failures(n);
 }
 
 PointCost cost_of(const ResultsFile& file, std::span<const RealizationSummary> realizations) {
@@ -202,12 +212,13 @@ std::string legend(const Layout& layout) {
 
 std::string failure_lines(const ResultsFile& file) {
   std::string lines;
+  std::size_t n = 0;
   for (const RealizationSummary& one : file.realizations()) {
-    if (one.status != RealizationStatus::failed) continue;
+    if (one.status != RealizationStatus::failed || ++n > most_failures) continue;
     if (file.study().points.size() > 1) lines += fmt::format("sweep point {}, ", one.id.point);
     lines += failure_line(one, file.study().points[one.id.point]);
   }
-  return lines;
+  return lines + further_failures(n);
 }
 
 std::string report(const ResultsFile& file, const Layout& layout) {

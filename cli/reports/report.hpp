@@ -16,7 +16,8 @@ namespace jostle::inline cli {
 /// reason.
 std::string report(const ResultsFile& file, const Layout& layout = {});
 
-/// A line for every realization that failed, with its seed and reason.
+/// A line for each of the first realizations that failed, with its seed and reason, and how many
+/// more there are.
 std::string failure_lines(const ResultsFile& file);
 
 }  // namespace jostle::inline cli

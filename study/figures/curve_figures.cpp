@@ -136,9 +136,10 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
     const DrawnSnapshots& kept =
         *std::ranges::find(file.snapshots(), point, &DrawnSnapshots::point);
     FigurePanel panel{.title = "Centres by height, n(z)",
-                      .caption =
-                          "Fraction of all centres in a bin of height, means over "
-                          "realizations, at some of the kept taps.",
+                      .caption = fmt::format(
+                          "Fraction of all centres in a bin of height, {:.6g} diameters, means "
+                          "over realizations, at some of the kept taps.",
+                          kept.bin_width),
                       .source = "Rosato et al. 2010, fig. 6",
                       .x = {"height z (diameters)"},
                       .y = {"fraction of centres in a bin", AxisKind::linear, true}};

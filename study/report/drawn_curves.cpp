@@ -70,6 +70,8 @@ std::vector<std::uint32_t> begun_points(const ResultsFile& file, const WantedPoi
   return begun;
 }
 
+constexpr std::size_t most_bins = 2000;  // of a histogram; of more, neighbours are joined
+
 /// Means over realizations of what snapshots keep beside positions.
 class SnapshotMeans {
  public:
@@ -95,9 +97,15 @@ class SnapshotMeans {
       drawn.coordination.push_back(moments.mean());
       drawn.coordination_error.push_back(moments.standard_error());
     }
+    std::size_t longest = 0;
+    for (const auto& [tap, mean] : heights_) longest = std::max(longest, mean.sums.size());
+    const std::size_t joined_bins = std::max<std::size_t>(1, (longest + most_bins - 1) / most_bins);
+    drawn.bin_width *= static_cast<double>(joined_bins);
     for (const auto& [tap, mean] : heights_) {
-      drawn.heights.push_back({tap, mean.sums});
-      for (double& value : drawn.heights.back().n) value /= mean.n;
+      std::vector<double> n((mean.sums.size() + joined_bins - 1) / joined_bins);
+      for (std::size_t i = 0; i < mean.sums.size(); ++i)
+        n[i / joined_bins] += mean.sums[i] / mean.n;
+      drawn.heights.push_back({tap, std::move(n)});
     }
     return drawn;
   }

@@ -45,7 +45,7 @@ struct DrawnSnapshots {
   std::uint32_t point = 0;
   std::vector<std::uint64_t> taps;
   std::vector<double> coordination, coordination_error;  // [taps]
-  double bin_width = 0;                                  // diameters
+  double bin_width = 0;  // diameters; a multiple of the stored one where those were many
   std::vector<DrawnHeights> heights;
 };
 

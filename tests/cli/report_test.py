@@ -266,6 +266,28 @@ class Data(Report):
                     numpy.testing.assert_allclose(heights["n"], mean, rtol=1e-6, atol=1e-12)
 
 
+class Wide(Report):
+    def test_histograms_of_tens_of_thousands_of_bins_are_joined(self):
+        """Of a bed that was thrown a thousand diameters high."""
+        scene = changed(TINY, protocol=[{"tap": {"dilate": 10}, "count": 3}], snapshots={"taps": [0, 3]},
+                        relax={"polar": {}, "stop": {"sweeps": 1}}, realizations=2)
+        del scene["sweep"]
+        self.write(scene)
+        self.run_scene()
+        with h5py.File(self.folder / "tiny.h5") as file:
+            stored = file["snapshots/point_0000/height_histogram"][()]
+        self.assertGreater(stored.shape[-1], 10000)
+        kept = self.data(self.page("tiny.h5")[0])["files"][0]["snapshots"][0]
+        joined = round(kept["bin_width"] / 0.1)
+        self.assertAlmostEqual(kept["bin_width"], 0.1 * joined)
+        for k, heights in enumerate(kept["heights"]):
+            self.assertLessEqual(len(heights["n"]), 2000)
+            mean = stored[k].mean(axis=0)
+            sums = numpy.add.reduceat(mean, numpy.arange(0, len(mean), joined))[:len(heights["n"])]
+            numpy.testing.assert_allclose(heights["n"], sums, rtol=1e-5, atol=1e-12)
+            self.assertAlmostEqual(sum(heights["n"]), 1, places=4)
+
+
 class Hostile(Report):
     def test_hostile_texts_are_data(self):
         """Of a scene, of a file's name, and of what a forged file keeps."""

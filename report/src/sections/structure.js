@@ -180,7 +180,7 @@ function heightFigure(chapter, point) {
   if (!kept || kept.heights.length === 0) return null;
   return figure({
     file: chapter.run.file, title: "Centres by height, n(z)",
-    caption: "Fraction of all centres in a bin of height, means over realizations, at some of the kept taps.",
+    caption: `Fraction of all centres in a bin of height, ${number(kept.bin_width)} diameters, means over realizations, at some of the kept taps.`,
     source: "Rosato et al. 2010, fig. 6",
     x: {label: "height z (diameters)"}, y: {label: "fraction of centres in a bin", zero: true},
     series: kept.heights.map((one, k) => ({

@@ -1,5 +1,6 @@
 #include "cli/reports/report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -40,10 +41,6 @@ std::string report_of_height(double last) {
   store->finish();
   return report(ResultsFile(folder / "a.h5"));
 }
-
-}  // namespace
-
-namespace {
 
 /// The line about fitting, of realizations with these fractions away from the walls.
 std::string fitting_line_of(const std::vector<double>& before) {
@@ -99,6 +96,25 @@ TEST_CASE("A report has the number of realizations a row where not all reached e
   CHECK(partial.find("\n  5  1  ") != std::string::npos);
   CHECK(partial.find("\n  6  1  ") != std::string::npos);
   CHECK(whole.find("\n\nepsilon = 0\ntap   mean_height") != std::string::npos);
+}
+
+TEST_CASE("Of many realizations that failed, a report tells the first and counts the others") {
+  const auto failures = [](std::uint32_t n) {
+    const TemporaryFolder folder;
+    const Study study = synthetic::study({.points = 1, .realizations = n, .snapshot_taps = {}});
+    const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+    synthetic::run_pending(*store, study, {.fail_at_tap = 1});
+    store->finish();
+    const ResultsFile file(folder / "a.h5");
+    CHECK(report(file).find(failure_lines(file)) != std::string::npos);
+    return failure_lines(file);
+  };
+  const std::string few = failures(20), many = failures(33);
+  CAPTURE(few, many);
+  CHECK(std::ranges::count(few, '\n') == 20);
+  CHECK(few.find("more failed") == std::string::npos);
+  CHECK(std::ranges::count(many, '\n') == 21);
+  CHECK(many.ends_with("\nand 13 more failed: jostle info --json lists them\n"));
 }
 
 TEST_CASE("A report shows the columns of an engine as they ask for") {
