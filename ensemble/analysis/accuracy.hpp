@@ -65,9 +65,8 @@ struct Recommendation {
 };
 
 /// The setting and number of realizations that reach a total error (the bias with its error, and
-/// sigma / M^(1/2), in quadrature) of at most `target` (above 0)
-/// for the least core time; nothing where every bias is too large. Settings without a known bias
-/// are passed over.
+/// sigma / M^(1/2), in quadrature) of at most `target` (above 0) for the least core time; nothing
+/// where every bias is too large. Settings without a known bias are passed over.
 std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
