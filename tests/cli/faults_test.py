@@ -14,7 +14,7 @@ import unittest
 
 import h5py
 
-from support import (BAD_INPUT, BROKEN, FAULT_SHIM, JOSTLE, OK, PLAIN, STOPPED, TINY, Case,
+from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SHIM, STOPPED, TINY, Case,
                      changed)
 
 # A fifth of a second, with checkpoints all the way, and snapshots that fill disk and memory.
@@ -31,8 +31,7 @@ GROWTH = {"name": "growth", "seed": 1999, "realizations": 1, "spheres": 20000,
 SEAL = len("\njostle-sha256 \n") + 64  # what a results file ends with
 OPTIONS = ("--no-progress", "--threads", "2", "--checkpoint-every", "0")
 # Pauses a run in its midst, until SIGCONT: it has written about twenty checkpoints of a hundred.
-PAUSE = {"LD_PRELOAD": FAULT_SHIM, "JOSTLE_FAULT_ACTION": "pause", "JOSTLE_FAULT_AT": "100",
-         "ASAN_OPTIONS": "verify_asan_link_order=0"}
+PAUSE = {**SHIM, "JOSTLE_FAULT_ACTION": "pause", "JOSTLE_FAULT_AT": "100"}
 BUILD = pathlib.Path(os.environ["BUILD"])
 INSTRUMENTED = "-fsanitize" in (BUILD / "CMakeCache.txt").read_text()
 

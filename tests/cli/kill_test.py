@@ -8,7 +8,7 @@ import signal
 import time
 import unittest
 
-from support import BROKEN, FAULT_SHIM, OK, TINY, Case, changed
+from support import BROKEN, OK, SHIM, TINY, Case, changed
 
 # As few writes as a run can have, checkpoints after its taps included.
 SHORT = changed(TINY, realizations=1, spheres=24, container={"sides": "periodic", "width": 3},
@@ -69,11 +69,7 @@ class Kill(Case):
         """A run of SHORT, single-threaded so that its calls come in one order; its exit code."""
         process = self.popen(
             "run", "scene.json", "--quiet", "--threads", "1", "--checkpoint-every", "0",
-            folder=folder, environment={"LD_PRELOAD": FAULT_SHIM,
-                                        "JOSTLE_FAULT_PATH": str(folder),
-                                        # An instrumented program wants its runtime loaded first.
-                                        "ASAN_OPTIONS": "verify_asan_link_order=0",
-                                        **environment})
+            folder=folder, environment={**SHIM, "JOSTLE_FAULT_PATH": str(folder), **environment})
         _, err = process.communicate(timeout=120)
         return process.returncode, err
 

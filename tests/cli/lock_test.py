@@ -5,7 +5,7 @@ import os
 import time
 import unittest
 
-from support import BROKEN, FAULT_SHIM, OK, STOPPED, TINY, Case, changed
+from support import BROKEN, OK, SHIM, STOPPED, TINY, Case, changed
 
 SERVER_SAYS_NOT_SUPPORTED = 524
 # Relaxations of seconds: the run is at work while others try.
@@ -105,7 +105,7 @@ class WithoutFlock(Case):
     """Where flock fails as on network file systems that have none."""
 
     def surroundings(self, error):
-        return {"LD_PRELOAD": FAULT_SHIM, "JOSTLE_NO_FLOCK": str(error)}
+        return {**SHIM, "JOSTLE_NO_FLOCK": str(error)}
 
     def test_a_run_says_so_and_gives_the_same_data(self):
         self.write(TINY)

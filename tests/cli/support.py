@@ -9,7 +9,8 @@ import tempfile
 import unittest
 
 JOSTLE = os.environ["JOSTLE"]
-FAULT_SHIM = os.environ["FAULT_SHIM"]
+# Surroundings of a program whose calls the shim answers; one with sanitizers wants its own runtime first.
+SHIM = {"LD_PRELOAD": os.environ["FAULT_SHIM"], "ASAN_OPTIONS": "verify_asan_link_order=0"}
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 
 OK, BAD_INPUT, FAILED, BROKEN, STOPPED = 0, 2, 3, 4, 75
