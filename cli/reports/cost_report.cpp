@@ -140,17 +140,22 @@ std::string other_windows_line(const CostOfObservable& cost) {
 }
 
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
-  const auto choice = cheapest(cost.setting_costs, target);
+  const double factor = sigma_limit(study.replicates());
+  const auto choice = cheapest(cost.setting_costs, target, factor);
   const std::string& name = cost.label.name;
   if (!choice) {
     return fmt::format(
-        "For an error of {:g} in {} no setting will do: the least |bias| with its error is above "
-        "it.\nMore replicates make errors of biases smaller.\n",
+        "For an error of {:g} in {} no setting will do: the least |bias| with its error, that of "
+        "the most complete setting included, is above it.\nMore replicates make errors of biases "
+        "smaller.\n",
         target, name);
   }
-  return fmt::format("For an error of {:g} in {} at tap {}: {}, {}, about {}.\n", target, name,
-                     study.taps(), study.settings()[choice->setting].name,
-                     counted(choice->realizations, "realization"), core_time(choice->core_seconds));
+  return fmt::format(
+      "For an error of {:g} in {}: {}, {}, about {} for {} taps; by bias and spread after tap {}, "
+      "the spread {:.2g} times what {} replicates show, which it exceeds once in five times.\n",
+      target, name, study.settings()[choice->setting].name,
+      counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
+      study.pilot_taps(), factor, study.replicates());
 }
 
 }  // namespace

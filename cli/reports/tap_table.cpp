@@ -47,8 +47,9 @@ std::vector<ShownColumn> shown_columns(const EnsembleSeries& series,
     return value_with_error(series.mean[tap], series.error[tap]);
   })};
   if (wanted == Columns::all) {
-    columns.push_back(shown_column(
-        "sigma", taps, [&](std::uint64_t tap) { return number_text(series.sigma[tap], 3); }));
+    columns.push_back(shown_column("sigma", taps, [&](std::uint64_t tap) {
+      return series.count[tap] > 1 ? number_text(series.sigma[tap], 3) : "-";
+    }));
   }
   return columns;
 }
@@ -76,6 +77,7 @@ PointSeries point_series(const ResultsFile& file, std::uint32_t point,
                          std::span<const RealizationSummary> realizations) {
   PointSeries series{file.ensemble(point), {}};
   for (const RealizationSummary& one : realizations) {
+    if (in_share(file.shard(), file.study(), one.id)) ++series.planned;
     if (one.rows == 0) continue;
     series.reached.resize(std::max(series.reached.size(), static_cast<std::size_t>(one.rows)));
     ++series.reached[one.rows - 1];  // for now, of those that end here
@@ -89,8 +91,8 @@ PointSeries point_series(const ResultsFile& file, std::uint32_t point,
 std::string tap_table(const PointSeries& series, const Layout& layout) {
   const auto taps = reported_taps(series.reached.size() - 1);
   const std::vector<std::uint32_t>& reached = series.reached;
-  const bool partial = std::ranges::any_of(
-      taps, [&](std::uint64_t tap) { return reached[tap] != reached[taps.front()]; });
+  const bool partial =
+      std::ranges::any_of(taps, [&](std::uint64_t tap) { return reached[tap] != series.planned; });
   std::vector<ShownColumn> columns{
       shown_column("tap", taps, [](std::uint64_t tap) { return fmt::to_string(tap); })};
   if (partial) {

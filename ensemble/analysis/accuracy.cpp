@@ -96,14 +96,27 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
   return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
 }
 
-std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target) {
+double sigma_limit(std::size_t n_values) {
+  if (n_values < 2) return std::numeric_limits<double>::infinity();
+  constexpr double share = 0.8;  // of cases in which chi2 is above what is sought
+  const auto dof = static_cast<double>(n_values - 1);
+  double low = 0, high = dof;  // the median is below dof
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (chi_squared_tail(middle, dof) > share ? low : high) = middle;
+  }
+  return std::sqrt(dof / low);
+}
+
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target,
+                                       double sigma_factor) {
   std::optional<Recommendation> best;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const double bias = largest_bias(settings[i]);
     if (!(bias < target)) continue;
     const double left = target * target - bias * bias;
-    const double realizations =
-        std::max(2.0, std::ceil(settings[i].sigma * settings[i].sigma / left));
+    const double sigma = sigma_factor * settings[i].sigma;
+    const double realizations = std::max(2.0, std::ceil(sigma * sigma / left));
     const double seconds = realizations * settings[i].realization_seconds;
     if (!(realizations < 1e9) || (best && best->core_seconds <= seconds)) continue;
     best = {i, static_cast<std::uint64_t>(realizations), seconds};

@@ -54,7 +54,7 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
 /// A setting as a choice.
 struct SettingCost {
   double bias = 0, bias_error = 0;  // of the observable
-  double sigma = 0;                 // deviation between realizations, 1/(M - 1)
+  double sigma = 0;                 // deviation between realizations
   double realization_seconds = 0;   // of a whole one, on one core
 };
 
@@ -67,7 +67,13 @@ struct Recommendation {
 /// The setting and number of realizations that reach a total error (the bias with its error, and
 /// sigma / M^(1/2), in quadrature) of at most `target` (above 0) for the least core time; nothing
 /// where every bias is too large. Settings without a known bias are passed over.
-std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);
+/// `sigma_factor`: of sigma_limit(), times every sigma.
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target,
+                                       double sigma_factor = 1);
+
+/// By what a deviation of so many values (at least 2) is multiplied for a limit that the true one
+/// of a Gaussian exceeds once in five times: 1.35 for 8, 2.5 for 3. Infinite below 2.
+double sigma_limit(std::size_t n_values);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
 std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings);

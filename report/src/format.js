@@ -15,7 +15,7 @@ export function number(value, digits = 4) {
   if (Number.isInteger(value) && size < 1e6) return signed(String(value));
   if (size >= 1e6 || size < 1e-4) {
     const [digitsOf, exponent] = value.toExponential(digits - 1).split("e");
-    return `${signed(digitsOf)}\u00d710${superscript(Number(exponent))}`;
+    return `${signed(Number.isInteger(value) ? String(Number(digitsOf)) : digitsOf)}\u00d710${superscript(Number(exponent))}`;
   }
   return signed(Number(value.toPrecision(digits)).toString());
 }

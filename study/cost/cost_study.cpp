@@ -68,6 +68,13 @@ std::string window_name(const Window& window) {
   return fmt::format("quantiles {:g} to {:g}", quantiles.low, quantiles.high);
 }
 
+/// What the most complete setting may itself be off by.
+double doubt_of_reference(const CostOfObservable& cost) {
+  if (!is_seen(cost.last_step)) return cost.last_step.error;
+  return std::isfinite(cost.remainder.error) ? std::abs(cost.remainder.value) + cost.remainder.error
+                                             : std::abs(cost.last_step.bias) + cost.last_step.error;
+}
+
 }  // namespace
 
 CostStudy::CostStudy(const ResultsFile& file, std::vector<PilotSetting> settings,
@@ -120,6 +127,22 @@ double CostStudy::realization_seconds(std::size_t setting) const {
   return times_[setting].start_seconds + times_[setting].tap_seconds * static_cast<double>(taps_);
 }
 
+void CostStudy::pool_sigma(CostOfObservable& cost) const {
+  const auto has_these_beds = [&](std::size_t p) {
+    return settings_[p].part != PilotSetting::Part::start &&
+           settings_[p].part != PilotSetting::Part::spheres &&
+           std::isfinite(cost.setting_costs[p].sigma);
+  };
+  double squares = 0, n = 0;
+  for (std::size_t p = 0; p < settings_.size(); ++p) {
+    if (!has_these_beds(p)) continue;
+    squares += cost.setting_costs[p].sigma * cost.setting_costs[p].sigma;
+    ++n;
+  }
+  for (std::size_t p = 0; p < settings_.size(); ++p)
+    if (has_these_beds(p)) cost.setting_costs[p].sigma = std::sqrt(squares / n);
+}
+
 CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Column& label) const {
   CostOfObservable cost;
   cost.label = label;
@@ -155,6 +178,8 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
       is_seen(cost.last_step)
           ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
           : Remainder{not_a_number, not_a_number};
+  pool_sigma(cost);
+  cost.setting_costs[best.last].bias_error = doubt_of_reference(cost);
   return cost;
 }
 
@@ -213,7 +238,8 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
         {"bias", setting, bias, units, "less the most complete setting, paired", ""},
         {"bias_error", setting, error, units, "standard error over replicates", ""},
         {"variance_reduction", setting, reduction, "1", "by pairing, of the difference", ""},
-        {"sigma", setting, sigma, units, "deviation between realizations", ""},
+        {"sigma", setting, sigma, units,
+         "deviation between realizations, pooled over the settings that share their beds", ""},
         {"statistical_error", setting, statistical, units, "with the scene's realizations", ""},
         {work_quantity, setting, work, "1", work_name() + " of a late tap of the pilot", ""},
         {"tap_seconds", setting, tap_seconds, "s", "core time of such a tap", ""},

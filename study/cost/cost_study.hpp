@@ -67,6 +67,8 @@ class CostStudy {
 
  private:
   void read_times(const ResultsFile& file);
+  /// Sigmas of a few replicates scatter by more than they differ between settings of one bed.
+  void pool_sigma(CostOfObservable& cost) const;
   CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
   std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
 

@@ -67,14 +67,15 @@ FigurePanel two_time_correlation(const TableView& table) {
   return {.title = "Two-time correlation of " + words(table.path().back()),
           .caption =
               "C(t, t_W): correlation over realizations of the deviations at t_W and t_W+t, "
-              "over the variance at t_W; bars are standard errors.",
+              "over the variance at t_W; bars are standard errors, left out above 1.",
           .source = table.source("c"),
           .x = {"lag t (taps)", AxisKind::logarithmic},
           .y = {"C(t, t_W)"},
           .rules = {{.y = 0}},
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
+            const double error = at(table.row("c_error", k), j);
             return FigureRow{
-                .x = lag, .y = at(table.row("c", k), j), .error = at(table.row("c_error", k), j)};
+                .x = lag, .y = at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
           })};
 }
 

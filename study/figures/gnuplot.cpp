@@ -115,6 +115,13 @@ PageLayout layout_of(const Figure& figure, JournalColumns columns, const std::ve
   return page;
 }
 
+/// Of even ticks: all with the digits of their step, but where that would be many.
+std::string tick_format(const Scale& scale) {
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(scale.step) - 1e-9)));
+  const double most = std::max(std::abs(scale.low), std::abs(scale.high));
+  return decimals > 5 || most >= 1e6 ? "%h" : fmt::format("%.{}f", decimals);
+}
+
 /// "set xrange ..." and what stands along the axis.
 std::string axis_text(char axis, const Scale& scale, const FigureAxis& of, bool is_labelled) {
   std::string text;
@@ -125,7 +132,7 @@ std::string axis_text(char axis, const Scale& scale, const FigureAxis& of, bool 
   text += fmt::format("  set {}range [{}:{}]\n", axis, low, high);
   if (!is_labelled) text += fmt::format("  set format {} ''\n", axis);
   if (scale.step > 0) {
-    if (is_labelled) text += fmt::format("  set format {} '%h'\n", axis);
+    if (is_labelled) text += fmt::format("  set format {} '{}'\n", axis, tick_format(scale));
     text += fmt::format("  set {0}tics {1:.10g}\n  set m{0}tics {2}\n", axis, scale.step,
                         scale.is_whole ? 1 : 2);
   } else {
@@ -283,8 +290,8 @@ std::vector<std::string> elements_of(const FigureSeries& series, const DataColum
                                  errors ? "with yerrorbars lw 0.75" : "with points",
                                  symbol_of(series), colour));
   if (series.has_labels && !columns.label.empty()) {
-    elements.push_back(fmt::format("{}{}:2:{} with labels offset 0, 0.6 noenhanced", data,
-                                   all_x, columns.label));
+    elements.push_back(
+        fmt::format("{}{}:2:{} with labels offset 0, 0.6 noenhanced", data, all_x, columns.label));
   }
   return elements;
 }

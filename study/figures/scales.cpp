@@ -21,10 +21,9 @@ double even_step(double length, std::size_t n) {
                                           : 1);
 }
 
-/// "10^{-5}" in gnuplot's notation where they are not handy.
-std::string power_label(double value, int exponent) {
-  return exponent < -3 || exponent > 3 ? fmt::format("10^{{{}}}", exponent)
-                                       : fmt::format("{:g}", value);
+/// "10^{-5}" in gnuplot's notation, or "0.01" where all of an axis are handy.
+std::string power_label(double value, int exponent, bool all_are_handy) {
+  return all_are_handy ? fmt::format("{:g}", value) : fmt::format("10^{{{}}}", exponent);
 }
 
 std::size_t n_characters(const std::string& text) {
@@ -48,6 +47,10 @@ Scale even_scale(std::vector<double> values, bool from_zero, std::size_t most_ti
   const double fine = even_step(high - low, 2 * most_ticks);
   Scale scale{.low = std::floor(low / fine + 1e-9) * fine,
               .high = std::ceil(high / fine - 1e-9) * fine};
+  // What lies on an axis, but for zero, would be hidden by it.
+  const double close = 0.02 * (scale.high - scale.low);
+  if (low != 0 && low - scale.low < close) scale.low -= fine;
+  if (high != 0 && scale.high - high < close) scale.high += fine;
   scale.step = even_step(scale.high - scale.low, most_ticks);
   for (double k = std::ceil(scale.low / scale.step - 1e-9);
        k * scale.step <= scale.high + 1e-9 * scale.step; ++k) {
@@ -82,19 +85,20 @@ Scale logarithmic_scale(std::vector<double> values) {
   const int first = static_cast<int>(std::floor(std::log10(scale.low)));
   const int last = static_cast<int>(std::floor(std::log10(scale.high) + 1e-9));
   const int every = std::max(1, (last - first + 6) / 7);
+  const bool are_handy = first >= -4 && last <= 3;  // the first decade may have no tick
   std::vector<Tick> decades, handy;
   for (int k = first; k <= last; ++k) {
     for (int m = 1; m < 10; ++m) {
       const double at = m * std::pow(10, k);
       if (at < scale.low || at > scale.high) continue;
       if (m == 1 && k % every == 0) {
-        decades.push_back({at, power_label(at, k)});
+        decades.push_back({at, power_label(at, k, are_handy)});
       } else {
         scale.minor.push_back(at);
       }
       if (m == 1 || m == 2 || m == 3 || m == 5) {
         const bool is_handy = k >= -3 && k <= 3;
-        handy.push_back({at, m == 1     ? power_label(at, k)
+        handy.push_back({at, m == 1     ? power_label(at, k, is_handy)
                              : is_handy ? fmt::format("{:g}", at)
                                         : fmt::format("{}×10^{{{}}}", m, k)});
       }
@@ -116,7 +120,7 @@ Scale tap_scale(double most, bool has_zero) {
   if (has_zero) scale.ticks.push_back({place_of_tap_zero, "0"});
   for (int k = 0; std::pow(10, k) <= most * 1.001; ++k) {
     const double decade = std::pow(10, k);
-    scale.ticks.push_back({decade, power_label(decade, k)});
+    scale.ticks.push_back({decade, power_label(decade, k, most < 1e4)});
     for (int m = 2; m < 10 && m * decade <= scale.high; ++m) scale.minor.push_back(m * decade);
   }
   return scale;

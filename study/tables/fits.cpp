@@ -113,19 +113,21 @@ void add_curve(Table& table, const Curve& source, const Fit& fit) {
 }
 
 void add_statistics(Table& table, const Fit& fit) {
-  const std::pair<const char*, double> numbers[] = {{"residual_sum", fit.residual_sum},
-                                                    {"reduced_chi2", fit.reduced_chi2},
-                                                    {"r2", fit.r2},
-                                                    {"aic", fit.aic},
-                                                    {"bic", fit.bic},
-                                                    {"aic_effective", fit.aic_effective},
-                                                    {"bic_effective", fit.bic_effective},
-                                                    {"condition", fit.condition},
-                                                    {"effective_points", fit.effective_size},
-                                                    {"weighted_points", fit.weighted_size},
-                                                    {"error_dof", fit.error_dof},
-                                                    {"error_factor", fit.error_factor},
-                                                    {"runs_p", fit.runs.p}};
+  const std::pair<const char*, double> numbers[] = {
+      {"points", static_cast<double>(fit.fitted.size())},
+      {"residual_sum", fit.residual_sum},
+      {"reduced_chi2", fit.reduced_chi2},
+      {"r2", fit.r2},
+      {"aic", fit.aic},
+      {"bic", fit.bic},
+      {"aic_effective", fit.aic_effective},
+      {"bic_effective", fit.bic_effective},
+      {"condition", fit.condition},
+      {"effective_points", fit.effective_size},
+      {"weighted_points", fit.weighted_size},
+      {"error_dof", fit.error_dof},
+      {"error_factor", fit.error_factor},
+      {"runs_p", fit.runs.p}};
   for (const auto& [name, value] : numbers) {
     table.quantities.push_back(values(name, {}, {value}, ""));
   }

@@ -34,7 +34,7 @@ class Cost(Case):
     def test_biases_are_means_of_paired_differences(self):
         done = self.cost("--replicates", "3", "--taps", "5", "--target", "0.5", "--csv", "c.csv")
         self.assertIn("against eta = 1e-06", done.stdout)
-        self.assertRegex(done.stdout, "For an error of 0.5 in bottom_fraction at tap 40: .+, 2 real")
+        self.assertRegex(done.stdout, "For an error of 0.5 in bottom_fraction: .+, 2 real")
         with h5py.File(self.folder / "tiny-cost.h5") as stored:
             table = stored["analysis/cost/bottom_fraction"]
             names = [name.decode() for name in table["setting"][:]]

@@ -164,6 +164,19 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
   return at;
 }
 
+bool AgeingLeastSquares::is_inside(const Eigen::VectorXd& at,
+                                   std::optional<std::size_t> held) const {
+  constexpr double close = 0.1 * step;
+  const auto stands_inside = [&](std::size_t parameter, const std::vector<double>& range) {
+    const double value = at[static_cast<Eigen::Index>(parameter)];
+    return held == parameter || range.size() == 1 ||
+           (value > range.front() + close && value < range.back() - close);
+  };
+  for (std::size_t k = 0; k < curves_.size(); ++k)
+    if (!stands_inside(tau(k), ln_tau_)) return false;
+  return stands_inside(b(), ln_b_);
+}
+
 Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& at) const {
   Eigen::MatrixXd all =
       Eigen::MatrixXd::Zero(curves_.ln_a.size(), static_cast<Eigen::Index>(b() + 1));
@@ -205,6 +218,7 @@ Eigen::VectorXd AgeingLeastSquares::weights_of(std::size_t parameter,
 
 double AgeingLeastSquares::t_of(std::size_t parameter, double value) const {
   const Eigen::VectorXd at = refined(on_grid(parameter, value), parameter);
+  if (!is_inside(at, parameter)) return 0;
   const Eigen::VectorXd weights = weights_of(parameter, at);
   return weights.dot(residuals(at)) / error_of_sum(curves_, weights).error;
 }
@@ -219,6 +233,7 @@ LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {
   const ErrorOf error = error_of_sum(curves_, weights / weights.squaredNorm());
   double ends[2][2] = {{-infinite, infinite}, {-infinite, infinite}};
   for (const int side : {0, 1}) {
+    if (!is_inside(best_, parameter)) break;
     double inside = best, t_inside = 0;
     std::size_t found = 0;  // levels
     const std::size_t n = values.size();

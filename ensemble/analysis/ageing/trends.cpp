@@ -44,7 +44,8 @@ std::string power_of(const AgeTrend& found, const char* of) {
 void judge(AgeTrend& found, const char* of, const char* changes, const char* does_not,
            std::size_t realizations) {
   const std::string power = power_of(found, of);
-  if (found.p < significant) {
+  // An error beyond all factors leaves a small p without a meaning.
+  if (found.p < significant && !std::isnan(found.detectable)) {
     found.verdict = fmt::format("{} ({})", changes, power);
   } else if (found.detectable <= decisive) {
     found.verdict = fmt::format("{} ({})", does_not, power);
@@ -92,6 +93,7 @@ AgeTrend trend_of_a(const LogCurves& curves) {
 AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
   const LogCurves& curves = fit.curves();
   if (curves.size() < 2) return cannot_decide("fewer than two waiting times have curves");
+  if (!fit.is_inside()) return cannot_decide("eq. 6 does not describe these curves");
   const Eigen::MatrixXd slopes = fit.slopes(fit.best());
   Eigen::VectorXd column = slopes.col(static_cast<Eigen::Index>(fit.b()));
   for (std::size_t k = 0; k < curves.size(); ++k) {

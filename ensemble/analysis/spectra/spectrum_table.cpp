@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ensemble/analysis/analyses.hpp"
+#include "ensemble/analysis/steady_state.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -35,7 +36,17 @@ SpectrumOptions prepared(const AnalysedSeries& series, const SpectrumSettings& s
 }
 
 std::string drift_verdict(const Trend& trend, Detrending detrending) {
-  if (!trend.drifts()) return trend.statement();
+  if (!trend.drifts()) {
+    if (trend.tests == 0) return trend.statement();
+    const std::string power = fmt::format(
+        "a change of {:.2g} over the taps, {:.2g} deviations of single taps, would have been found "
+        "with 80 %",
+        trend.detectable, trend.detectable / trend.sigma);
+    return trend.detectable <= SteadyStateTest::largest_unseen * trend.sigma
+               ? trend.statement() + "; " + power
+               : fmt::format("cannot decide whether it drifts: {}, but only {}", trend.statement(),
+                             power);
+  }
   const std::string drift =
       fmt::format("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);
   if (detrending == Detrending::linear) return drift + "; its straight part was removed";
@@ -70,8 +81,7 @@ std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& m
                   time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
   if (memory.p >= 0.05) {
-    return fmt::format("{}: the slope tells no more than that memory (p = {:.2g})", alone,
-                       memory.p);
+    return fmt::format("{}: the slope is not told from it (p = {:.2g})", alone, memory.p);
   }
   return fmt::format("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
 }

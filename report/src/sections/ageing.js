@@ -24,13 +24,14 @@ function measured(chapter, table, observable) {
 }
 
 function correlation(chapter, table, observable) {
-  const lines = series(table, "c", (k, lag, j) => ({x: lag, y: table.row("c", k)[j], error: table.row("c_error", k)[j]}));
+  const lines = series(table, "c", (k, lag, j) => ({x: lag, y: table.row("c", k)[j],
+    error: table.row("c_error", k)[j] <= 1 ? table.row("c_error", k)[j] : NaN}));
   if (lines.length === 0) return null;
   return figure({
     file: chapter.run.file,
     title: `Two-time correlation of ${words(observable)}`,
     caption: "C(t, t_W): correlation over realizations of the deviations at t_W and t_W+t, over the variance at t_W; bars are standard " +
-      "errors.",
+      "errors, left out above 1.",
     source: table.source("c"),
     x: {label: "lag t (taps)", type: "log", short: "lag"}, y: {label: "C(t, t_W)", short: "C"}, rules: [{y: 0}], series: lines,
   });

@@ -81,7 +81,7 @@ function goodness(tables) {
   const least = Math.min(...tables.map((table) => table.value("aic")).filter(Number.isFinite));
   return dataTable(["law", "formula", "reduced \u03c7\u00b2", "R\u00b2", "AIC above the least", "points", "independent points"], tables.map((table) =>
     [lawName(table), table.notes.law ?? "", number(table.value("reduced_chi2"), 3), number(table.value("r2"), 5),
-     number(table.value("aic") - least, 3), String(table.axis("t").length), number(table.value("effective_points"), 3)]),
+     number(table.value("aic") - least, 3), number(table.value("points"), 6), number(table.value("effective_points"), 3)]),
   "The laws compared. AIC takes all fitted taps for independent: where the independent points are few, its differences say little");
 }
 

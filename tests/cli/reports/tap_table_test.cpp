@@ -19,7 +19,8 @@ PointSeries two_taps() {
   return {.columns = {series("mean_height", Shown::spread, 3.7524, 0.0082),
                       series("fraction", Shown::spread, 0.5413, 0.002),
                       series("sweeps", Shown::mean, 6125, 0), series("capped", Shown::count, 0, 0)},
-          .reached = {9, 9}};
+          .reached = {9, 9},
+          .planned = 9};
 }
 
 }  // namespace
@@ -65,6 +66,17 @@ TEST_CASE("A column without a value, or without an error, says so") {
         "tap  M  mean_height    fraction  sweeps\n"
         "  0  2   3.7524(82)  0.5413(20)  6125.0\n"
         "  1  1            -      0.5413  6125.0\n");
+}
+
+TEST_CASE("One realization of many says so at every tap, and has no deviation") {
+  PointSeries one = two_taps();
+  one.columns.resize(1);
+  one.columns[0].count = one.reached = {1, 1};
+  one.columns[0].sigma = {0, 0};
+  CHECK(tap_table(one, {.width = 80, .columns = Columns::all}) ==
+        "tap  M  mean_height  sigma\n"
+        "  0  1   3.7524(82)      -\n"
+        "  1  1   3.7524(82)      -\n");
 }
 
 TEST_CASE("Reported taps are about three a decade, with both ends") {

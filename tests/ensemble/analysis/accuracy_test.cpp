@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/noise.hpp"
@@ -122,6 +123,26 @@ TEST_CASE("The cheapest setting trades bias against realizations") {
   CHECK(fine->setting == 1);
   CHECK(fine->realizations == 11);
   CHECK_FALSE(cheapest(std::vector<SettingCost>{settings[2]}, 0.02));
+  CHECK(cheapest(settings, 0.0031, 2)->realizations == 42);
+}
+
+TEST_CASE("A limit of a deviation is exceeded once in five times") {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> gaussian(3, 0.7);
+  CHECK(sigma_limit(8) == Approx(1.353).margin(1e-3));  // chi2 of 7 at 20 %: 3.822
+  CHECK(std::isinf(sigma_limit(1)));
+  for (const std::size_t n : {2, 3, 8, 30}) {
+    constexpr int n_trials = 20000;
+    int exceeded = 0;
+    for (int trial = 0; trial < n_trials; ++trial) {
+      Moments values;
+      for (std::size_t i = 0; i < n; ++i) values.add(gaussian(random));
+      if (values.standard_error() * std::sqrt(static_cast<double>(n)) * sigma_limit(n) < 0.7)
+        ++exceeded;
+    }
+    CAPTURE(n);
+    CHECK(exceeded == Approx(0.2 * n_trials).margin(4 * std::sqrt(0.16 * n_trials)));
+  }
 }
 
 TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {

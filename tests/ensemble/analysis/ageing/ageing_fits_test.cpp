@@ -89,6 +89,38 @@ TEST_CASE("Fits of eq. 6 find the laws that made the curves, apart and with one 
   }
 }
 
+TEST_CASE(
+    "Curves that eq. 6 cannot follow set no limits to it, and neither hold nor refute a collapse",
+    "[statistics]") {
+  // Faster than in proportion to the lag: A = v^2 lag^1.3, v of a realization and a waiting time.
+  for (const std::uint32_t realizations : {3, 10, 40}) {
+    RandomStream random = test_stream(realizations);
+    std::vector<double> speeds;
+    for (std::uint32_t i = 0; i < 3 * realizations; ++i) speeds.push_back(1 + 0.3 * noise(random));
+    TapRows rows{.taps = taps_of(grid), .realizations = realizations, .values = {}};
+    for (const std::uint64_t tap : rows.taps) {
+      const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
+      for (std::uint32_t r = 0; r < realizations; ++r) {
+        const double way = std::pow(static_cast<double>(lag), 0.65);
+        rows.values.push_back(10 + speeds[k * realizations + r] * way);
+      }
+    }
+    const AgeingFits fits = fit_ageing(rows, grid);
+    CAPTURE(realizations, fits.collapse.verdict);
+    CHECK(fits.collapse.verdict == "cannot decide: eq. 6 does not describe these curves");
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const AgeingLaw& law : {fits.own[k], fits.shared[k]}) {
+        CAPTURE(k, law.verdict);
+        for (const LogEstimate& one : {law.a_inf, law.b}) {
+          CHECK(one.low_95 == 0);
+          CHECK(std::isinf(one.high_95));
+        }
+        CHECK_FALSE(law.is_determined());
+      }
+    }
+  }
+}
+
 TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]") {
   const Table table = ageing_table("ageing", height, eq_6_rows(2, 100), grid);
   CHECK(scalar(table, "collapse_relative") < 0.3);
