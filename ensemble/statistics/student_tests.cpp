@@ -39,7 +39,7 @@ double normal_below(double z) {
 double power_at(double effect, double critical, double dof) {
   if (dof >= many) return normal_below(effect - critical) + normal_below(-effect - critical);
   const double half = 0.5 * dof;
-  const double norm = std::log(2.0) + half * std::log(half) - std::lgamma(half);
+  const double norm = std::log(2.0) + half * std::log(half) - log_gamma(half);
   const auto density = [&](double s) {
     if (s == 0) return dof > 1 ? 0.0 : std::exp(norm);
     return std::exp(norm + (dof - 1) * std::log(s) - half * s * s);

@@ -30,8 +30,8 @@ double beta_fraction(double a, double b, double x) {
 double incomplete_beta(double a, double b, double x) {
   if (x <= 0) return 0;
   if (x >= 1) return 1;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
-                                a * std::log(x) + b * std::log1p(-x));
+  const double front = std::exp(log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) +
+                                b * std::log1p(-x));
   if (x < (a + 1) / (a + b + 2)) return front * beta_fraction(a, b, x) / a;
   return 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
@@ -50,6 +50,11 @@ double solve_tails(double wanted, Tails tails) {
 
 }  // namespace
 
+double log_gamma(double x) {
+  int sign = 0;
+  return ::lgamma_r(x, &sign);
+}
+
 double normal_tails(double z) {
   return std::erfc(std::abs(z) / std::sqrt(2.0));
 }
@@ -67,7 +72,7 @@ double fisher_tail(double f, double dof_1, double dof_2) {
 double chi_squared_tail(double x, double dof) {
   const double a = 0.5 * dof, y = 0.5 * x;
   if (y <= 0) return 1;
-  const double front = std::exp(a * std::log(y) - y - std::lgamma(a));
+  const double front = std::exp(a * std::log(y) - y - log_gamma(a));
   if (y < a + 1) {
     double term = 1 / a, sum = term;
     for (int n = 1; n < 10'000 && term > 1e-16 * sum; ++n) sum += term *= y / (a + n);

@@ -2,6 +2,8 @@
 
 namespace jostle::inline fitting {
 
+/// ln Gamma(x) for x > 0. std::lgamma writes to a global, and fits run on many threads.
+double log_gamma(double x);
 /// What |z| of a standard normal variable stays below with probability `level` in (0, 1).
 double normal_two_sided(double level);
 /// The same for Student's t with dof > 0 degrees of freedom. Its square is the quantile of

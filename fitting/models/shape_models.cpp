@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/intervals/distributions.hpp"
 #include "fitting/models/models.hpp"
 #include "fitting/solver/decompositions.hpp"
 
@@ -19,12 +20,6 @@ std::pair<double, double> range(const std::vector<double>& values) {
 double extent(const Curve& curve) {
   const auto [first, last] = range(curve.t);
   return last > first ? last - first : std::max(std::abs(last), 1.0);
-}
-
-// ln Gamma(x); std::lgamma writes to a global, and fits run on many threads.
-double log_gamma(double x) {
-  int sign = 0;
-  return ::lgamma_r(x, &sign);
 }
 
 // d ln Gamma(x) / dx for x > 0: recurrence up to 10, then Stirling's series (Abramowitz & Stegun
