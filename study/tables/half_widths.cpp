@@ -38,13 +38,18 @@ Quantity* named(Table& table, const std::string& name) {
 Table with_half_widths(Table table) {
   Factors factors;
   std::vector<std::string> used;
+  bool has_standard_errors = false;
   for (Quantity& quantity : table.quantities) {
     if (!quantity.name.ends_with(error_suffix)) continue;
     const std::string stem = quantity.name.substr(0, quantity.name.size() - error_suffix.size());
     const Quantity* const dof = named(table, stem + dof_suffix);
     auto* const errors = std::get_if<std::vector<double>>(&quantity.values);
     const auto* const freedom = dof ? std::get_if<std::vector<double>>(&dof->values) : nullptr;
-    if (!named(table, stem) || !errors || !freedom || freedom->empty()) continue;
+    if (!named(table, stem) || !errors) continue;
+    if (!freedom || freedom->empty()) {
+      has_standard_errors = true;
+      continue;
+    }
     for (std::size_t i = 0; i < errors->size(); ++i) {
       (*errors)[i] *= factors.at((*freedom)[freedom->size() == errors->size() ? i : 0]);
     }
@@ -53,12 +58,20 @@ Table with_half_widths(Table table) {
   std::erase_if(table.quantities, [&](const Quantity& quantity) {
     return std::ranges::find(used, quantity.name) != used.end();
   });
+  const bool has_intervals = std::ranges::any_of(table.quantities, [](const Quantity& quantity) {
+    return quantity.name.ends_with("_low_95");
+  });
+  std::string legend;
   if (!used.empty()) {
-    table.notes.emplace_back("a(b)",
-                             "b, in the last digits of a, is half the 68 % interval by Student's "
-                             "t; the file holds errors and "
-                             "their degrees of freedom");
+    legend =
+        "b, in the last digits of a, is half the 68 % interval by Student's t; the file holds "
+        "errors and their degrees of freedom";
+    if (has_standard_errors) legend += ", or errors alone: then b is the standard error";
+  } else if (has_standard_errors) {
+    legend = "b, in the last digits of a, is the standard error over realizations";
   }
+  if (!legend.empty() && has_intervals) legend += "; a (x to y): the 95 % interval";
+  if (!legend.empty()) table.notes.emplace_back("a(b)", legend);
   return table;
 }
 

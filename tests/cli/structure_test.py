@@ -117,6 +117,14 @@ class Structure(Case):
         for block in text.strip().split("\n\npoint_")[1:]:
             self.assertRegex(block, r"rows of|\n +\w+ +[\d.-]")
 
+    def test_it_says_what_stands_in_brackets(self):
+        self.write(TINY)
+        self.run_scene()
+        for text in (self.structure("tiny.h5", "--part", "profile").stdout,
+                     self.structure("tiny.h5", "--part", "coordination").stdout):
+            self.assertRegex(" ".join(text.split()), r"a\(b\) b, in the last digits of a, is the standard error over")
+        self.assertRegex(" ".join(text.split()), r"standard error over realizations; a \(x to y\): the 95 % interval")
+
     def test_shards_are_measured_when_they_are_merged(self):
         self.write(changed(TINY, structure=SMALL))
         self.run_scene()

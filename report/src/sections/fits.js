@@ -104,7 +104,7 @@ export function fitsSection(chapter) {
     });
   });
   return section(chapter, "fits", "Fitted laws",
-    "Estimates are given as value(error); \u201cno limit\u201d means that the data allow any value beyond.", made.length > 0 ? content : null,
+    "Estimates are given as value(standard error); \u201cno limit\u201d means that the data allow any value beyond.", made.length > 0 ? content : null,
     refusals(chapter, tables));
 }
 
