@@ -96,7 +96,7 @@ SteadyState SteadyStateTest::result() const {
   const double blocks =
       state.blocking.plateau
           ? static_cast<double>(state.blocking.levels[*state.blocking.plateau].n_blocks)
-          : 2;
+          : 1;  // the error has a lower bound, and is not known
   state.error = single ? ErrorOf{state.blocking.error(), blocks - 1}
                        : ErrorOf{means_.standard_error(), realizations - 1};
   state.realization_sigma = single ? std::numeric_limits<double>::quiet_NaN()

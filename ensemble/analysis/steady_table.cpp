@@ -61,8 +61,9 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   Table table{.name = "steady/" + series.observable, .axes = {}, .quantities = {}, .notes = {}};
   table.quantities = {
       one("value", state.value, series.units, "mean over taps and realizations"),
-      one("value_error", state.error.error, series.units,
-          single ? "standard error by blocking" : "standard error over realizations"),
+      one("value_error", error_or_nan(state.error), series.units,
+          single ? "standard error by blocking, if it found a plateau"
+                 : "standard error over realizations"),
       one("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       one("blocked_error", state.blocking.error(), series.units,
           state.blocking.plateau ? "standard error by blocking, realizations pooled"

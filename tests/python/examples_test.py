@@ -9,7 +9,7 @@ from support import SOURCE, Case
 
 SMALL = {
     "compaction": (["--taps", "12", "--realizations", "3"], "dilated by  0.05: <Z> falls by"),
-    "ageing": (["--taps", "120", "--realizations", "3"], "collapse: cannot decide with 3"),
+    "ageing": (["--taps", "120", "--realizations", "3"], "collapse: cannot decide"),
     "hysteresis": (["--taps", "4", "--realizations", "3"], "area of the loop:"),
     "structure": (["--taps", "4", "--realizations", "2"], "tap 4: "),
     "own_analysis": (["--taps", "4", "--realizations", "3"], "spheres at z = 3.5: fell by"),
