@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "cli/reports/durations.hpp"
@@ -140,22 +141,29 @@ std::string other_windows_line(const CostOfObservable& cost) {
 }
 
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
-  const double factor = sigma_limit(study.replicates());
-  const auto choice = cheapest(cost.setting_costs, target, factor);
-  const std::string& name = cost.label.name;
-  if (!choice) {
+  const std::string wanted = fmt::format("For an error of {:g} in {}", target, cost.label.name);
+  const auto choice = cheapest(cost.limits, target);
+  if (choice) {
+    const SettingCost& limit = cost.limits[choice->setting];
     return fmt::format(
-        "For an error of {:g} in {} no setting will do: the least |bias| with its error, that of "
-        "the most complete setting included, is above it.\nMore replicates make errors of biases "
-        "smaller.\n",
-        target, name);
+        "{}: {}, {}, about {} for {} taps; by a bias of at most {:.2g} and a spread of at most "
+        "{:.2g} after tap {}, either of which these {} replicates let pass once in five times.\n",
+        wanted, study.settings()[choice->setting].name,
+        counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
+        limit.bias, limit.sigma, study.pilot_taps(), study.replicates());
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const SettingCost& one : cost.limits) least = std::fmin(least, one.bias);
+  if (std::isinf(least)) {
+    return wanted +
+           ": nothing can be recommended. Steps of the ladder are not known to shrink, so that the "
+           "most complete setting may lack any amount: more replicates, or a scene whose own stop "
+           "is more complete, may tell.\n";
   }
   return fmt::format(
-      "For an error of {:g} in {}: {}, {}, about {} for {} taps; by bias and spread after tap {}, "
-      "the spread {:.2g} times what {} replicates show, which it exceeds once in five times.\n",
-      target, name, study.settings()[choice->setting].name,
-      counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
-      study.pilot_taps(), factor, study.replicates());
+      "{} no setting will do: the least limit of a bias, with what the most complete setting may "
+      "lack, is {:.2g}.\nMore replicates make errors of biases smaller.\n",
+      wanted, least);
 }
 
 }  // namespace

@@ -31,6 +31,34 @@ double largest_bias(const SettingCost& setting) {
   return std::abs(setting.bias) + setting.bias_error;
 }
 
+// Over the settings that are counted; NaN without any.
+double root_mean_square(std::span<const SettingCost> settings,
+                        std::span<const std::uint64_t> is_counted, double SettingCost::*member) {
+  double squares = 0, n = 0;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const double value = settings[i].*member;
+    if (!is_counted[i] || !std::isfinite(value)) continue;
+    squares += value * value;
+    ++n;
+  }
+  return std::sqrt(squares / n);
+}
+
+// Of Student's t, exceeded once in five times.
+double limit_of_t(double dof) {
+  return student_two_sided(0.6, dof);
+}
+
+// What the reference lacks, at its limit; NaN where steps are not known to shrink.
+double shortfall_limit(const Pilot& pilot, double t, double least_error) {
+  const auto error = [&](const PairedBias& step) { return std::max(step.error, least_error); };
+  const double last = std::abs(pilot.last_step.bias) + t * error(pilot.last_step);
+  if (!is_seen(pilot.last_step)) return last;
+  const double before = std::abs(pilot.step_before.bias) - t * error(pilot.step_before);
+  const double rest = rest_of_steps(last, before);
+  return rest < last ? last : rest;
+}
+
 }  // namespace
 
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference) {
@@ -108,20 +136,43 @@ double sigma_limit(std::size_t n_values) {
   return std::sqrt(dof / low);
 }
 
-std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target,
-                                       double sigma_factor) {
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target) {
   std::optional<Recommendation> best;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const double bias = largest_bias(settings[i]);
     if (!(bias < target)) continue;
     const double left = target * target - bias * bias;
-    const double sigma = sigma_factor * settings[i].sigma;
+    const double sigma = settings[i].sigma;
     const double realizations = std::max(2.0, std::ceil(sigma * sigma / left));
     const double seconds = realizations * settings[i].realization_seconds;
     if (!(realizations < 1e9) || (best && best->core_seconds <= seconds)) continue;
     best = {i, static_cast<std::uint64_t>(realizations), seconds};
   }
   return best;
+}
+
+void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot) {
+  const double pooled = root_mean_square(settings, pilot.has_beds, &SettingCost::sigma);
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    if (pilot.has_beds[i] && std::isfinite(settings[i].sigma)) settings[i].sigma = pooled;
+}
+
+std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot) {
+  const double t = pilot.replicates < 2 ? std::numeric_limits<double>::infinity()
+                                        : limit_of_t(static_cast<double>(pilot.replicates - 1));
+  std::vector<std::uint64_t> others = pilot.has_beds;
+  others[pilot.reference] = 0;
+  const double least_error = root_mean_square(settings, others, &SettingCost::bias_error);
+  const double lacking = shortfall_limit(pilot, t, least_error);
+  std::vector<SettingCost> limits(settings.begin(), settings.end());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    SettingCost& one = limits[i];
+    const double error = pilot.has_beds[i] ? std::max(one.bias_error, least_error) : one.bias_error;
+    one.bias = i == pilot.reference ? lacking : std::abs(one.bias) + t * error + lacking;
+    one.bias_error = 0;
+    one.sigma *= sigma_limit(pilot.replicates);
+  }
+  return limits;
 }
 
 std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings) {

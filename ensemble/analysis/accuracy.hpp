@@ -67,13 +67,31 @@ struct Recommendation {
 /// The setting and number of realizations that reach a total error (the bias with its error, and
 /// sigma / M^(1/2), in quadrature) of at most `target` (above 0) for the least core time; nothing
 /// where every bias is too large. Settings without a known bias are passed over.
-/// `sigma_factor`: of sigma_limit(), times every sigma.
-std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target,
-                                       double sigma_factor = 1);
+std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);
 
 /// By what a deviation of so many values (at least 2) is multiplied for a limit that the true one
 /// of a Gaussian exceeds once in five times: 1.35 for 8, 2.5 for 3. Infinite below 2.
 double sigma_limit(std::size_t n_values);
+
+/// What beside its settings a pilot has to say of them.
+struct Pilot {
+  std::size_t replicates = 0;
+  std::size_t reference = 0;            // of settings: the most complete, of which biases are
+  PairedBias last_step, step_before;    // to the reference, and to the setting before it
+  std::vector<std::uint64_t> has_beds;  // [n_settings], 1: has the beds of the reference
+};
+
+/// The mean square over the settings that share their beds, in the place of each one's sigma: those
+/// of a few replicates scatter by more than they differ.
+void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot);
+
+/// Settings at the limits of what the pilot knows, each exceeded once in five times: sigma by
+/// sigma_limit(); the bias by Student's t, its error no smaller than the root mean square over the
+/// settings of one bed, since of many settings one has a small error by chance. To each bias comes
+/// what the reference itself lacks: the limit of its last step where that is not seen, which takes
+/// for granted that further steps shrink at least by half; else the rest of a series whose ratio is
+/// at the limit of these two steps. Biases are NaN where that series has no end. bias_error is 0.
+std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
 std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings);

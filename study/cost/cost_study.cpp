@@ -127,20 +127,12 @@ double CostStudy::realization_seconds(std::size_t setting) const {
   return times_[setting].start_seconds + times_[setting].tap_seconds * static_cast<double>(taps_);
 }
 
-void CostStudy::pool_sigma(CostOfObservable& cost) const {
-  const auto has_these_beds = [&](std::size_t p) {
-    return settings_[p].part != PilotSetting::Part::start &&
-           settings_[p].part != PilotSetting::Part::spheres &&
-           std::isfinite(cost.setting_costs[p].sigma);
-  };
-  double squares = 0, n = 0;
-  for (std::size_t p = 0; p < settings_.size(); ++p) {
-    if (!has_these_beds(p)) continue;
-    squares += cost.setting_costs[p].sigma * cost.setting_costs[p].sigma;
-    ++n;
+std::vector<std::uint64_t> CostStudy::has_beds() const {
+  std::vector<std::uint64_t> has;
+  for (const PilotSetting& one : settings_) {
+    has.push_back(one.part != PilotSetting::Part::start && one.part != PilotSetting::Part::spheres);
   }
-  for (std::size_t p = 0; p < settings_.size(); ++p)
-    if (has_these_beds(p)) cost.setting_costs[p].sigma = std::sqrt(squares / n);
+  return has;
 }
 
 CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Column& label) const {
@@ -178,7 +170,13 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
       is_seen(cost.last_step)
           ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
           : Remainder{not_a_number, not_a_number};
-  pool_sigma(cost);
+  const Pilot pilot{.replicates = replicates_,
+                    .reference = best.last,
+                    .last_step = cost.last_step,
+                    .step_before = paired_bias(at(best.before, pilot_taps_), at(0, pilot_taps_)),
+                    .has_beds = has_beds()};
+  pool_sigma(cost.setting_costs, pilot);
+  cost.limits = at_limits(cost.setting_costs, pilot);
   cost.setting_costs[best.last].bias_error = doubt_of_reference(cost);
   return cost;
 }

@@ -30,6 +30,7 @@ struct CostOfObservable {
   Column label;
   std::vector<PairedBias> biases;          // [n_settings]
   std::vector<SettingCost> setting_costs;  // [n_settings], for the whole run of the scene
+  std::vector<SettingCost> limits;         // likewise, at_limits() of the pilot
   PairedBias last_step{};                  // the most complete setting less the one before
   Remainder remainder;                     // what it still lacks; only where that step is seen
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_settings, n_taps], taps 1 .. n_taps
@@ -67,8 +68,8 @@ class CostStudy {
 
  private:
   void read_times(const ResultsFile& file);
-  /// Sigmas of a few replicates scatter by more than they differ between settings of one bed.
-  void pool_sigma(CostOfObservable& cost) const;
+  /// Which settings have the beds of the scene's own.
+  std::vector<std::uint64_t> has_beds() const;
   CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
   std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
 
