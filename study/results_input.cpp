@@ -16,9 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has_value(const StudyPoint& point, const std::string& wanted) {
-  return std::any_of(point.sweep_values.begin(), point.sweep_values.end(),
-                     [&](const auto& value) { return value.first + "=" + value.second == wanted; });
+/// By a pointer, or by as much of its end as is given; as tables label points, too ("dilate = 0.05").
+bool has_value(const StudyPoint& point, std::string wanted) {
+  if (const auto equals = wanted.find(" = "); equals != wanted.npos) wanted.replace(equals, 3, "=");
+  return std::ranges::any_of(point.sweep_values, [&](const auto& value) {
+    const std::string known = value.first + "=" + value.second;
+    return known == wanted || known.ends_with("/" + wanted);
+  });
 }
 
 /// The sweep points that can be named, one a line.

@@ -292,7 +292,7 @@ void add_analyse(Command& app, int& code) {
       .check(file_or_kind_fault, "FILE")
       .offers_files({"h5"});
   command.add_option("--sweep-point", a.point,
-                     "Its number, or POINTER=VALUE of the sweep (default: every point)");
+                     "Its number, or NAME=VALUE of the sweep (default: every point)");
   add_table_output(command, a.output);
   command.add_threads(a.threads);
   command.require_command();

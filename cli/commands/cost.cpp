@@ -145,7 +145,7 @@ void add_cost(Command& app, int& code) {
   command.add_option("--taps", a.taps, "Of the pilot (default: 10, or all of fewer)")
       .between(1, 1000000000);
   command.add_option("--sweep-point", a.point,
-                     "Its number, or POINTER=VALUE of the sweep (default: the first)");
+                     "Its number, or NAME=VALUE of the sweep (default: the first)");
   command.add_threads(a.threads);
   command.add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
       .file_to_write()

@@ -168,7 +168,7 @@ void add_export(Command& app, int& code) {
                   ".xyz, .dump, .vtp or .h5md, in the current folder)")
       .file_to_write();
   command.add_option("--sweep-point", a.point,
-                     "Its number, or POINTER=VALUE of the sweep (default: the first)");
+                     "Its number, or NAME=VALUE of the sweep (default: the first)");
   const Option realization =
       command.add_option("--realization", a.realization, "Its number (default: 0)");
   command

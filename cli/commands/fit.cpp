@@ -267,7 +267,7 @@ void add_fit(Command& app, int& code) {
       .offers_files({"h5", "csv", "txt"});
   command.add_option("--observable", a.observable, "Which column of the results");
   command.add_option("--sweep-point", a.point,
-                     "Its number, or POINTER=VALUE of the sweep (default: every point)");
+                     "Its number, or NAME=VALUE of the sweep (default: every point)");
   command
       .add_option("--model", a.model,
                   "A law of docs/fitting.md, or all: every law of relaxation (default); with "

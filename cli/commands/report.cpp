@@ -92,7 +92,7 @@ void add_report(Command& app, int& code) {
       .needs(figures);
   command
       .add_option("--sweep-point", a.figures.sweep_point,
-                  "Figures of this one alone: its number, or POINTER=VALUE of the sweep")
+                  "Figures of this one alone: its number, or NAME=VALUE of the sweep")
       .needs(figures);
   add_live(command, a.live);
   command.add_flag("--force", a.force, "Replace files that exist");

@@ -135,7 +135,7 @@ void add_structure(Command& app, int& code) {
                   "(default: all)")
       .separated_by(',');
   command.add_option("--sweep-point", a.point,
-                     "Its number, or POINTER=VALUE of the sweep (default: every point)");
+                     "Its number, or NAME=VALUE of the sweep (default: every point)");
   add_table_output(command, a.output);
   command.add_threads(a.threads);
   command.footer(

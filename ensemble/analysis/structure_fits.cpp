@@ -139,8 +139,9 @@ void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
     const double reach = student_half_width(error, found.realizations, interval_levels[1]);
     values.push_back(value);
     errors.push_back(error);
-    low.push_back(value - reach);
-    high.push_back(value + reach);
+    // Beyond a parameter's bounds the truth cannot lie.
+    low.push_back(std::isnan(reach) ? reach : std::max(value - reach, parameter.lower));
+    high.push_back(std::isnan(reach) ? reach : std::min(value + reach, parameter.upper));
   }
   std::string name = law.prefix;
   name.append("_").append(in_lower_case(parameter.name));

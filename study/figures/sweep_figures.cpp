@@ -87,16 +87,20 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
     if (!is_sweep(table)) continue;
     const std::string x = table.note("against"), y = table.note("observable");
     if (!table.has_axis(x) || !table.has(y)) continue;
+    const bool pooled = table.has(y + "_pooled_error");
+    const std::string errors = y + (pooled ? "_pooled_error" : "_error");
     FigurePanel panel{
         .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
-        .caption = "One point a sweep point; bars are standard errors.",
+        .caption = pooled ? "One point a sweep point; bars are standard errors by the variance "
+                            "pooled over points, since few realizations know their own badly."
+                          : "One point a sweep point; bars are standard errors.",
         .source = table.source(y),
         .x = {control_label(x, table.units(x))},
         .y = {axis_label(y, table.units(y))},
         .series = {{.name = "",
                     .colour = kind_colour(0),
                     .drawn = Drawn::joined_points,
-                    .rows = rows_of(table.axis(x), table.values(y), table.values(y + "_error"))}}};
+                    .rows = rows_of(table.axis(x), table.values(y), table.values(errors))}}};
     const double maximum = table.value("maximum_at"), error = table.value("maximum_at_error");
     if (std::isfinite(error)) {
       panel.caption +=

@@ -51,6 +51,7 @@ AgeingLeastSquares::AgeingLeastSquares(LogCurves curves, std::optional<double> h
   ln_tau_ = places(std::log(0.01 * least), std::log(1e4 * most));
   fill_cells();
   best_ = refined(on_grid({}, 0), {});
+  describes_ = describes_curves();
 }
 
 void AgeingLeastSquares::fill_cells() {
@@ -164,17 +165,20 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
   return at;
 }
 
-bool AgeingLeastSquares::is_inside(const Eigen::VectorXd& at,
-                                   std::optional<std::size_t> held) const {
-  constexpr double close = 0.1 * step;
-  const auto stands_inside = [&](std::size_t parameter, const std::vector<double>& range) {
-    const double value = at[static_cast<Eigen::Index>(parameter)];
-    return held == parameter || range.size() == 1 ||
-           (value > range.front() + close && value < range.back() - close);
+bool AgeingLeastSquares::describes_curves() const {
+  constexpr double level = 0.95, close = 0.1 * step;
+  const auto is_refuted_at_edge = [&](std::size_t parameter, const std::vector<double>& range) {
+    const double value = best_[static_cast<Eigen::Index>(parameter)];
+    if (range.size() == 1 || (value > range.front() + close && value < range.back() - close))
+      return false;
+    const Eigen::VectorXd weights = weights_of(parameter, best_);
+    const ErrorOf error = error_of_sum(curves_, weights);
+    return std::abs(weights.dot(residuals(best_))) >
+           student_two_sided(level, error.dof) * error.error;
   };
   for (std::size_t k = 0; k < curves_.size(); ++k)
-    if (!stands_inside(tau(k), ln_tau_)) return false;
-  return stands_inside(b(), ln_b_);
+    if (is_refuted_at_edge(tau(k), ln_tau_)) return false;
+  return !is_refuted_at_edge(b(), ln_b_);
 }
 
 Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& at) const {
@@ -218,7 +222,6 @@ Eigen::VectorXd AgeingLeastSquares::weights_of(std::size_t parameter,
 
 double AgeingLeastSquares::t_of(std::size_t parameter, double value) const {
   const Eigen::VectorXd at = refined(on_grid(parameter, value), parameter);
-  if (!is_inside(at, parameter)) return 0;
   const Eigen::VectorXd weights = weights_of(parameter, at);
   return weights.dot(residuals(at)) / error_of_sum(curves_, weights).error;
 }
@@ -233,7 +236,7 @@ LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {
   const ErrorOf error = error_of_sum(curves_, weights / weights.squaredNorm());
   double ends[2][2] = {{-infinite, infinite}, {-infinite, infinite}};
   for (const int side : {0, 1}) {
-    if (!is_inside(best_, parameter)) break;
+    if (!describes_) break;
     double inside = best, t_inside = 0;
     std::size_t found = 0;  // levels
     const std::size_t n = values.size();

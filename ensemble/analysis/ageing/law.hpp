@@ -31,16 +31,15 @@ class AgeingLeastSquares {
   const LogCurves& curves() const { return curves_; }
   const Eigen::VectorXd& best() const { return best_; }
   bool b_is_held() const { return ln_b_.size() == 1; }
-  /// Whether no tau and no B of the best point stands on the edge of the search: there the squares
-  /// still fall outwards, and slopes say nothing of errors. So it is where curves rise at least in
-  /// proportion to the lag: of A_inf, B and tau only A_inf B / tau is then left.
-  bool is_inside() const { return is_inside(best_, std::nullopt); }
+  /// Whether the law can be that of the curves. Not where the best tau or B stands on the edge of
+  /// the search and the squares fall beyond it by more than chance (Student's t, 5 %): curves that
+  /// rise faster than the lag, or steepen, want a B or a 1/tau below 0.
+  bool describes() const { return describes_; }
 
   /// The interval of a parameter that is not held reaches to the values that are refuted: with the
   /// parameter there and all others fitted anew, the slope of the squares along it is compared with
-  /// its jackknife error by Student's t. Where that leaves another parameter on the edge of the
-  /// search, nothing is refuted; and nothing at all if one stands there at the best point. Ends
-  /// beyond the search are infinite, or 0.
+  /// its jackknife error by Student's t. Nothing is refuted where the law does not describe the
+  /// curves. Ends beyond the search are infinite, or 0.
   LogEstimate estimate(std::size_t parameter) const;
 
   /// d ln A / d parameter: [n_points, n_parameters], 0 for a B that is held.
@@ -58,7 +57,7 @@ class AgeingLeastSquares {
   /// The best place of the grid, with one parameter held (or none).
   Eigen::VectorXd on_grid(std::optional<std::size_t> held, double value) const;
   Eigen::VectorXd refined(Eigen::VectorXd at, std::optional<std::size_t> held) const;
-  bool is_inside(const Eigen::VectorXd& at, std::optional<std::size_t> held) const;
+  bool describes_curves() const;
   /// Of the points in the slope of the squares along a parameter, the others fitted.
   Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& at) const;
   /// Student's t of a value of a parameter.
@@ -69,6 +68,7 @@ class AgeingLeastSquares {
   std::vector<Cell> cells_;                         // [n_curves, n_b, n_tau]
   std::vector<std::vector<std::size_t>> best_tau_;  // [n_curves][n_b]
   Eigen::VectorXd best_;
+  bool describes_ = true;
 };
 
 /// Of the values that a column takes beyond what the other columns make up for: residuals of its

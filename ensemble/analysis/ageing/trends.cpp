@@ -93,7 +93,7 @@ AgeTrend trend_of_a(const LogCurves& curves) {
 AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
   const LogCurves& curves = fit.curves();
   if (curves.size() < 2) return cannot_decide("fewer than two waiting times have curves");
-  if (!fit.is_inside()) return cannot_decide("eq. 6 does not describe these curves");
+  if (!fit.describes()) return cannot_decide("eq. 6 does not describe these curves");
   const Eigen::MatrixXd slopes = fit.slopes(fit.best());
   Eigen::VectorXd column = slopes.col(static_cast<Eigen::Index>(fit.b()));
   for (std::size_t k = 0; k < curves.size(); ++k) {

@@ -90,6 +90,17 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
                                   : "of independent means (Welch): the streams are not matched");
 }
 
+// As error_of() has each point's by itself, [n_points].
+std::vector<double> errors_of_points(const SweepCurve& curve) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    std::vector<double> only(curve.n_points());
+    only[i] = 1;
+    errors.push_back(error_or_nan(curve.error_of(only)));
+  }
+  return errors;
+}
+
 }  // namespace
 
 Table sweep_table(std::string name, const SweptValue& swept, const Column& quantity,
@@ -110,6 +121,10 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
   add("", curve.y(), quantity.units, quantity.long_name);
   add("_error", std::move(errors), quantity.units, "standard error");
   add("_dof", std::move(dof), "1", "degrees of freedom of the error");
+  if (curve.pools() && curve.pooled().known()) {
+    add("_pooled_error", errors_of_points(curve), quantity.units,
+        "standard error by the variance pooled over points, as of lines and maxima");
+  }
   if (curve.has_realizations()) add("_count", curve.count(), "1", "realizations of the point");
   add_value("pooled_sigma", error_or_nan(curve.pooled()), quantity.units,
             curve.has_realizations() ? "deviation of one realization, pooled over points"

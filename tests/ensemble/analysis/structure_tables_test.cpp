@@ -45,13 +45,14 @@ Measurement measurement(const std::vector<double>& along, double value) {
 /// Realizations whose curve of `part` is `curve` times 1 + 0.01 (r - 1), r = 0, 1, 2.
 EnsembleStructure three_curves(const char* part, const char* places, const char* name,
                                const std::vector<double>& at, const std::vector<double>& curve,
-                               const char* counted = nullptr, double number = 0) {
+                               const char* counted = nullptr, double number = 0,
+                               double spread = 0.01) {
   EnsembleStructure structure{.taps = {0}, .packings = {{}}};
   for (int r = 0; r < 3; ++r) {
     Measurement one{.part = part};
     one.places = {{places, at, "1", "places"}};
     std::vector<double> values = curve;
-    for (double& value : values) value *= 1 + 0.01 * (r - 1);
+    for (double& value : values) value *= 1 + spread * (r - 1);
     one.quantities = {{.name = name, .places = places, .values = values, .long_name = "a curve"}};
     if (counted != nullptr) one.quantities.push_back({.name = counted, .values = {number}});
     structure.packings[0].push_back({one});
@@ -145,6 +146,14 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   CHECK(numbers(table, "tail_a_low_95")[0] == Approx(4e4 - 4.30265 * error).epsilon(1e-6));
   CHECK(numbers(table, "tail_a_high_95")[0] == Approx(4e4 + 4.30265 * error).epsilon(1e-6));
   CHECK(numbers(table, "tail_p")[0] > 0.99);
+  // Of amplitudes that differ by their own size the interval ends where amplitudes do.
+  const Table scattered =
+      structure_tables("", three_curves("pores", "xi", "rho_xi", xi, rho, nullptr, 0, 0.8),
+                       settings)
+          .at(0);
+  CHECK(numbers(scattered, "tail_a")[0] == Approx(4e4).epsilon(1e-6));
+  CHECK(numbers(scattered, "tail_a_low_95")[0] == 0);
+  CHECK(numbers(scattered, "tail_a_high_95")[0] > 1e5);
   CHECK(std::get<std::vector<std::string>>(quantity(table, "tail_status").values)[0].find(
             "the law is not refuted: F test over ") == 0);
 

@@ -57,12 +57,16 @@ enum class Laws { own, shared };
 void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensembles,
                     std::uint64_t seed) {
   Held a_inf, b, tau;
+  int disowned = 0;  // curves of the law that it is said not to describe
   for (int e = 0; e < ensembles; ++e) {
     const std::uint64_t own_seed = seed + static_cast<std::uint64_t>(e);
     std::vector<AgeingLaw> found;
     if (laws == Laws::own) {
       const LogCurves curves = curves_of(own_seed, m, paths);
-      for (std::size_t k = 0; k < 3; ++k) found.push_back(own_law(curves.one(k)));
+      for (std::size_t k = 0; k < 3; ++k) {
+        found.push_back(own_law(curves.one(k)));
+        disowned += !AgeingLeastSquares(curves.one(k)).describes();
+      }
     } else {
       found = fit_ageing(rows(own_seed, m, paths), grid).shared;
     }
@@ -74,9 +78,11 @@ void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensemble
       tau.add(found[k].tau, paths.tau[k]);
     }
   }
-  fmt::print("{:6} {:5} {:6.1f} {:3}{}{}{}\n", laws == Laws::own ? "own" : "shared",
-             name(paths.memory), paths.common_part, m, a_inf.text(), b.text(), tau.text());
+  fmt::print("{:6} {:5} {:6.1f} {:3}{}{}{} | {:5.1f}\n", laws == Laws::own ? "own" : "shared",
+             name(paths.memory), paths.common_part, m, a_inf.text(), b.text(), tau.text(),
+             b.percent(disowned));
   CAPTURE(m, paths.common_part, name(paths.memory));
+  if (laws == Laws::own) CHECK(b.percent(disowned) <= 5 + 300 * deviation(0.05, b.n));
   // The three ages of a shared fit have one B.
   for (const Held* one : {&a_inf, &b, &tau}) {
     if (one->n > 0) one->check(laws == Laws::own || one == &b ? one->n : one->n / 3.0);
@@ -84,7 +90,7 @@ void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensemble
 }
 
 constexpr const char* coverage_heading =
-    "\nlaws  memory common   M | A_inf: 68  95 % limited | B | tau\n";
+    "\nlaws  memory common   M | A_inf: 68  95 % limited | B | tau | disowned\n";
 
 struct Found {
   int n = 0, alarms = 0, excluded = 0;
@@ -117,9 +123,12 @@ Found ageings(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t 
   return found;
 }
 
-// At most 5 % and three deviations.
+// False alarms are counted in so many times more ensembles than what is found.
+constexpr int alarms_by = 10;
+
+// 5 % are meant; 10 % at most, as intervals of 95 % hold 90 % at least.
 void check_alarms(const Found& found) {
-  CHECK(found.share() <= 0.05 + 3 * deviation(0.05, found.n));
+  CHECK(found.share() <= 0.1);
 }
 
 Paths with_b(Paths paths, double first, double middle, double last) {
@@ -146,16 +155,16 @@ Found print_rates(const char* what, std::uint32_t m, const Paths& paths,
 }
 
 Found rates_of_collapse(std::uint32_t m, const Paths& paths, int n, std::uint64_t seed) {
-  return print_rates(
-      "collapse", m, paths,
-      {collapses(m, paths, n, seed), collapses(m, with_b(paths, 0.5, 1.6, 5), n, seed + 10'000),
-       collapses(m, with_b(paths, 10, 1, 0.1), n, seed + 20'000),
-       collapses(m, with_b(paths, 0.1, 2, 40), n, seed + 30'000)});
+  return print_rates("collapse", m, paths,
+                     {collapses(m, paths, alarms_by * n, seed),
+                      collapses(m, with_b(paths, 0.5, 1.6, 5), n, seed + 10'000),
+                      collapses(m, with_b(paths, 10, 1, 0.1), n, seed + 20'000),
+                      collapses(m, with_b(paths, 0.1, 2, 40), n, seed + 30'000)});
 }
 
 Found rates_of_ageing(std::uint32_t m, const Paths& paths, int n, std::uint64_t seed) {
   return print_rates("ageing", m, paths,
-                     {ageings(m, with_a_inf(paths, 1, 1, 1), n, seed),
+                     {ageings(m, with_a_inf(paths, 1, 1, 1), alarms_by * n, seed),
                       ageings(m, with_a_inf(paths, 10, 3.16, 1), n, seed + 10'000),
                       ageings(m, with_a_inf(paths, 100, 10, 1), n, seed + 20'000),
                       ageings(m, with_a_inf(paths, 1, 20, 400), n, seed + 30'000)});

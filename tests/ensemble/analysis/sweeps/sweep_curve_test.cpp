@@ -248,4 +248,26 @@ TEST_CASE("A table of a sweep holds the curve, its maximum and its line") {
   }
 }
 
+TEST_CASE("Points of few realizations have errors by the pooled variance beside their own") {
+  const auto table_of = [](std::size_t realizations, Streams streams) {
+    return sweep_table("sweep/phi", {"gamma", "1", "lift"}, {"phi", "1", "fraction", ""},
+                       SweepCurve(strengths, noisy_bell(9, realizations, 0.01), streams));
+  };
+  const auto values = [](const Table& table, const std::string& name) {
+    const auto found = std::ranges::find(table.quantities, name, &Quantity::name);
+    REQUIRE(found != table.quantities.end());
+    return std::get<std::vector<double>>(found->values);
+  };
+  const Table few = table_of(4, Streams::independent);
+  for (const double error : values(few, "phi_pooled_error")) {
+    CHECK(error == Approx(values(few, "pooled_sigma")[0] / 2).epsilon(1e-12));
+  }
+  // Matched streams: what realizations share counts in the error of a point.
+  const Table matched = table_of(4, Streams::matched);
+  CHECK(values(matched, "phi_pooled_error")[0] > 0);
+  const Table many = table_of(10, Streams::independent);
+  CHECK(std::ranges::find(many.quantities, std::string("phi_pooled_error"), &Quantity::name) ==
+        many.quantities.end());
+}
+
 }  // namespace jostle
