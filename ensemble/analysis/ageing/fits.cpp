@@ -66,6 +66,11 @@ AgeingLaw law_of(const AgeingLeastSquares& fit, std::size_t curve, LogEstimate a
     if (b.low_95 == 0) a_inf.high_95 = infinite;
   }
   AgeingLaw law{a_inf, b, tau, misfit(fit, curve), "", fit.b_is_held()};
+  if (!fit.describes()) {
+    law.verdict = fit.curves().size() == 1 ? "eq. 6 does not describe this curve"
+                                           : "eq. 6 does not describe these curves";
+    return law;
+  }
   for (const std::string& text :
        {statement("A_inf", law.a_inf), law.b_is_held ? "" : statement("B", law.b),
         statement("tau", law.tau)}) {
@@ -109,7 +114,7 @@ void fit_shared(const LogCurves& curves, std::size_t n_lags, int threads, Ageing
   fits.collapse = trend_of_b(fit);
   const LogEstimate b = fit.estimate(fit.b());
   std::string held;
-  if (!is_limited(b)) {
+  if (fit.describes() && !is_limited(b)) {
     held = statement("B", b) +
            fmt::format(
                ": it is held at {:.3g}, and of A_inf and tau only ratios between waiting "
