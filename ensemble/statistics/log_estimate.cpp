@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ensemble/moments.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 
@@ -46,6 +47,29 @@ std::vector<double> ln_means_without_one(std::span<const double> values) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     logarithms.push_back(std::log((before[i] + after[n - 1 - i]) / static_cast<double>(n - 1)));
+  }
+  return logarithms;
+}
+
+double variance(std::span<const double> values) {
+  Moments moments;
+  for (const double value : values) moments.add(value);
+  const double error = moments.standard_error();
+  return error * error * static_cast<double>(values.size());
+}
+
+std::vector<double> ln_variances_without_one(std::span<const double> values) {
+  constexpr std::size_t fewest = 4;
+  if (values.size() < fewest) return {};
+  Moments moments;
+  for (const double value : values) moments.add(value);
+  const auto n = static_cast<double>(values.size());
+  const double squares = (n - 1) * variance(values);
+  // Without value i: squares - n/(n - 1) (x_i - mean)^2, but for rounding.
+  std::vector<double> logarithms;
+  for (const double value : values) {
+    const double rest = squares - n / (n - 1) * std::pow(value - moments.mean(), 2);
+    logarithms.push_back(std::log((rest > 1e-13 * squares ? rest : 0) / (n - 2)));
   }
   return logarithms;
 }

@@ -28,4 +28,12 @@ bool is_limited(const LogEstimate& estimate);
 /// below two values, minus infinity where only the one left out is above 0.
 std::vector<double> ln_means_without_one(std::span<const double> values);
 
+/// Sum of squares about the mean over n - 1. NaN below two values.
+double variance(std::span<const double> values);
+
+/// ln of the variance (sum of squares about the mean over n - 2) with each value left out in turn:
+/// for the jackknife. Empty below four values: it would say too little; minus infinity where only
+/// the one left out differs.
+std::vector<double> ln_variances_without_one(std::span<const double> values);
+
 }  // namespace jostle::inline ensemble

@@ -48,6 +48,22 @@ FigurePanel measured_ageing(const TableView& table) {
           })};
 }
 
+FigurePanel fluctuations(const TableView& table) {
+  return {.title = fmt::format("Ageing of {}: fluctuations", words(table.path().back())),
+          .caption =
+              "V(t, t_W), the variance of X(t_W+t) − X(t_W) over realizations: A without the "
+              "change that they share; bars are 68 % intervals.",
+          .source = table.source("v"),
+          .x = {"lag t (taps)", AxisKind::logarithmic},
+          .y = {"V(t, t_W)" + unit_text(table.units("v")), AxisKind::logarithmic},
+          .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
+            return FigureRow{.x = lag,
+                             .y = at(table.row("v", k), j),
+                             .low = at(table.row("v_low_68", k), j),
+                             .high = at(table.row("v_high_68", k), j)};
+          })};
+}
+
 FigurePanel scaled_ageing(const TableView& table) {
   return {.title = fmt::format("Ageing of {}, scaled", words(table.path().back())),
           .caption =
@@ -166,8 +182,9 @@ void add_ageing(const DrawnFile& file, Figures& into) {
   for (const std::uint32_t point : points_of(file, made)) {
     for (const TableView& table : made) {
       if (table.point() != point) continue;
-      for (FigurePanel& panel : std::vector<FigurePanel>{
-               measured_ageing(table), scaled_ageing(table), two_time_correlation(table)}) {
+      for (FigurePanel& panel :
+           std::vector<FigurePanel>{measured_ageing(table), fluctuations(table),
+                                    scaled_ageing(table), two_time_correlation(table)}) {
         add_panel(file, point, std::move(panel), into);
       }
     }

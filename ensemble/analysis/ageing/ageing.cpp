@@ -46,6 +46,20 @@ LogEstimate mean_square(const Pairs& xy) {
   return log_estimate(sum / static_cast<double>(n), error);
 }
 
+void add_change(const Pairs& xy, AgeingCurves& curves) {
+  Moments changes;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < xy.early.size(); ++i) {
+    values.push_back(xy.late[i] - xy.early[i]);
+    changes.add(values.back());
+  }
+  curves.change.push_back(changes.mean());
+  curves.change_error.push_back(changes.standard_error());
+  curves.v.push_back(log_estimate(
+      variance(values),
+      {jackknife_error(ln_variances_without_one(values)), static_cast<double>(values.size()) - 1}));
+}
+
 struct Correlation {
   double value = not_a_number, error = not_a_number;
 };
@@ -107,6 +121,7 @@ AgeingCurves ageing_curves(const TapRows& rows, const AgeingGrid& grid) {
     for (const std::uint64_t lag : grid.lags) {
       const Pairs xy = pairs(rows.row(wait), rows.row(wait + lag));
       curves.a.push_back(mean_square(xy));
+      add_change(xy, curves);
       const Correlation c = correlation(xy);
       curves.c.push_back(c.value);
       curves.c_error.push_back(c.error);

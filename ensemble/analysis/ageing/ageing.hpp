@@ -32,6 +32,14 @@ struct AgeingCurves {
   /// realizations: squares are skewed, and A +- t error would hold the truth too seldom.
   std::vector<LogEstimate> a;
 
+  /// <X(t_W + t) - X(t_W)>, what all realizations share, with its standard error.
+  std::vector<double> change, change_error;
+
+  /// V(t, t_W), the variance of X(t_W + t) - X(t_W) over realizations (of M - 1): fluctuations
+  /// beside the change that they share. A = change^2 + V (M - 1)/M. Errors and intervals from the
+  /// jackknife of ln V, from four realizations on.
+  std::vector<LogEstimate> v;
+
   /// C(t, t_W) = <dX(t_W + t) dX(t_W)> / <dX(t_W)^2>, dX = X - <X> over realizations at the same
   /// tap: 1 at t = 0. NaN where the realizations do not differ at t_W (a shared start). After
   /// Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916.

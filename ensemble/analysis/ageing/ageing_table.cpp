@@ -34,7 +34,8 @@ std::vector<double> numbers(const std::vector<LogEstimate>& estimates, double Lo
   return values;
 }
 
-void add_curves(const AgeingCurves& curves, const std::string& units, Table& table) {
+void add_curves(const AgeingCurves& curves, const std::string& of_change, Table& table) {
+  const std::string units = squared(of_change);
   const std::vector<std::string> axes = {"waiting_time", "lag"};
   const auto add = [&](const std::string& name, const auto& values, const std::string& unit,
                        const char* meaning, const char* source) {
@@ -44,6 +45,13 @@ void add_curves(const AgeingCurves& curves, const std::string& units, Table& tab
   for (const auto& [name, field, meaning] : estimate_columns) {
     add(std::string("a").append(name), numbers(curves.a, field), units, meaning, "");
   }
+  add("v", numbers(curves.v, &LogEstimate::value), units,
+      "variance over realizations of the change over the lag", "");
+  for (const auto& [name, field, meaning] : estimate_columns) {
+    add(std::string("v").append(name), numbers(curves.v, field), units, meaning, "");
+  }
+  add("change", curves.change, of_change, "mean change over the lag", "");
+  add("change_error", curves.change_error, of_change, "standard error over realizations", "");
   add("c", curves.c, "1", "two-time autocorrelation over realizations, 1 at lag 0",
       "Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916");
   add("c_error", curves.c_error, "1", "jackknife error of c", "");
@@ -170,13 +178,14 @@ Table ageing_table(std::string name, const Column& observable, const TapRows& ro
   Table table{.name = std::move(name)};
   table.axes = {{"waiting_time", {"waiting_time"}, grid.waiting_times, "taps", "age t_W", ""},
                 {"lag", {"lag"}, grid.lags, "taps", "lag t", ""}};
-  add_curves(curves, units, table);
+  add_curves(curves, observable.units, table);
   table.notes = {{"observable", observable.name}, {"law", "A_inf (1 - 1 / (1 + B ln(1 + t/tau)))"}};
   add_laws(fits.own, "", "", units, false, table);
   add_laws(fits.shared, "shared_", ", b common to all waiting times", units, true, table);
   add_scaled(curves, fits, table);
   add_distances(curves, fits, table);
   add_trend(fits.ageing, "ageing", "a", table);
+  add_trend(fits.fluctuations, "fluctuation", "v", table);
   add_trend(fits.collapse, "collapse", "b", table);
   table.quantities.push_back({"realizations_fitted",
                               {},

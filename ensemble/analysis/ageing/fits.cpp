@@ -162,7 +162,7 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   const std::vector<std::uint32_t> complete = complete_realizations(rows);
   fits.realizations = complete.size();
   const auto say = [&](const std::string& why) {
-    fits.ageing = fits.collapse = cannot_decide(why);
+    fits.ageing = fits.fluctuations = fits.collapse = cannot_decide(why);
     for (std::vector<AgeingLaw>* laws : {&fits.own, &fits.shared}) {
       for (AgeingLaw& law : *laws) law.verdict = why;
     }
@@ -180,7 +180,11 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   for_each(threads, curves.size(), [&](std::size_t curve) {
     fits.own[curves.waiting_times[curve]] = own_law(curves.one(curve));
   });
-  fits.ageing = trend_of_a(curves);
+  fits.ageing = trend_with_age(curves, "a");
+  fits.fluctuations =
+      complete.size() < 4
+          ? cannot_decide("variances need four realizations")
+          : trend_with_age(log_curves(rows, grid, complete, Changes::variance), "v");
   fit_shared(curves, grid.lags.size(), threads, fits);
   return fits;
 }

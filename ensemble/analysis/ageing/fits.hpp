@@ -33,8 +33,9 @@ struct AgeingFits {
   /// Relative standard errors of A / A_inf at equal t / tau of the shared laws, those of A_inf and
   /// tau included: [n_waiting_times, n_lags].
   std::vector<double> scaled_error;
-  AgeTrend ageing;    // of A at equal lag
-  AgeTrend collapse;  // of B: where there is one, no scales lay the curves on one another
+  AgeTrend ageing;        // of A at equal lag
+  AgeTrend fluctuations;  // of V at equal lag, from four realizations on
+  AgeTrend collapse;      // of B: where there is one, no scales lay the curves on one another
   std::uint64_t realizations = 0;
 };
 

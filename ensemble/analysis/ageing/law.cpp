@@ -166,19 +166,16 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
 }
 
 bool AgeingLeastSquares::describes_curves() const {
-  constexpr double level = 0.95, close = 0.1 * step;
-  const auto is_refuted_at_edge = [&](std::size_t parameter, const std::vector<double>& range) {
-    const double value = best_[static_cast<Eigen::Index>(parameter)];
-    if (range.size() == 1 || (value > range.front() + close && value < range.back() - close))
-      return false;
+  constexpr double level = 0.95;
+  const auto falls_on = [&](std::size_t parameter) {
     const Eigen::VectorXd weights = weights_of(parameter, best_);
     const ErrorOf error = error_of_sum(curves_, weights);
     return std::abs(weights.dot(residuals(best_))) >
            student_two_sided(level, error.dof) * error.error;
   };
   for (std::size_t k = 0; k < curves_.size(); ++k)
-    if (is_refuted_at_edge(tau(k), ln_tau_)) return false;
-  return !is_refuted_at_edge(b(), ln_b_);
+    if (falls_on(tau(k))) return false;
+  return b_is_held() || !falls_on(b());
 }
 
 Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& at) const {

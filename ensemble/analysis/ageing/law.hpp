@@ -31,9 +31,10 @@ class AgeingLeastSquares {
   const LogCurves& curves() const { return curves_; }
   const Eigen::VectorXd& best() const { return best_; }
   bool b_is_held() const { return ln_b_.size() == 1; }
-  /// Whether the law can be that of the curves. Not where the best tau or B stands on the edge of
-  /// the search and the squares fall beyond it by more than chance (Student's t, 5 %): curves that
-  /// rise faster than the lag, or steepen, want a B or a 1/tau below 0.
+  /// Whether the law can be that of the curves. Not where the squares still fall at the best point,
+  /// along a tau or B, by more than chance (Student's t, 5 %): curves that rise faster than the
+  /// lag, or steepen, want a B or a 1/tau below 0. The best point then stands on the edge of the
+  /// search, or on a ridge that leads there, so flat that rounding stops it.
   bool describes() const { return describes_; }
 
   /// The interval of a parameter that is not held reaches to the values that are refuted: with the

@@ -7,8 +7,28 @@
 namespace jostle::inline ensemble {
 
 namespace {
+
 constexpr std::size_t fewest_lags = 4;  // one more than the law has parameters
+
+struct Logarithms {
+  double here;
+  std::vector<double> without_one;
+};
+
+Logarithms logarithms(const std::vector<double>& changes, Changes of) {
+  if (of == Changes::variance) {
+    return {std::log(variance(changes)), ln_variances_without_one(changes)};
+  }
+  std::vector<double> squares;
+  double sum = 0;
+  for (const double change : changes) {
+    squares.push_back(change * change);
+    sum += squares.back();
+  }
+  return {std::log(sum / static_cast<double>(squares.size())), ln_means_without_one(squares)};
 }
+
+}  // namespace
 
 LogCurves LogCurves::one(std::size_t curve) const {
   const auto from = static_cast<std::ptrdiff_t>(first[curve]);
@@ -28,7 +48,7 @@ ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights) {
 }
 
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
-                     const std::vector<std::uint32_t>& realizations) {
+                     const std::vector<std::uint32_t>& realizations, Changes of) {
   LogCurves curves;
   curves.first = {0};
   const std::size_t m = realizations.size();
@@ -38,17 +58,15 @@ LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
     for (std::size_t j = 0; j < grid.lags.size(); ++j) {
       const std::span<const double> late = rows.row(grid.waiting_times[k] + grid.lags[j]);
       if (early.empty() || late.empty()) continue;
-      std::vector<double> squares;
-      double sum = 0;
-      for (const std::uint32_t r : realizations) {
-        squares.push_back((late[r] - early[r]) * (late[r] - early[r]));
-        sum += squares.back();
-      }
-      if (std::ranges::count_if(squares, [](double x) { return x > 0; }) < 2) continue;
+      std::vector<double> changes;
+      for (const std::uint32_t r : realizations) changes.push_back(late[r] - early[r]);
+      const auto [here, without] = logarithms(changes, of);
+      if (without.empty() ||
+          !std::ranges::all_of(without, [](double x) { return std::isfinite(x); }))
+        continue;
       curves.lag_indices.push_back(j);
       curves.lags.push_back(static_cast<double>(grid.lags[j]));
-      ln_a.push_back(std::log(sum / static_cast<double>(m)));
-      const std::vector<double> without = ln_means_without_one(squares);
+      ln_a.push_back(here);
       double mean = 0;
       for (const double x : without) mean += x / static_cast<double>(m);
       for (const double x : without) influences.push_back(static_cast<double>(m - 1) * (mean - x));

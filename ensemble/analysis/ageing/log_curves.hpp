@@ -23,10 +23,15 @@ struct LogCurves {
   LogCurves one(std::size_t curve) const;
 };
 
+/// What a curve is of, at equal lag: mean squares of changes, A, or their variance, V
+/// (ensemble/analysis/ageing/ageing.hpp).
+enum class Changes { mean_square, variance };
+
 /// Of some realizations without a gap: the waiting times with enough lags for a law, without the
 /// lags over which fewer than two realizations change.
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
-                     const std::vector<std::uint32_t>& realizations);
+                     const std::vector<std::uint32_t>& realizations,
+                     Changes of = Changes::mean_square);
 
 /// Standard error of the sum over points of weights times ln A, by the jackknife over realizations.
 ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights);

@@ -32,7 +32,7 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
 }
 
 // "p = 0.3; a factor of 4 would be found with power 0.8".
-std::string power_of(const AgeTrend& found, const char* of) {
+std::string power_of(const AgeTrend& found, const std::string& of) {
   const std::string power =
       std::isnan(found.detectable)
           ? "none would be found"
@@ -41,8 +41,8 @@ std::string power_of(const AgeTrend& found, const char* of) {
                      found.p, power);
 }
 
-void judge(AgeTrend& found, const char* of, const char* changes, const char* does_not,
-           std::size_t realizations) {
+void judge(AgeTrend& found, const std::string& of, const std::string& changes,
+           const std::string& does_not, std::size_t realizations) {
   const std::string power = power_of(found, of);
   // An error beyond all factors leaves a small p without a meaning.
   if (found.p < significant && !std::isnan(found.detectable)) {
@@ -65,7 +65,7 @@ AgeTrend cannot_decide(const std::string& why) {
   return {no_estimate(), not_a_number, not_a_number, "cannot decide: " + why};
 }
 
-AgeTrend trend_of_a(const LogCurves& curves) {
+AgeTrend trend_with_age(const LogCurves& curves, const std::string& name) {
   if (curves.size() < 2) return cannot_decide("fewer than two waiting times have curves");
   const std::size_t n_lags = 1 + std::ranges::max(curves.lag_indices);
   std::vector<double> sums(n_lags, 0.0), counts(n_lags, 0.0);
@@ -85,7 +85,7 @@ AgeTrend trend_of_a(const LogCurves& curves) {
   }
   if (!(weights.squaredNorm() > 0)) return cannot_decide("waiting times have no lag in common");
   AgeTrend found = trend(curves, weights, curves.ln_a);
-  judge(found, "a", "a changes with age", "no change of a with age found",
+  judge(found, name, name + " changes with age", "no change of " + name + " with age found",
         static_cast<std::size_t>(curves.influences.cols()));
   return found;
 }

@@ -17,8 +17,9 @@ struct AgeTrend {
 
 AgeTrend cannot_decide(const std::string& why);
 
-/// Of A at equal lags, over lags that at least two waiting times have.
-AgeTrend trend_of_a(const LogCurves& curves);
+/// Of what the curves are of, `name` ("a"), at equal lags, over lags that at least two waiting
+/// times have.
+AgeTrend trend_with_age(const LogCurves& curves, const std::string& name);
 
 /// Of B, about a fit with one B that is not held. Scaled curves, A / A_inf against t / tau, lie on
 /// one another only where there is none.

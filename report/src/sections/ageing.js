@@ -23,6 +23,20 @@ function measured(chapter, table, observable) {
   });
 }
 
+function fluctuations(chapter, table, observable) {
+  if (!table.has("v")) return null;
+  return figure({
+    file: chapter.run.file,
+    title: `Ageing of ${words(observable)}: fluctuations`,
+    caption: "V(t, t_W), the variance of X(t_W+t) \u2212 X(t_W) over realizations: A without the change that they share; bars are 68 % intervals.",
+    source: table.source("v"),
+    x: {label: "lag t (taps)", type: "log", short: "lag"},
+    y: {label: `V(t, t_W)${table.units("v") === "1" ? "" : ` (${table.units("v")})`}`, type: "log", short: "V"},
+    series: series(table, "v", (k, lag, j) => ({x: lag, y: table.row("v", k)[j], low: table.row("v_low_68", k)[j],
+                                                high: table.row("v_high_68", k)[j]})),
+  });
+}
+
 function correlation(chapter, table, observable) {
   const lines = series(table, "c", (k, lag, j) => ({x: lag, y: table.row("c", k)[j],
     error: table.row("c_error", k)[j] <= 1 ? table.row("c_error", k)[j] : NaN}));
@@ -71,9 +85,10 @@ export function ageingSection(chapter) {
   const content = made.length === 0 ? null : byPoint(chapter, pointsOf(made), (point) =>
     made.filter((table) => table.point === point).flatMap((table) => {
       const observable = table.path.at(-1);
-      const figures = [measured(chapter, table, observable), scaled(chapter, table, observable),
+      const figures = [measured(chapter, table, observable), fluctuations(chapter, table, observable), scaled(chapter, table, observable),
                        correlation(chapter, table, observable)].filter(Boolean);
       return [gallery(figures), statement("Change with age", table.notes.ageing_verdict),
+              statement("Of the fluctuations", table.notes.fluctuation_verdict),
               statement("Collapse", table.notes.collapse_verdict), laws(table)].filter(Boolean);
     }));
   return section(chapter, "ageing", "Ageing", "How much an observable changes in a lag t, counted from the waiting time t_W.",

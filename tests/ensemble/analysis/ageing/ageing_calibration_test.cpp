@@ -16,10 +16,11 @@ namespace {
 
 using namespace ageing_paths;
 
-LogCurves curves_of(std::uint64_t seed, std::uint32_t m, const Paths& paths) {
+LogCurves curves_of(std::uint64_t seed, std::uint32_t m, const Paths& paths,
+                    Changes of = Changes::mean_square) {
   std::vector<std::uint32_t> all(m);
   std::iota(all.begin(), all.end(), 0u);
-  return log_curves(rows(seed, m, paths), grid, all);
+  return log_curves(rows(seed, m, paths), grid, all, of);
 }
 
 double deviation(double share, double n) {
@@ -117,8 +118,18 @@ Found collapses(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_
 Found ageings(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t seed) {
   Found found;
   for (int e = 0; e < ensembles; ++e) {
-    found.add(trend_of_a(curves_of(seed + static_cast<std::uint64_t>(e), m, paths)),
+    found.add(trend_with_age(curves_of(seed + static_cast<std::uint64_t>(e), m, paths), "a"),
               "no change of a");
+  }
+  return found;
+}
+
+Found fluctuations(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t seed) {
+  Found found;
+  for (int e = 0; e < ensembles; ++e) {
+    const LogCurves curves =
+        curves_of(seed + static_cast<std::uint64_t>(e), m, paths, Changes::variance);
+    found.add(trend_with_age(curves, "v"), "no change of v");
   }
   return found;
 }
@@ -139,6 +150,13 @@ Paths with_b(Paths paths, double first, double middle, double last) {
 Paths with_a_inf(Paths paths, double first, double middle, double last) {
   paths.tau = {100, 100, 100};
   paths.a_inf = {first, middle, last};
+  return paths;
+}
+
+// Only what realizations share ages: what they do apart does not.
+Paths with_drift_alone(Paths paths) {
+  paths.common_part = 0.5;
+  paths.drift = {20, 4, 1};
   return paths;
 }
 
@@ -172,6 +190,19 @@ Found rates_of_ageing(std::uint32_t m, const Paths& paths, int n, std::uint64_t 
 
 }  // namespace
 
+// Alarms where nothing ages, and where only the drift does.
+Found rates_of_fluctuations(std::uint32_t m, const Paths& paths, int n, std::uint64_t seed) {
+  const Paths steady = with_a_inf(paths, 1, 1, 1);
+  const Found drifting = fluctuations(m, with_drift_alone(steady), alarms_by * n, seed + 40'000);
+  check_alarms(drifting);
+  fmt::print("v, where the drift alone ages: {:.1f} %\n", 100 * drifting.share());
+  return print_rates("v", m, paths,
+                     {fluctuations(m, steady, alarms_by * n, seed),
+                      fluctuations(m, with_a_inf(paths, 10, 3.16, 1), n, seed + 10'000),
+                      fluctuations(m, with_a_inf(paths, 100, 10, 1), n, seed + 20'000),
+                      fluctuations(m, with_a_inf(paths, 1, 20, 400), n, seed + 30'000)});
+}
+
 TEST_CASE("Intervals of eq. 6 hold the truth as often as they say", "[statistics]") {
   fmt::print(coverage_heading);
   check_coverage(Laws::own, 3, {}, 40, 30'000);
@@ -199,6 +230,7 @@ TEST_CASE("Tests of ageing and collapse raise few false alarms, and find what th
     const Found collapse = rates_of_collapse(m, compacting, n, 60'000 * m);
     const Found ageing = rates_of_ageing(m, compacting, n, 70'000 * m);
     if (m == 10) {
+      CHECK(rates_of_fluctuations(m, compacting, n, 75'000 * m).share() >= 0.5);
       CHECK(collapse.share() >= 0.5);
       CHECK(ageing.share() >= 0.5);
     }
@@ -212,6 +244,7 @@ TEST_CASE("Tests of ageing and collapse are calibrated at every number of realiz
     for (const std::uint32_t m : {3u, 4u, 10u}) {
       rates_of_collapse(m, paths, 100, 80'000 * m);
       rates_of_ageing(m, paths, 100, 90'000 * m);
+      if (m > 3) rates_of_fluctuations(m, paths, 100, 95'000 * m);
     }
   }
 }

@@ -92,8 +92,15 @@ TEST_CASE("Fits of eq. 6 find the laws that made the curves, apart and with one 
 TEST_CASE(
     "Curves that eq. 6 cannot follow set no limits to it, and neither hold nor refute a collapse",
     "[statistics]") {
-  // Faster than in proportion to the lag: A = v^2 lag^1.3, v of a realization and a waiting time.
-  for (const std::uint32_t realizations : {3, 10, 40}) {
+  // Faster than in proportion to the lag: A = v^2 lag^p, v of a realization and a waiting time;
+  // with noise at every lag the best point stands anywhere on a flat ridge, not on its end.
+  struct Rise {
+    std::uint32_t realizations;
+    double power, spread;
+  };
+  for (const auto& [realizations, power, spread] :
+       {Rise{3, 1.3, 0}, Rise{10, 1.3, 0}, Rise{40, 1.3, 0}, Rise{16, 1.15, 0.1},
+        Rise{40, 1.1, 0.1}}) {
     RandomStream random = test_stream(realizations);
     std::vector<double> speeds;
     for (std::uint32_t i = 0; i < 3 * realizations; ++i) speeds.push_back(1 + 0.3 * noise(random));
@@ -101,12 +108,13 @@ TEST_CASE(
     for (const std::uint64_t tap : rows.taps) {
       const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
       for (std::uint32_t r = 0; r < realizations; ++r) {
-        const double way = std::pow(static_cast<double>(lag), 0.65);
-        rows.values.push_back(10 + speeds[k * realizations + r] * way);
+        const double way = std::pow(static_cast<double>(lag), power / 2);
+        rows.values.push_back(10 +
+                              speeds[k * realizations + r] * way * (1 + spread * noise(random)));
       }
     }
     const AgeingFits fits = fit_ageing(rows, grid);
-    CAPTURE(realizations, fits.collapse.verdict);
+    CAPTURE(realizations, power, fits.collapse.verdict);
     CHECK(fits.collapse.verdict == "cannot decide: eq. 6 does not describe these curves");
     for (std::size_t k = 0; k < 3; ++k) {
       for (const AgeingLaw& law : {fits.own[k], fits.shared[k]}) {

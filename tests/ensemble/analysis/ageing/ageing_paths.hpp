@@ -27,6 +27,7 @@ struct Paths {
   double common_part = 0;  // of the mean square: the same in all realizations, as they compact
   Memory memory = Memory::long_;
   std::array<double, 3> a_inf = {1, 3, 2}, b = {2, 2, 2}, tau = {20, 100, 500};
+  std::array<double, 3> drift = {1, 1, 1};  // by which the common part is multiplied
 };
 
 inline TapRows rows(std::uint64_t seed, std::uint32_t realizations, const Paths& paths) {
@@ -53,7 +54,7 @@ inline TapRows rows(std::uint64_t seed, std::uint32_t realizations, const Paths&
       } else {
         own[r] = std::sqrt(here / 2) * (at_start[r] + noise(random));
       }
-      rows.values.push_back(10 + std::sqrt(paths.common_part * here) +
+      rows.values.push_back(10 + paths.drift[k] * std::sqrt(paths.common_part * here) +
                             std::sqrt(1 - paths.common_part) * own[r]);
     }
     before = here;

@@ -93,7 +93,7 @@ TEST_CASE("Two-time functions agree with sums written out") {
   for (std::size_t k = 0; k < all.waiting_times.size(); ++k) {
     for (std::size_t j = 0; j < all.lags.size(); ++j) {
       const std::uint64_t wait = all.waiting_times[k], late = wait + all.lags[j];
-      double n = 0, a = 0, x = 0, y = 0, xx = 0, xy = 0;
+      double n = 0, a = 0, x = 0, y = 0, xx = 0, xy = 0, d = 0;
       for (std::uint32_t r = 0; r < 7 && late < 40; ++r) {
         const double before = ensemble.at(wait, r), after = ensemble.at(late, r);
         if (std::isnan(before) || std::isnan(after)) continue;
@@ -103,6 +103,7 @@ TEST_CASE("Two-time functions agree with sums written out") {
         y += after;
         xx += before * before;
         xy += before * after;
+        d += after - before;
       }
       const std::size_t i = curves.at(k, j);
       CAPTURE(wait, all.lags[j]);
@@ -113,6 +114,8 @@ TEST_CASE("Two-time functions agree with sums written out") {
         continue;
       }
       CHECK(curves.a[i].value == Approx(a / n).epsilon(1e-13));
+      CHECK(curves.change[i] == Approx(d / n).epsilon(1e-12));
+      CHECK(curves.v[i].value == Approx((a - d * d / n) / (n - 1)).epsilon(1e-12));
       CHECK(curves.c[i] == Approx((xy - x * y / n) / (xx - x * x / n)).epsilon(1e-11));
     }
   }
@@ -122,12 +125,13 @@ TEST_CASE("Errors of two-time functions are those of leaving realizations out on
   const Ensemble ensemble = autoregression(2, 30, 9);
   const AgeingGrid one = {.waiting_times = {5}, .lags = {4}};
   const AgeingCurves curves = curves_of(ensemble, one);
-  std::vector<double> a, c;
+  std::vector<double> a, v, c;
   for (std::uint32_t left_out = 0; left_out < 9; ++left_out) {
     Ensemble rest = ensemble;
     for (std::uint64_t t = 0; t < 30; ++t) rest.series[t * 9 + left_out] = std::nan("");
     const AgeingCurves others = curves_of(rest, one);
     a.push_back(others.a[0].value);
+    v.push_back(std::log(others.v[0].value));
     c.push_back(others.c[0]);
   }
   const auto error = [](const std::vector<double>& values) {
@@ -139,6 +143,7 @@ TEST_CASE("Errors of two-time functions are those of leaving realizations out on
   for (double& value : a) value = std::log(value);
   const LogEstimate& found = curves.a[0];
   CHECK(found.error == Approx(found.value * error(a)).epsilon(1e-12));
+  CHECK(curves.v[0].error == Approx(curves.v[0].value * error(v)).epsilon(1e-12));
   CHECK(curves.c_error[0] == Approx(error(c)).epsilon(1e-12));
   // Student's t of 8 degrees of freedom.
   CHECK(std::log(found.high_68 / found.value) == Approx(1.0665 * error(a)).epsilon(1e-4));
@@ -231,6 +236,38 @@ TEST_CASE("Intervals of A hold the truth as often as they say", "[statistics]") 
     }
   }
   fmt::print("{}", table);
+}
+
+TEST_CASE("Intervals of V hold the truth as often as they say", "[statistics]") {
+  constexpr int ensembles = 1000;
+  const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
+  std::string table = "\nprocess               M   68 %   95 %   (share that holds the truth)\n";
+  for (const std::uint32_t m : {4u, 10u, 20u}) {
+    for (const bool steady : {false, true}) {
+      const double exact = steady ? 2 * (1 - std::pow(memory, 10)) : 10;
+      int held_68 = 0, held_95 = 0;
+      for (int e = 0; e < ensembles; ++e) {
+        const std::uint64_t seed = 900'000 * m + static_cast<std::uint64_t>(e);
+        Ensemble ensemble = steady ? autoregression(seed, 16, m) : random_walk(seed, 16, m);
+        for (std::uint32_t r = 0; r < m; ++r) ensemble.series[15 * m + r] += 7;  // all alike
+        const LogEstimate v = curves_of(ensemble, one).v[0];
+        held_68 += v.low_68 <= exact && exact <= v.high_68;
+        held_95 += v.low_95 <= exact && exact <= v.high_95;
+      }
+      const auto percent = [](int count) { return 100.0 * count / ensembles; };
+      table +=
+          fmt::format("{:14} {:8} {:6.1f} {:6.1f}\n", steady ? "autoregression" : "random walk", m,
+                      percent(held_68), percent(held_95));
+      CAPTURE(m, steady);
+      CHECK(percent(held_68) >= 60);
+      CHECK(percent(held_68) <= 80);
+      CHECK(percent(held_95) >= 90);
+    }
+  }
+  fmt::print("{}", table);
+  const LogEstimate three = curves_of(random_walk(1, 16, 3), one).v[0];
+  CHECK(three.value > 0);
+  CHECK(std::isnan(three.error));
 }
 
 TEST_CASE("The default grid fits into its series and needs each tap once") {
