@@ -133,14 +133,15 @@ std::string in_lower_case(std::string text) {
 void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
                    const std::vector<FoundLaw>& taps, Table& table) {
   const Parameter& parameter = model.parameters()[j];
+  // Beyond a parameter's bounds, and below 0 for the amplitude of counts, the truth cannot lie.
+  const double least = law.of_counts && parameter.linear ? 0 : parameter.lower;
   std::vector<double> values, errors, low, high;
   for (const FoundLaw& found : taps) {
     const double value = found.fit.values[j], error = found.fit.errors[j];
     const double reach = student_half_width(error, found.realizations, interval_levels[1]);
     values.push_back(value);
     errors.push_back(error);
-    // Beyond a parameter's bounds the truth cannot lie.
-    low.push_back(std::isnan(reach) ? reach : std::max(value - reach, parameter.lower));
+    low.push_back(std::isnan(reach) ? reach : std::max(value - reach, least));
     high.push_back(std::isnan(reach) ? reach : std::min(value + reach, parameter.upper));
   }
   std::string name = law.prefix;
