@@ -1,6 +1,7 @@
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include "ensemble/analysis/ageing/collapse.hpp"
 #include "ensemble/analysis/ageing/fits.hpp"
@@ -168,6 +169,38 @@ void add_trend(const AgeTrend& trend, const std::string& prefix, const std::stri
   table.notes.emplace_back(prefix + "_verdict", trend.verdict);
 }
 
+// An end that the data do not give is no number.
+double or_nan(double end) {
+  return std::isinf(end) ? no_estimate().value : end;
+}
+
+void add_scaling(const TimeScaling& scaling, const std::string& prefix, const std::string& of,
+                 Table& table) {
+  const AgeingExponent& power = scaling.power;
+  const auto add = [&](const std::string& name, double value, const std::string& meaning,
+                       const char* source) {
+    table.quantities.push_back({prefix + name, {}, std::vector{value}, "1", meaning, source});
+  };
+  add("mu", power.mu, "exponent of age: " + of + " as a function of t / t_W^mu",
+      "Bouchaud et al. 1998, arXiv:cond-mat/9702070");
+  add("mu_error", power.error, "standard error over realizations", "");
+  add("mu_low_68", or_nan(power.low_68), "lower end of the 68 % interval, Student's t", "");
+  add("mu_high_68", or_nan(power.high_68), "its upper end", "");
+  add("mu_low_95", or_nan(power.low_95), "lower end of the 95 % interval, Student's t", "");
+  add("mu_high_95", or_nan(power.high_95), "its upper end", "");
+  table.notes.emplace_back(prefix + "mu_verdict", power.verdict);
+  for (const auto& [name, variable, collapse] :
+       {std::tuple{"power_collapse", "t / t_W^mu", &power.collapse},
+        std::tuple{"logarithmic_collapse", "ln(t_W + t) / ln t_W", &scaling.logarithmic}}) {
+    add(std::string(name) + "_p", collapse->p,
+        "p-value of " + of + " as one function of " + variable + ", Student's t over realizations",
+        "");
+    add(std::string(name) + "_detectable", collapse->detectable,
+        "factor between the ages that would be found at 5 % with power 0.8", "");
+  }
+  table.notes.emplace_back(prefix + "logarithmic_collapse_verdict", scaling.logarithmic.verdict);
+}
+
 }  // namespace
 
 Table ageing_table(std::string name, const Column& observable, const TapRows& rows,
@@ -187,6 +220,8 @@ Table ageing_table(std::string name, const Column& observable, const TapRows& ro
   add_trend(fits.ageing, "ageing", "a", table);
   add_trend(fits.fluctuations, "fluctuation", "v", table);
   add_trend(fits.collapse, "collapse", "b", table);
+  add_scaling(fits.a_scaling, "", "a", table);
+  add_scaling(fits.v_scaling, "v_", "v", table);
   table.quantities.push_back({"realizations_fitted",
                               {},
                               std::vector{fits.realizations},

@@ -163,6 +163,7 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   fits.realizations = complete.size();
   const auto say = [&](const std::string& why) {
     fits.ageing = fits.fluctuations = fits.collapse = cannot_decide(why);
+    fits.a_scaling = fits.v_scaling = cannot_scale(why);
     for (std::vector<AgeingLaw>* laws : {&fits.own, &fits.shared}) {
       for (AgeingLaw& law : *laws) law.verdict = why;
     }
@@ -181,10 +182,16 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
     fits.own[curves.waiting_times[curve]] = own_law(curves.one(curve));
   });
   fits.ageing = trend_with_age(curves, "a");
-  fits.fluctuations =
-      complete.size() < 4
-          ? cannot_decide("variances need four realizations")
-          : trend_with_age(log_curves(rows, grid, complete, Changes::variance), "v");
+  fits.a_scaling = time_scaling(curves, grid, "a");
+  if (complete.size() < 4) {
+    constexpr const char* too_few = "variances need four realizations";
+    fits.fluctuations = cannot_decide(too_few);
+    fits.v_scaling = cannot_scale(too_few);
+  } else {
+    const LogCurves variances = log_curves(rows, grid, complete, Changes::variance);
+    fits.fluctuations = trend_with_age(variances, "v");
+    fits.v_scaling = time_scaling(variances, grid, "v");
+  }
   fit_shared(curves, grid.lags.size(), threads, fits);
   return fits;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ensemble/analysis/ageing/ageing.hpp"
-#include "ensemble/analysis/ageing/trends.hpp"
+#include "ensemble/analysis/ageing/time_scaling.hpp"
 
 // Eq. 6 of Philippe & Bideau 2001, A(t) = A_inf (1 - 1/(1 + B ln(1 + t/tau))), fitted to ageing
 // curves. It is empirical: it starts like t, and in a steady state A is 2 sigma^2 (1 - C(t)).
@@ -36,6 +36,7 @@ struct AgeingFits {
   AgeTrend ageing;        // of A at equal lag
   AgeTrend fluctuations;  // of V at equal lag, from four realizations on
   AgeTrend collapse;      // of B: where there is one, no scales lay the curves on one another
+  TimeScaling a_scaling, v_scaling;  // of A and V, each as one function of a variable
   std::uint64_t realizations = 0;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fitting/fit.hpp"
+#include "ensemble/statistics/tested_ends.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/decompositions.hpp"
 
@@ -231,33 +231,18 @@ LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {
                                          : places(best - farthest, best + farthest);
   const Eigen::VectorXd weights = weights_of(parameter, best_);
   const ErrorOf error = error_of_sum(curves_, weights / weights.squaredNorm());
-  double ends[2][2] = {{-infinite, infinite}, {-infinite, infinite}};
-  for (const int side : {0, 1}) {
-    if (!describes_) break;
-    double inside = best, t_inside = 0;
-    std::size_t found = 0;  // levels
-    const std::size_t n = values.size();
-    for (std::size_t i = 0; i < n && found < 2; ++i) {
-      const double value = side == 0 ? values[n - 1 - i] : values[i];
-      if (side == 0 ? value >= best : value <= best) continue;
-      const double t = std::abs(t_of(parameter, value));
-      for (; found < 2; ++found) {
-        const double threshold = student_two_sided(interval_levels[found], error.dof);
-        if (!(t > threshold)) break;
-        const double share = std::max(0.0, (threshold - t_inside) / (t - t_inside));
-        ends[found][side] = std::lerp(inside, value, share);
-      }
-      inside = value;
-      t_inside = t;
-    }
+  TestedEnds ends{{-infinite, -infinite}, {infinite, infinite}};
+  if (describes_) {
+    ends =
+        tested_ends(values, best, error.dof, [&](double value) { return t_of(parameter, value); });
   }
   const double value = std::exp(best);
   return {value,
           value * error.error,
-          std::exp(ends[0][0]),
-          std::exp(ends[0][1]),
-          std::exp(ends[1][0]),
-          std::exp(ends[1][1])};
+          std::exp(ends.low[0]),
+          std::exp(ends.high[0]),
+          std::exp(ends.low[1]),
+          std::exp(ends.high[1])};
 }
 
 }  // namespace jostle::inline ensemble

@@ -41,25 +41,44 @@ std::string power_of(const AgeTrend& found, const std::string& of) {
                      found.p, power);
 }
 
-void judge(AgeTrend& found, const std::string& of, const std::string& changes,
-           const std::string& does_not, std::size_t realizations) {
-  const std::string power = power_of(found, of);
-  // An error beyond all factors leaves a small p without a meaning.
-  if (found.p < significant && !std::isnan(found.detectable)) {
-    found.verdict = fmt::format("{} ({})", changes, power);
-  } else if (found.detectable <= decisive) {
-    found.verdict = fmt::format("{} ({})", does_not, power);
-  } else {
-    found.verdict = fmt::format("cannot decide with {} realizations ({})", realizations, power);
-  }
+// An error beyond all factors leaves a small p without a meaning.
+bool finds(const AgeTrend& found) {
+  return found.p < significant && !std::isnan(found.detectable);
 }
 
-// From -1/2 to 1/2.
-double place_of(std::size_t curve, const LogCurves& curves) {
-  return static_cast<double>(curve) / static_cast<double>(curves.size() - 1) - 0.5;
+std::string verdict(const AgeTrend& found, bool is_excluded, std::size_t realizations,
+                    const TestedChange& words) {
+  const std::string power = power_of(found, words.of);
+  if (finds(found)) return fmt::format("{} ({})", words.changes, power);
+  if (is_excluded) return fmt::format("{} ({})", words.does_not, power);
+  return fmt::format("cannot decide with {} realizations ({})", realizations, power);
 }
 
 }  // namespace
+
+AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
+                       const Eigen::VectorXd& values, const TestedChange& words) {
+  AgeTrend found = trend(curves, weights, values);
+  found.verdict = verdict(found, found.detectable <= decisive,
+                          static_cast<std::size_t>(curves.influences.cols()), words);
+  return found;
+}
+
+AgeTrend agreed(const AgeTrend& one, const AgeTrend& other, std::size_t realizations,
+                const TestedChange& words) {
+  if (std::isnan(one.p) || std::isnan(other.p)) return std::isnan(one.p) ? one : other;
+  AgeTrend found{no_estimate(), std::max(one.p, other.p), not_a_number, ""};
+  if (!std::isnan(one.detectable) && !std::isnan(other.detectable)) {
+    found.detectable = std::max(one.detectable, other.detectable);
+  }
+  found.verdict = verdict(found, found.detectable <= decisive && !finds(one) && !finds(other),
+                          realizations, words);
+  return found;
+}
+
+double place_of(std::size_t curve, const LogCurves& curves) {
+  return static_cast<double>(curve) / static_cast<double>(curves.size() - 1) - 0.5;
+}
 
 AgeTrend cannot_decide(const std::string& why) {
   return {no_estimate(), not_a_number, not_a_number, "cannot decide: " + why};
@@ -84,10 +103,9 @@ AgeTrend trend_with_age(const LogCurves& curves, const std::string& name) {
     }
   }
   if (!(weights.squaredNorm() > 0)) return cannot_decide("waiting times have no lag in common");
-  AgeTrend found = trend(curves, weights, curves.ln_a);
-  judge(found, name, name + " changes with age", "no change of " + name + " with age found",
-        static_cast<std::size_t>(curves.influences.cols()));
-  return found;
+  return tested_change(
+      curves, weights, curves.ln_a,
+      {name, name + " changes with age", "no change of " + name + " with age found"});
 }
 
 AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
@@ -103,10 +121,8 @@ AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
   }
   const Eigen::VectorXd weights = beyond_others(column, slopes);
   if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves say nothing of b");
-  AgeTrend found = trend(curves, weights, fit.residuals(fit.best()));
-  judge(found, "b", "collapse refuted", "collapse not refuted",
-        static_cast<std::size_t>(curves.influences.cols()));
-  return found;
+  return tested_change(curves, weights, fit.residuals(fit.best()),
+                       {"b", "collapse refuted", "collapse not refuted"});
 }
 
 }  // namespace jostle::inline ensemble

@@ -17,6 +17,24 @@ struct AgeTrend {
 
 AgeTrend cannot_decide(const std::string& why);
 
+/// Of what the weights times `values`, over the sum of the weights' squares, estimate the logarithm
+/// of the factor, both [n_points].
+struct TestedChange {
+  std::string of;        // "a": what may change
+  std::string changes;   // the verdict where it does: "a changes with age"
+  std::string does_not;  // and where a factor of ten would have been found
+};
+AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
+                       const Eigen::VectorXd& values, const TestedChange& words);
+
+/// Of two tests of one change what the stricter one says, without a factor; nothing is decided
+/// where only one finds it.
+AgeTrend agreed(const AgeTrend& one, const AgeTrend& other, std::size_t realizations,
+                const TestedChange& words);
+
+/// -1/2 for the first waiting time to 1/2 for the last.
+double place_of(std::size_t curve, const LogCurves& curves);
+
 /// Of what the curves are of, `name` ("a"), at equal lags, over lags that at least two waiting
 /// times have.
 AgeTrend trend_with_age(const LogCurves& curves, const std::string& name);

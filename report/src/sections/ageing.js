@@ -89,7 +89,11 @@ export function ageingSection(chapter) {
                        correlation(chapter, table, observable)].filter(Boolean);
       return [gallery(figures), statement("Change with age", table.notes.ageing_verdict),
               statement("Of the fluctuations", table.notes.fluctuation_verdict),
-              statement("Collapse", table.notes.collapse_verdict), laws(table)].filter(Boolean);
+              statement("Collapse on eq. 6", table.notes.collapse_verdict),
+              ...[["A", ""], ["V", "v_"]].flatMap(([name, prefix]) => [
+                statement(`${name} as a function of t/t_W^mu`, table.notes[`${prefix}mu_verdict`]),
+                statement(`${name} as a function of ln(t_W + t)/ln t_W`, table.notes[`${prefix}logarithmic_collapse_verdict`])]),
+              laws(table)].filter(Boolean);
     }));
   return section(chapter, "ageing", "Ageing", "How much an observable changes in a lag t, counted from the waiting time t_W.",
     content, refusals(chapter, tables));

@@ -2,11 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "ensemble/analysis/ageing/fits.hpp"
-#include "tests/ensemble/analysis/ageing/ageing_paths.hpp"
+#include "tests/ensemble/analysis/ageing/ageing_calibration.hpp"
 
 // What intervals of eq. 6 and verdicts on ageing are worth, on paths whose law is known: how often
 // intervals hold the truth, how often tests raise a false alarm, and what they find.
@@ -16,42 +15,9 @@ namespace {
 
 using namespace ageing_paths;
 
-LogCurves curves_of(std::uint64_t seed, std::uint32_t m, const Paths& paths,
-                    Changes of = Changes::mean_square) {
-  std::vector<std::uint32_t> all(m);
-  std::iota(all.begin(), all.end(), 0u);
-  return log_curves(rows(seed, m, paths), grid, all, of);
-}
-
-double deviation(double share, double n) {
-  return std::sqrt(share * (1 - share) / n);
-}
-
 const char* name(Memory memory) {
   return memory == Memory::long_ ? "long" : "short";
 }
-
-struct Held {
-  int n = 0, at_68 = 0, at_95 = 0, limited = 0;
-  void add(const LogEstimate& found, double exact) {
-    ++n;
-    at_68 += found.low_68 <= exact && exact <= found.high_68;
-    at_95 += found.low_95 <= exact && exact <= found.high_95;
-    limited += is_limited(found);
-  }
-  double percent(int count) const { return 100.0 * count / n; }
-  std::string text() const {
-    if (n == 0) return " |                  ";
-    return fmt::format(" | {:5.1f} {:5.1f} {:5.1f}", percent(at_68), percent(at_95),
-                       percent(limited));
-  }
-  // 60 to 80 % and 90 to 100 %, and three deviations of so many independent cases.
-  void check(double independent) const {
-    CHECK(percent(at_68) >= 60 - 300 * deviation(0.6, independent));
-    CHECK(percent(at_68) <= 80 + 300 * deviation(0.8, independent));
-    CHECK(percent(at_95) >= 90 - 300 * deviation(0.9, independent));
-  }
-};
 
 enum class Laws { own, shared };
 
@@ -92,19 +58,6 @@ void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensemble
 
 constexpr const char* coverage_heading =
     "\nlaws  memory common   M | A_inf: 68  95 % limited | B | tau | disowned\n";
-
-struct Found {
-  int n = 0, alarms = 0, excluded = 0;
-  void add(const AgeTrend& trend, const std::string& not_found) {
-    ++n;
-    alarms += trend.p < 0.05;
-    excluded += trend.verdict.starts_with(not_found);
-  }
-  double share() const { return static_cast<double>(alarms) / n; }
-  std::string text() const {
-    return fmt::format(" | {:5.1f} {:5.1f}", 100 * share(), 100.0 * excluded / n);
-  }
-};
 
 Found collapses(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_t seed) {
   Found found;
