@@ -215,5 +215,13 @@ def ageing(run):
         of_program("the ages collapse on eq. 6", found.notes["collapse_verdict"],
                    "`jostle analyse ageing`", found["collapse_p"], False,
                    would_be_found("a change of B by a factor of", found["collapse_detectable"]))]
-    return table(["t_W"] + [f"10^4 A, lag {int(lags[j])}" for j in shown] +
-                 ["misfit of eq. 6"], rows), statements
+    beyond = "\n".join(["Not in the paper (V: the variance of the change over realizations):", ""] + [
+        f"- {what}: {found.notes[note]}" for what, note in (
+            ("V and age", "fluctuation_verdict"),
+            ("A = F(t/t_W^mu)", "mu_verdict"),
+            ("A = F(ln(t_W + t)/ln t_W)", "logarithmic_collapse_verdict"),
+            ("V = F(t/t_W^mu)", "v_mu_verdict"),
+            ("V = F(ln(t_W + t)/ln t_W)", "v_logarithmic_collapse_verdict"))])
+    measured = table(["t_W"] + [f"10^4 A, lag {int(lags[j])}" for j in shown] +
+                     ["misfit of eq. 6"], rows)
+    return f"{measured}\n\n{beyond}", statements
