@@ -11,6 +11,7 @@
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/jackknife.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {
@@ -20,6 +21,15 @@ namespace {
 std::string with_error(double value, double error) {
   const std::string text = value_with_error(value, error);
   return value > 0 && text != "0" ? "+" + text : text;
+}
+
+/// With half the 68 % interval by Student's t over so many replicates, as all that is printed.
+std::string over_replicates(double value, double error, std::size_t replicates) {
+  return with_error(value, student_half_width(error, replicates));
+}
+
+std::string over_replicates(const PairedBias& bias) {
+  return over_replicates(bias.bias, bias.error, bias.pairs);
 }
 
 std::string core_time(double seconds) {
@@ -44,8 +54,7 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost, const Lay
     const bool reference = p == study.reference().last;
     const double gain = bias.variance_reduction;
     std::vector<std::string> cells{
-        study.settings()[p].name,
-        reference ? "0, the reference" : with_error(bias.bias, bias.error),
+        study.settings()[p].name, reference ? "0, the reference" : over_replicates(bias),
         fmt::format("{:.3g}", study.times()[p].tap_seconds),
         format_duration(Seconds(study.realization_seconds(p))), front[p] != 0 ? "front" : ""};
     if (all) {
@@ -98,20 +107,21 @@ std::string doubt_of_the_reference(const CostStudy& study) {
 std::string shortfall_of_the_reference(const CostOfObservable& cost) {
   const PairedBias& step = cost.last_step;
   const std::string text =
-      fmt::format("The step to the most complete setting: {}; ", with_error(step.bias, step.error));
+      fmt::format("The step to the most complete setting: {}; ", over_replicates(step));
   if (!is_seen(step)) return text + "what it may itself lack is below what these replicates see.\n";
   if (!std::isfinite(cost.remainder.error)) {
     return text +
            "steps are not seen to shrink, so that it may itself be short by more than this step.\n";
   }
-  return text + fmt::format("if steps go on to shrink, it is itself short by {}.\n",
-                            with_error(cost.remainder.value, cost.remainder.error));
+  return text +
+         fmt::format("if steps go on to shrink, it is itself short by {}.\n",
+                     over_replicates(cost.remainder.value, cost.remainder.error, step.pairs));
 }
 
 /// Whether more taps would change the bias of the scene's own setting.
 std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& cost) {
   const std::string taps = fmt::format("tap {} of {}", study.pilot_taps(), study.taps());
-  if (cost.growths.empty() || !std::isfinite(cost.growths.front().least_seen) ||
+  if (cost.growths.empty() || !std::isfinite(cost.growths.front().detectable) ||
       study.reference().last == 0) {
     return study.pilot_taps() < study.taps()
                ? fmt::format("Biases are those after {}: they may grow with further taps.\n", taps)
@@ -121,10 +131,10 @@ std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& c
   const double now = cost.biases.front().bias, before = now - growth.change.bias;
   const std::string text =
       fmt::format("Biases are those after {}. Since tap {} the scene's changed by {}: ", taps,
-                  study.middle_tap(), with_error(growth.change.bias, growth.change.error));
+                  study.middle_tap(), over_replicates(growth.change));
   if (!growth.is_seen()) {
-    return text + fmt::format("no change is seen, and one below {:.2g} could not be (95 %).\n",
-                              growth.least_seen);
+    return text + fmt::format("no change is seen; one of {:.2g} would have been with 80 %.\n",
+                              growth.detectable);
   }
   return text + fmt::format("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
                             std::abs(now) > std::abs(before) ? "still grows" : "shrinks",
@@ -135,7 +145,7 @@ std::string other_windows_line(const CostOfObservable& cost) {
   std::string text;
   for (const WindowEffect& one : cost.windows) {
     text += text.empty() ? "Read through other windows, the same beds differ by " : "; ";
-    text += fmt::format("{} ({})", with_error(one.difference.bias, one.difference.error), one.name);
+    text += fmt::format("{} ({})", over_replicates(one.difference), one.name);
   }
   return text.empty() ? "" : text + ".\n";
 }
@@ -147,10 +157,13 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
     const SettingCost& limit = cost.limits[choice->setting];
     return fmt::format(
         "{}: {}, {}, about {} for {} taps; by a bias of at most {:.2g} and a spread of at most "
-        "{:.2g} after tap {}, either of which these {} replicates let pass once in five times.\n",
+        "{:.2g} after tap {}, either of which these {} replicates let pass once in five times, if "
+        "relaxations beyond the ladder change {}.\n",
         wanted, study.settings()[choice->setting].name,
         counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
-        limit.bias, limit.sigma, study.pilot_taps(), study.replicates());
+        limit.bias, limit.sigma, study.pilot_taps(), study.replicates(),
+        is_seen(cost.last_step) ? "less and less, as its last two steps do"
+                                : "half as much a step as its last step, or less");
   }
   double least = std::numeric_limits<double>::infinity();
   for (const SettingCost& one : cost.limits) least = std::fmin(least, one.bias);
@@ -178,13 +191,15 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
   head += fmt::format(
       "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
       "{} taps.\n",
-      with_error(own.bias, own.bias_error),
+      over_replicates(own.bias, own.bias_error, study.replicates()),
       own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());
-  head += fmt::format("\n{}: after {} tap{}, {} replicates, against {}\n", cost.label.name,
-                      study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
-                      study.settings()[study.reference().last].name);
+  head += fmt::format(
+      "\n{}: after {} tap{}, {} replicates, against {}; a(b): b is half the 68 % "
+      "interval\n",
+      cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
+      study.settings()[study.reference().last].name);
   const std::string below = shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +
                             failures(study) + growth_of_the_bias(study, cost) +
                             other_windows_line(cost);

@@ -8,6 +8,7 @@
 
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
@@ -78,7 +79,7 @@ PairedBias paired_bias(std::span<const double> values, std::span<const double> r
 
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
                    std::span<const double> values, std::span<const double> reference) {
-  constexpr double level = 0.95;
+  constexpr double level = 0.05;
   assert(values_before.size() == values.size() && reference_before.size() == values.size());
   std::vector<double> gained(values.size()), of_reference(values.size());
   for (std::size_t r = 0; r < values.size(); ++r) {
@@ -88,18 +89,19 @@ Growth bias_growth(std::span<const double> values_before, std::span<const double
   Growth growth{.change = paired_bias(gained, of_reference)};
   const double dof = static_cast<double>(growth.change.pairs) - 1;
   if (!(dof > 0)) {
-    growth.tails = growth.least_seen = std::numeric_limits<double>::quiet_NaN();
+    growth.tails = growth.detectable = std::numeric_limits<double>::quiet_NaN();
     return growth;
   }
   const PairedBias& change = growth.change;
   growth.tails = change.error > 0 ? student_tails(change.bias / change.error, dof)
                                   : (change.bias == 0 ? 1.0 : 0.0);
-  growth.least_seen = student_two_sided(level, dof) * change.error;
+  growth.detectable = smallest_effect_found(level, dof) * change.error;
   return growth;
 }
 
 bool is_seen(const PairedBias& bias) {
-  return std::abs(bias.bias) > 2 * bias.error;
+  constexpr double level = 0.05;
+  return p_value(bias.bias, {bias.error, static_cast<double>(bias.pairs) - 1}) < level;
 }
 
 Remainder remainder(std::span<const double> two_before, std::span<const double> before,

@@ -27,7 +27,7 @@ PairedBias paired_bias(std::span<const double> values, std::span<const double> r
 struct Growth {
   PairedBias change;      // of the bias, in pairs
   double tails = 1;       // probability of such a change by chance (Student's t)
-  double least_seen = 0;  // a smaller one would not be told from chance at 5 %
+  double detectable = 0;  // a change that would be found at 5 % with power 0.8
   bool is_seen() const { return tails < 0.05; }
 };
 
@@ -36,7 +36,7 @@ struct Growth {
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
                    std::span<const double> values, std::span<const double> reference);
 
-/// Whether it is told from noise: more than two standard errors.
+/// Whether it is told from noise: by Student's t over pairs, at 5 %.
 bool is_seen(const PairedBias& bias);
 
 /// What a ladder's last setting still lacks.

@@ -5,6 +5,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include "fitting/intervals/dependence.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -31,8 +34,8 @@ std::string reasons_for_doubt(const SteadyState& state) {
                     SteadyStateTest::fewest_times, state.autocorrelation.time,
                     state.autocorrelation.found() ? "" : " or more"));
   }
-  if (state.realizations == 1 && !state.blocking.plateau) {
-    add("the blocking error of the one realization has no plateau");
+  if (state.realizations == 1 && !state.error.known()) {
+    add("the one realization remembers for as long as the taps");
   }
   return reasons;
 }
@@ -41,6 +44,32 @@ std::string reasons_for_doubt(const SteadyState& state) {
 double sigma_error(const SteadyState& state) {
   const auto n = static_cast<double>(state.n_taps * state.realizations);
   return state.sigma * std::sqrt((1 + 2 * state.autocorrelation.squares) / (2 * n));
+}
+
+// Of the mean of one series, by the memory that is likeliest; none where that leaves fewer than ten
+// independent values.
+ErrorOf error_of_one(const std::vector<double>& values) {
+  constexpr double fewest = 10;
+  const auto n = static_cast<Eigen::Index>(values.size());
+  std::vector<double> places(values.size());
+  std::iota(places.begin(), places.end(), 0.0);
+  Eigen::VectorXd residuals = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+  residuals.array() -= residuals.mean();
+  if (residuals.isZero(0)) return {0, static_cast<double>(n - 1)};
+  const MemoryErrors found = memory_errors(places, Eigen::MatrixXd::Ones(n, 1), residuals, false);
+  return {std::sqrt(found.covariance(0, 0)), found.dof < fewest ? 0 : found.dof};
+}
+
+// Means of neighbouring taps, at most 4096: an error of the mean needs no more.
+std::vector<double> thinned(std::span<const double> series) {
+  constexpr std::size_t most = 4096;
+  const std::size_t length = (series.size() + most - 1) / most;
+  std::vector<double> means;
+  for (std::size_t i = 0; i + length <= series.size(); i += length) {
+    const auto block = series.subspan(i, length);
+    means.push_back(std::accumulate(block.begin(), block.end(), 0.0) / static_cast<double>(length));
+  }
+  return means;
 }
 
 }  // namespace
@@ -74,6 +103,7 @@ std::string SteadyState::statement() const {
 void SteadyStateTest::add(std::span<const double> series) {
   assert((n_taps_ == 0 || series.size() == n_taps_) && series.size() >= fewest_taps);
   n_taps_ = series.size();
+  if (means_.count() == 0) only_ = thinned(series);
   Moments all;
   for (const double value : series) all.add(value);
   means_.add(all.mean());
@@ -93,12 +123,14 @@ SteadyState SteadyStateTest::result() const {
                     .trend = trend_.result()};
   const auto realizations = static_cast<double>(state.realizations);
   const bool single = state.realizations == 1;
-  const double blocks =
-      state.blocking.plateau
-          ? static_cast<double>(state.blocking.levels[*state.blocking.plateau].n_blocks)
-          : 1;  // the error has a lower bound, and is not known
-  state.error = single ? ErrorOf{state.blocking.error(), blocks - 1}
-                       : ErrorOf{means_.standard_error(), realizations - 1};
+  if (single) {
+    state.error = error_of_one(only_);
+    if (!state.error.known()) {
+      state.error.error = std::fmax(state.error.error, state.blocking.error());
+    }
+  } else {
+    state.error = {means_.standard_error(), realizations - 1};
+  }
   state.realization_sigma = single ? std::numeric_limits<double>::quiet_NaN()
                                    : means_.standard_error() * std::sqrt(realizations);
   state.sigma = std::sqrt(state.autocorrelation.variance);

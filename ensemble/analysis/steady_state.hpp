@@ -20,7 +20,10 @@ enum class Verdict { reached, not_reached, cannot_decide };
 struct SteadyState {
   std::size_t n_taps = 0, realizations = 0;
   double value = 0;  // mean over taps and realizations
-  ErrorOf error{};   // over realizations where there are two or more, else by blocking
+  /// Over realizations where there are two or more. Of one by its memory, as for fits of one curve
+  /// (fitting/intervals/memory.hpp); where that is as long as the taps, a lower bound without
+  /// degrees of freedom.
+  ErrorOf error{};
   double sigma = 0;  // deviation of single taps about the steady value of their realization
   double sigma_error = 0, sigma_dof = 0;  // over realizations; of one, Bartlett's, dof infinite
   double realization_sigma = 0;  // deviation of realizations' means, 1/(M - 1); NaN for one
@@ -38,8 +41,8 @@ struct SteadyState {
 /// Takes the last taps of one realization after another, all of one length, at least 32. The steady
 /// state is "not reached" where the mean drifts (TrendTest). It is "reached" where no drift is
 /// found, one as large as the deviation of single taps would have been found with 80 % probability,
-/// and the taps are at least 20 autocorrelation times and, of a single realization, enough for a
-/// plateau of the blocking error. Else they cannot decide.
+/// and the taps are at least 20 autocorrelation times and, of a single realization, many more than
+/// it remembers. Else they cannot decide.
 class SteadyStateTest {
  public:
   static constexpr std::size_t fewest_taps = 32;
@@ -53,6 +56,7 @@ class SteadyStateTest {
  private:
   std::size_t n_taps_ = 0;
   Moments means_, variances_;
+  std::vector<double> only_;  // means of a few taps each of the first series
   Blocking blocking_;
   Autocorrelation autocorrelation_;
   TrendTest trend_;

@@ -62,7 +62,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   table.quantities = {
       one("value", state.value, series.units, "mean over taps and realizations"),
       one("value_error", error_or_nan(state.error), series.units,
-          single ? "standard error by blocking, if it found a plateau"
+          single ? "standard error by the memory of the realization; - where that is too long"
                  : "standard error over realizations"),
       one("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       one("blocked_error", state.blocking.error(), series.units,

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/intervals/distributions.hpp"
+
 namespace jostle::inline ensemble {
 
 namespace {
@@ -14,6 +16,8 @@ namespace {
 constexpr double times_of_a_block = 5;    // autocorrelation times
 constexpr double rounding = 1e-12;        // what is left of a change is no memory
 constexpr std::size_t fewest_blocks = 4;  // of a series
+constexpr double enough_freedom = 20;     // of an error within series
+constexpr double doubted = 0.25;          // p of realizations that differ by more than they change
 
 // Sum of (i - center)^2.
 double leverage(double n) {
@@ -69,26 +73,37 @@ void TrendTest::add(std::span<const double> series) {
     level.squares += squares_about_line(block_means(series, level.length));
 }
 
-// Of the mean slope. Block means are independent but for about T / length of their variance, T the
-// autocorrelation time, which their neighbours have.
+// Of the mean slope, by the longest blocks that leave freedom enough: a slower part of the memory,
+// which the autocorrelation time does not show, is seen by no shorter ones. Block means are
+// independent but for about T / length of their variance, T the autocorrelation time, which their
+// neighbours have.
 ErrorOf TrendTest::slope_within(const AutocorrelationTime& memory) const {
-  const auto n_values = static_cast<double>(n_series_ * (n_ - 2));
+  const auto n_series = static_cast<double>(n_series_);
   const double of_line = rounding * slopes_.mean() * static_cast<double>(n_);
-  if (memory.variance <= of_line * of_line) return {0, n_values};
+  if (memory.variance <= of_line * of_line) {
+    return {0, n_series * static_cast<double>(n_ - 2)};
+  }
   if (!memory.found()) return {};
+  ErrorOf found;
   for (const Level& level : levels_) {
     const auto length = static_cast<double>(level.length);
     if (length < times_of_a_block * (memory.time + memory.error) &&
         !(level.length == 1 && memory.time <= 0.5))
       continue;
-    const auto n_blocks = static_cast<double>(level.n_blocks),
-               n_series = static_cast<double>(n_series_);
+    const auto n_blocks = static_cast<double>(level.n_blocks);
     const double dof = n_series * (n_blocks - 2);
+    if (found.known() && dof < enough_freedom) break;
     const double shared = 1 - std::max(0.0, memory.time - 0.5) / length;
     const double variance = level.squares / dof / shared;
-    return {std::sqrt(variance / leverage(n_blocks) / n_series) / length, dof};
+    found = {std::sqrt(variance / leverage(n_blocks) / n_series) / length, dof};
   }
-  return {};
+  return found;
+}
+
+// Realizations whose slopes differ by more than each should change have a memory beyond the blocks.
+bool is_doubted(const ErrorOf& within, const ErrorOf& over) {
+  if (!within.known() || !over.known() || within.error == 0) return false;
+  return fisher_tail(std::pow(over.error / within.error, 2), over.dof, within.dof) < doubted;
 }
 
 Trend TrendTest::result() const {
@@ -104,6 +119,7 @@ Trend TrendTest::result() const {
   trend.sigma = std::sqrt(trend.memory.variance);
   trend.line.within = slope_within(trend.memory);
   trend.line.within.error *= n;
+  if (is_doubted(trend.line.within, trend.line.over)) trend.line.within = {};
   // With a spectrum that is flat at low frequencies, variances of 12 and 4 times that of the mean.
   trend.halves.within = {trend.line.within.error / std::sqrt(3.0), trend.line.within.dof};
   const double variance = variance_ / n_series;
@@ -146,8 +162,10 @@ std::string Trend::statement() const {
       fmt::format("p = {:.2g} of {} test{}, least by the {}, {:.3g} degrees of freedom", p, tests,
                   tests == 1 ? "" : "s", decisive, decisive_dof);
   if (!drifts()) return fmt::format("no drift found ({})", test);
-  return fmt::format("it drifts: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",
-                     line.value, halves.value, test);
+  return fmt::format(
+      "it drifts{}: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",
+      line.over.known() ? "" : ", or remembers for longer than these taps", line.value,
+      halves.value, test);
 }
 
 }  // namespace jostle::inline ensemble

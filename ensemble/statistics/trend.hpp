@@ -19,7 +19,8 @@ struct Change {
   double value = 0;
   ErrorOf over;    // from the scatter over realizations; none of one
   ErrorOf within;  // from the memory of each series about its own line; none where blocks of five
-                   // autocorrelation times are fewer than four a series
+                   // autocorrelation times are fewer than four a series, nor where realizations
+                   // differ by more (F-test at 25 %): their memory is then longer than the blocks
   /// Over realizations where that is known, else within.
   const ErrorOf& error() const { return over.known() ? over : within; }
 };

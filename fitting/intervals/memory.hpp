@@ -17,8 +17,8 @@ struct Memory {
 };
 
 /// By restricted maximum likelihood (Patterson & Thompson 1971, doi:10.1093/biomet/58.3.545), which
-/// allows for what the parameters have taken up. Independence is kept unless the likelihood speaks
-/// against it at 1 %. t: [n], ascending; residuals: [n]; basis: [n, n_variables], orthonormal
+/// allows for what the parameters have taken up. Independence is kept only where the likelihood gains
+/// less by a memory than chance gives to 37 % of white noise. t: [n], ascending; residuals: [n]; basis: [n, n_variables], orthonormal
 /// columns that span those of the Jacobian; n > n_variables.
 Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& residuals,
                        const Eigen::MatrixXd& basis);

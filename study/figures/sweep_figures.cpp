@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "fitting/value_text.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
@@ -101,11 +101,12 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
                     .colour = kind_colour(0),
                     .drawn = Drawn::joined_points,
                     .rows = rows_of(table.axis(x), table.values(y), table.values(errors))}}};
-    const double maximum = table.value("maximum_at"), error = table.value("maximum_at_error");
-    if (std::isfinite(error)) {
-      panel.caption +=
-          fmt::format(" The maximum of a parabola lies at {}; dashed: it and its 95 % interval.",
-                      value_with_error(maximum, error));
+    const double maximum = table.value("maximum_at");
+    if (table.value("maximum_p") < SweepMaximum::level) {
+      panel.caption += fmt::format(
+          " The highest point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the "
+          "maximum's place.",
+          maximum);
       for (const double place :
            {maximum, table.value("maximum_at_low"), table.value("maximum_at_high")}) {
         if (std::isfinite(place)) panel.rules.push_back({.x = place});

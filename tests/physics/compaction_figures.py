@@ -109,10 +109,9 @@ def bell(run):
 
 def maximum_of(sweep, statement, symbol):
     """The test of a sweep for a maximum inside."""
-    at_text, top = sweep.estimate("maximum_at").text(3), sweep.estimate("maximum").text()
     found = f"{sweep.notes['maximum']}"
-    if np.isfinite(sweep["maximum_at_error"]):
-        found += f"; at {symbol} = {at_text}, {top}"
+    if np.isfinite(sweep["maximum_at"]):
+        found += f"; a parabola's is at {symbol} = {sweep['maximum_at']:.3g}"
     return of_program(statement, found, "two lines (Simonsohn 2018)", sweep["maximum_p"], True)
 
 
@@ -215,7 +214,8 @@ def ageing(run):
         of_program("the ages collapse on eq. 6", found.notes["collapse_verdict"],
                    "`jostle analyse ageing`", found["collapse_p"], False,
                    would_be_found("a change of B by a factor of", found["collapse_detectable"]))]
-    beyond = "\n".join(["Not in the paper (V: the variance of the change over realizations):", ""] + [
+    head = "Not in the paper (V: the variance of the change over realizations):"
+    beyond = "\n".join([head, ""] + [
         f"- {what}: {found.notes[note]}" for what, note in (
             ("V and age", "fluctuation_verdict"),
             ("A = F(t/t_W^mu)", "mu_verdict"),

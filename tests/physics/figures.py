@@ -50,7 +50,7 @@ FIGURES = {
              "The tail of large pores shrinks and is exponential, small pores hardly change; nu "
              "moves as Phi_c does, v0 follows nu; 9550 to 10 250 pores. Table I is Bernal's, from "
              "models built by hand."),
-    "dr2": (f"{DR}/fig2", lift_or_dilation, [f"{DR}/fig6"], f"{DR_SETUP}; \"many thousand taps\"",
+    "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
             "The lift of 0.25 densifies much faster than the held dilation by 1.025, which gives "
             "little or nothing."),
     "dr3": (f"{DR}/fig6", contacts, [], f"{DR_SETUP}", "N_c rises with Phi, along one line."),

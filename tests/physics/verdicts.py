@@ -131,7 +131,7 @@ def is_within(paper, estimate, margin, found, digits=4, scale=1.0):
     return Statement(paper, text,
                      of_test(estimate, f"within {scale * margin:.{digits}f} or beyond: t-tests"),
                      min(near, far), near < far,
-                     lambda level: found_with(estimate, level, digits, scale))
+                     lambda level: found_beyond(estimate, margin, level, digits, scale))
 
 
 def is_zero(paper, estimate, found, digits=4, scale=1.0):
@@ -139,6 +139,20 @@ def is_zero(paper, estimate, found, digits=4, scale=1.0):
     return Statement(paper, f"{found}{estimate.text(digits, scale)}",
                      of_test(estimate, "t-test of 0"), p_two_sided(estimate), False,
                      lambda level: found_with(estimate, level, digits, scale))
+
+
+def are_positive(paper, estimates, found, digits=4, scale=1.0, name="t-tests"):
+    """All of the paper's numbers are positive: shown where the test of each shows it (the largest
+    p, intersection-union), refuted where one is negative (p times their number, Bonferroni)."""
+    text = found + ", ".join(estimate.text(digits, scale) for estimate in estimates)
+    if not all(estimate.testable for estimate in estimates):
+        return Statement(paper, text, "no test")
+    favours = all(estimate.value > 0 for estimate in estimates)
+    p = max(map(p_two_sided, estimates)) if favours else min(1.0, len(estimates) * min(
+        p_two_sided(estimate) for estimate in estimates if estimate.value <= 0))
+    worst = max(estimates, key=lambda estimate: estimate.error)
+    return Statement(paper, text, f"{name}, {worst.dof:.3g} degrees of freedom each", p, favours,
+                     lambda level: found_with(worst, level, digits, scale))
 
 
 def of_program(paper, found, test, p, favours, power=""):
@@ -154,6 +168,18 @@ def found_with(estimate, level, digits, scale):
     least = detectable(estimate, level)
     return (f"{scale * least:.{digits}f} would have been found with {100 * POWER:.0f} %"
             if np.isfinite(least) else "")
+
+
+def found_beyond(estimate, margin, level, digits, scale):
+    """What a test against a margin would have found: beyond it at least so much; within it
+    nothing, where even an estimate of 0 would have left doubt."""
+    if not estimate.testable:
+        return ""
+    least = margin + detectable(estimate, level)
+    text = f"{scale * least:.{digits}f} would have been found beyond with {100 * POWER:.0f} %"
+    if p_within(Estimate(0.0, estimate.error, estimate.dof), margin) >= level:
+        text += "; that it lies within could not have been shown"
+    return text
 
 
 def holm(p_values):

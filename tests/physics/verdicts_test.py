@@ -2,8 +2,8 @@
 import numpy as np
 
 from compaction_figures import falls_with_age
-from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, detectable, holm,
-                      is_positive, is_within, judge, of_interval)
+from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
+                      detectable, holm, is_positive, is_within, judge, of_interval)
 
 ENSEMBLES = 600
 
@@ -51,6 +51,25 @@ def margins(random):
             at_most(rate[wrong], LEVEL, f"M = {realizations}: {wrong} at the margin")
 
 
+        # What is_within says would have been found beyond its margin.
+        beyond = 1 + detectable(Estimate(0, 1 / np.sqrt(realizations), realizations - 1))
+        rate = words(random, realizations, beyond, lambda e: is_within("", e, 1, ""))[DISAGREES]
+        print(f"M = {realizations}: {beyond:.2f} is beyond a margin of 1: {rate:.3f} disagree")
+        check(rate >= POWER - 3 * np.sqrt(POWER * (1 - POWER) / ENSEMBLES), "power", rate)
+
+
+def all_positive(random):
+    """Of two numbers, one of them 0, whatever the other."""
+    for other in (0, 100, -100):
+        found = [judge([are_positive("", [Estimate.of(row), Estimate.of(row[::-1] ** 3 + other)],
+                                     "")])[0][2] for row in random.normal(0, 1, (ENSEMBLES, 4))]
+        if other >= 0:
+            at_most(found.count(AGREES) / ENSEMBLES, LEVEL, "both are called positive")
+            at_most(found.count(DISAGREES) / ENSEMBLES, LEVEL, "one is called negative")
+        else:
+            check(found.count(DISAGREES) > 0.9 * ENSEMBLES, "a negative one is missed")
+
+
 def families(random):
     check(np.allclose(holm([0.01, 0.04, np.nan, 0.03])[[0, 1, 3]], [0.03, 0.06, 0.06]), "Holm")
     any_word = 0
@@ -89,6 +108,7 @@ if __name__ == "__main__":
     generator = np.random.default_rng(20010222)
     signs(generator)
     margins(generator)
+    all_positive(generator)
     families(generator)
     ages(generator)
     intervals()

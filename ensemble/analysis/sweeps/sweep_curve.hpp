@@ -79,12 +79,15 @@ class SweepCurve {
   std::vector<std::size_t> common_;  // matched: realizations that all points have
 };
 
-/// The highest point of a parabola through the points about the largest y.
+/// The highest point of a parabola through the points about the largest y, which describes them,
+/// and where the truth can have its maximum, whatever its shape.
 struct SweepMaximum {
-  double x = 0, y = 0;           // NaN without one inside the points used
-  ErrorOf x_error{}, y_error{};  // to first order
-  double x_low = 0,
-         x_high = 0;  // 95 % interval of x (Fieller 1954); NaN where it has no end inside
+  double x = 0, y = 0;  // NaN without one inside the points used
+  /// 95 % interval of the place, of a curve that rises to one maximum and falls from it: from the
+  /// last point below to the first one above those that no other is known to exceed (t-tests, each
+  /// at 5 % over the number of other points: multiple comparisons with the best, Hsu 1996). NaN
+  /// where it reaches an end of the sweep.
+  double x_low = 0, x_high = 0;
   /// Probability that chance makes a curve without a maximum inside look like this: straight lines
   /// through the points used rise up to the largest and fall from it (Simonsohn 2018,
   /// doi:10.1177/2515245918805755: the larger of two one-sided p-values), times the number of

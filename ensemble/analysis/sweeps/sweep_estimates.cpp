@@ -65,30 +65,28 @@ std::size_t different_values(std::span<const double> ascending) {
   return n;
 }
 
-/// The slope of a parabola at u in [-1, 1] of its points, in scaled units.
-struct SlopeAt {
-  const SweepCurve& curve;
-  const LinearFit& parabola;
-
-  Combination combination(double u) const {
-    return sum_of(parabola.coefficients[1], 2 * u, parabola.coefficients[2]);
-  }
-  double value(double u) const { return value_of(combination(u), curve.fitted_y()); }
-  /// Between the vertex and an end of the points: where the slope begins to differ from 0; NaN
-  /// where it does not do so before the end.
-  double limit(double vertex, double end) const {
-    const auto differs = [&](double u) {
-      return p_value(value(u), curve.error_of(combination(u))) < 0.05;
-    };
-    if (!differs(end)) return not_a_number;
-    double inside = vertex, outside = end;
-    for (int i = 0; i < 40; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (differs(middle) ? outside : inside) = middle;
+/// First and last of the points that no other is known to exceed: the highest of the truth is among
+/// them with 95 %.
+std::pair<std::size_t, std::size_t> possibly_highest(const SweepCurve& curve) {
+  const std::size_t n = curve.n_points();
+  const double level = 0.05 / static_cast<double>(n - 1);
+  const auto is_exceeded = [&](std::size_t i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (j == i || curve.fitted_y()[j] <= curve.fitted_y()[i]) continue;
+      Combination difference(n, 0.0);
+      difference[j] = 1;
+      difference[i] = -1;
+      const double both_sides =
+          p_value(value_of(difference, curve.fitted_y()), curve.error_of(difference));
+      if (0.5 * both_sides < level) return true;
     }
-    return 0.5 * (inside + outside);
-  }
-};
+    return false;
+  };
+  std::size_t first = 0, last = n - 1;
+  while (is_exceeded(first)) ++first;
+  while (is_exceeded(last)) --last;
+  return {first, last};
+}
 
 /// Probability that chance makes a straight line through points first .. last rise (sign 1) or fall
 /// (sign -1) like this one; 1 where they have no slope.
@@ -182,7 +180,6 @@ SweepMaximum maximum(const SweepCurve& curve, std::size_t points) {
   if (different_values(std::span(curve.x()).subspan(first, points)) < 3) return found;
   found.points = points;
   const LinearFit parabola = linear_fit(curve, first, points, 3);
-  const SlopeAt slope{curve, parabola};
   const double bend = value_of(parabola.coefficients[2], y);
   const double vertex = -0.5 * value_of(parabola.coefficients[1], y) / bend;
   // The top is where y is largest: each point between the ends could have been it.
@@ -197,14 +194,12 @@ SweepMaximum maximum(const SweepCurve& curve, std::size_t points) {
                parabola.coefficients[2]);
     found.x = parabola.origin + parabola.scale * vertex;
     found.y = value_of(height, y);
-    // Where it may be none, its place has no error, and its interval is no interval.
-    if (found.found()) {
-      found.y_error = curve.error_of(height);
-      found.x_error = curve.error_of(slope.combination(vertex));
-      found.x_error.error *= parabola.scale / std::abs(2 * bend);
-      found.x_low = parabola.origin + parabola.scale * slope.limit(vertex, -1);
-      found.x_high = parabola.origin + parabola.scale * slope.limit(vertex, 1);
-    }
+  }
+  // Where it may be none, its interval is no interval.
+  if (found.found()) {
+    const auto [lowest, highest] = possibly_highest(curve);
+    if (lowest > 0) found.x_low = curve.x()[lowest - 1];
+    if (highest + 1 < curve.n_points()) found.x_high = curve.x()[highest + 1];
   }
   found.verdict = verdict_of(curve, found);
   return found;

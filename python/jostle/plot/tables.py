@@ -121,10 +121,11 @@ def sweep(table: Table, *, ax: Axes | None = None) -> Axes:
     half = half_width(table.error(quantity), table.quantities[f"{quantity}_dof"].values)
     errorbars(ax, table[against], table[quantity], half, fmt="o-", linewidth=0.8)
     at = float(table["maximum_at"])
-    if np.isfinite(at) and np.isfinite(table["maximum_at_error"]):
-        ax.axvline(at, color="C3", linewidth=0.8, label=f"maximum at {at:.3g}")
-        ax.axvspan(float(table["maximum_at_low"]), float(table["maximum_at_high"]), color="C3", alpha=0.15,
-                   linewidth=0)
+    if np.isfinite(at) and table["maximum_p"] < 0.05:
+        ax.axvline(at, color="C3", linewidth=0.8, label=f"highest at {at:.3g}")
+        low, high = float(table["maximum_at_low"]), float(table["maximum_at_high"])
+        if np.isfinite(low) and np.isfinite(high):
+            ax.axvspan(low, high, color="C3", alpha=0.15, linewidth=0)
         ax.legend(fontsize="small")
     ax.set_xlabel(label(against, table.axes[against].units))
     ax.set_ylabel(label(quantity, table.quantities[quantity].units))

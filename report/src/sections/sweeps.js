@@ -65,7 +65,7 @@ function isSweep(table) {
 function sweepFigure(chapter, table) {
   const x = table.notes.against, y = table.notes.observable;
   if (!table.axes.has(x) || !table.has(y)) return null;
-  const found = Number.isFinite(table.value("maximum_at_error"));
+  const found = table.value("maximum_p") < 0.05;
   const low = table.value("maximum_at_low"), high = table.value("maximum_at_high");
   const pooled = table.has(`${y}_pooled_error`);
   const errors = table.values(pooled ? `${y}_pooled_error` : `${y}_error`);
@@ -74,8 +74,8 @@ function sweepFigure(chapter, table) {
     file: chapter.run.file,
     title: `${words(y)[0].toUpperCase()}${words(y).slice(1)} against ${controlLabel(x, "1")}`,
     caption: "One point a sweep point; bars are standard errors" +
-      (pooled ? " by the variance pooled over points, since few realizations know their own badly." : ".") + (found ? ` The maximum of a parabola lies at ` +
-      `${withError(table.value("maximum_at"), table.value("maximum_at_error"))}; dashed: it and its 95 % interval.` : ""),
+      (pooled ? " by the variance pooled over points, since few realizations know their own badly." : ".") + (found ? ` The highest point of a parabola is at ` +
+      `${number(table.value("maximum_at"), 3)}; dashed: it and the 95 % interval of the maximum's place.` : ""),
     source: table.source(y),
     x: {label: controlLabel(x, table.units(x))}, y: {label: axisLabel(y, table.units(y)), short: words(y)}, rules,
     series: [{name: "", mark: "dots+line", rows: rowsOf(table.axis(x), table.values(y), errors)}],

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "ensemble/statistics/student_tests.hpp"
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/noise.hpp"
 
@@ -36,11 +37,11 @@ TEST_CASE("A growth is the change of the pairs' differences, judged by Student's
   // Differences of 0.5 each before; of 1, 0.9 and 1.6 after.
   CHECK(growth.change.bias == Approx(2.0 / 3));
   CHECK(growth.change.pairs == 3);
-  CHECK(growth.least_seen == Approx(4.302653 * growth.change.error));
-  CHECK(growth.is_seen() == (growth.change.bias > growth.least_seen));
+  CHECK(growth.detectable == Approx(smallest_effect_found(0.05, 2) * growth.change.error));
+  CHECK(growth.is_seen() == (growth.change.bias > 4.302653 * growth.change.error));
   const std::vector<double> one{1}, other{2};
   CHECK_FALSE(bias_growth(one, one, other, one).is_seen());
-  CHECK(std::isnan(bias_growth(one, one, other, one).least_seen));
+  CHECK(std::isnan(bias_growth(one, one, other, one).detectable));
   // The reference against itself.
   CHECK_FALSE(bias_growth(before, before, after, after).is_seen());
 }

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "ensemble/analysis/steady_state.hpp"
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
 // What the verdicts on steady states are worth: series without memory and AR(1), whose truth is
@@ -90,7 +92,103 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
   std::fflush(stdout);
 }
 
+/// White noise of deviation 1 and a slower part, AR(1) of deviation `slow` and memory `taps`: the
+/// spectrum rises towards low frequencies as in beds, and the autocorrelation time hardly shows it.
+struct TwoTimeScales {
+  double slow, taps;
+};
+
+double unsteady(const TwoTimeScales& noise, std::size_t realizations, std::size_t n_taps,
+                std::size_t ensembles) {
+  const double rho = std::exp(-1 / noise.taps), scale = noise.slow * std::sqrt(1 - rho * rho);
+  std::size_t alarms = 0;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    SteadyStateTest test;
+    for (std::size_t r = 0; r < realizations; ++r) {
+      std::vector<double> series = synthetic::autoregressive(rho, n_taps, 31000 + e, r);
+      synthetic::Gaussian white(41000 + e, r);
+      for (double& x : series) x = scale * x + white();
+      test.add(series);
+    }
+    alarms += test.result().verdict() == Verdict::not_reached;
+  }
+  return static_cast<double>(alarms) / static_cast<double>(ensembles);
+}
+
+void check_two_time_scales(std::size_t n_taps, std::size_t ensembles) {
+  fmt::print(
+      "steady, white noise and a slow part: called unsteady, %\n{:>5} {:>5} {:>5} | M = 1 "
+      "    2     3    10\n",
+      "taps", "slow", "time");
+  for (const TwoTimeScales& noise : {TwoTimeScales{0.5, 30}, TwoTimeScales{0.5, 100},
+                                     TwoTimeScales{0.3, 300}, TwoTimeScales{1, 1000}}) {
+    fmt::print("{:>5} {:>5} {:>5} |", n_taps, noise.slow, noise.taps);
+    for (const std::size_t m : {1, 2, 3, 10}) {
+      const double alarms = unsteady(noise, m, n_taps, ensembles);
+      fmt::print(" {:5.1f}", 100 * alarms);
+      CAPTURE(m, noise.slow, noise.taps, n_taps);
+      // Of one series a memory as long as it is no different from a drift, and it says so.
+      if (m == 1) continue;
+      const double most = m == 2 ? 0.1 : m == 3 ? 0.05 : 0.02;
+      CHECK(alarms <= most + 3 * deviation(most, ensembles));
+    }
+    fmt::print("\n");
+  }
+  std::fflush(stdout);
+}
+
+/// How often the interval of one realization's value, where it is given, holds the truth.
+void check_one_realization(double rho, std::size_t n_taps, std::size_t ensembles) {
+  std::size_t given = 0, at_68 = 0, at_95 = 0;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    SteadyStateTest test;
+    test.add(synthetic::autoregressive(rho, n_taps, 51000 + e));
+    const SteadyState state = test.result();
+    if (!state.error.known()) continue;
+    ++given;
+    const double off = std::abs(state.value);
+    at_68 += off <= state.error.error * student_two_sided(interval_levels[0], state.error.dof);
+    at_95 += off <= state.error.error * student_two_sided(interval_levels[1], state.error.dof);
+  }
+  const auto share = [&](std::size_t n) {
+    return given == 0 ? 0 : static_cast<double>(n) / static_cast<double>(given);
+  };
+  fmt::print("{:>5} {:>5} | {:5.1f} | {:5.1f} {:5.1f}\n", n_taps, rho,
+             100 * static_cast<double>(given) / static_cast<double>(ensembles), 100 * share(at_68),
+             100 * share(at_95));
+  CAPTURE(rho, n_taps, given);
+  if (given < 20) return;
+  CHECK(share(at_68) >= 0.55 - 3 * deviation(0.6, given));
+  CHECK(share(at_95) >= 0.9 - 3 * deviation(0.9, given));
+}
+
+constexpr const char* one_heading = "\n taps   rho | given | 68 %  95 %\n";
+
 }  // namespace
+
+TEST_CASE("The value of one realization has an interval that holds it, or none", "[statistics]") {
+  fmt::print(one_heading);
+  for (const double rho : {0.0, 0.8, 0.9, 0.97}) check_one_realization(rho, 300, 100);
+}
+
+TEST_CASE("The value of one realization has an interval that holds it, of any length",
+          "[nightly]") {
+  fmt::print(one_heading);
+  for (const std::size_t n_taps : {300, 1000, 4000}) {
+    for (const double rho : {0.0, 0.5, 0.8, 0.9, 0.97, 0.99}) {
+      check_one_realization(rho, n_taps, 300);
+    }
+  }
+}
+
+TEST_CASE("Steady series of two time scales are seldom called unsteady", "[statistics]") {
+  check_two_time_scales(300, 100);
+}
+
+TEST_CASE("Steady series of two time scales are seldom called unsteady, of any length",
+          "[nightly]") {
+  for (const std::size_t n_taps : {300, 1000, 4000}) check_two_time_scales(n_taps, 400);
+}
 
 TEST_CASE("Drifts are found, and steady states reached, as often as the verdicts say",
           "[statistics]") {
