@@ -38,7 +38,7 @@ Quantity* named(Table& table, const std::string& name) {
 Table with_half_widths(Table table) {
   Factors factors;
   std::vector<std::string> used;
-  bool has_standard_errors = false;
+  std::string bare;  // of which there are standard errors alone
   for (Quantity& quantity : table.quantities) {
     if (!quantity.name.ends_with(error_suffix)) continue;
     const std::string stem = quantity.name.substr(0, quantity.name.size() - error_suffix.size());
@@ -47,7 +47,7 @@ Table with_half_widths(Table table) {
     const auto* const freedom = dof ? std::get_if<std::vector<double>>(&dof->values) : nullptr;
     if (!named(table, stem) || !errors) continue;
     if (!freedom || freedom->empty()) {
-      has_standard_errors = true;
+      if (!named(table, stem + "_low_95")) bare.append(bare.empty() ? "" : ", ").append(stem);
       continue;
     }
     for (std::size_t i = 0; i < errors->size(); ++i) {
@@ -66,11 +66,13 @@ Table with_half_widths(Table table) {
     legend =
         "b, in the last digits of a, is half the 68 % interval by Student's t; the file holds "
         "errors and their degrees of freedom";
-    if (has_standard_errors) legend += ", or errors alone: then b is the standard error";
-  } else if (has_standard_errors) {
+    if (!bare.empty()) legend += "; of " + bare + " the standard error";
+  } else if (!bare.empty()) {
     legend = "b, in the last digits of a, is the standard error over realizations";
   }
-  if (!legend.empty() && has_intervals) legend += "; a (x to y): the 95 % interval";
+  if (has_intervals) {
+    legend.append(legend.empty() ? "" : "; ").append("a (x to y): the 95 % interval");
+  }
   if (!legend.empty()) table.notes.emplace_back("a(b)", legend);
   return table;
 }

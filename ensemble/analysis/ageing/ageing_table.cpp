@@ -1,5 +1,6 @@
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -53,9 +54,14 @@ void add_curves(const AgeingCurves& curves, const std::string& of_change, Table&
   }
   add("change", curves.change, of_change, "mean change over the lag", "");
   add("change_error", curves.change_error, of_change, "standard error over realizations", "");
+  std::vector<double> dof;
+  for (const auto count : curves.count)
+    dof.push_back(std::max(0.0, static_cast<double>(count) - 1));
+  add("change_dof", dof, "1", "degrees of freedom of change_error", "");
   add("c", curves.c, "1", "two-time autocorrelation over realizations, 1 at lag 0",
       "Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916");
   add("c_error", curves.c_error, "1", "jackknife error of c", "");
+  add("c_dof", dof, "1", "degrees of freedom of c_error", "");
   add("count", curves.count, "1", "realizations that reached both taps", "");
 }
 

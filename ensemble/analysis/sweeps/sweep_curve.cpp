@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "ensemble/moments.hpp"
+#include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -93,8 +95,11 @@ void SweepCurve::sort_and_drop() {
 void SweepCurve::pool_independent() {
   double squares = 0;
   for (std::size_t i = 0; i < n_points(); ++i) {
-    squares += squares_of(folded(realizations_[i]));
-    pooled_.dof += static_cast<double>(count_[i] - 1);
+    const double own = squares_of(folded(realizations_[i]));
+    const auto dof = static_cast<double>(count_[i] - 1);
+    squares += own;
+    pooled_.dof += dof;
+    scatter_.push_back({dof > 0 ? std::sqrt(own / dof) : 0, dof});
   }
   if (pooled_.known()) pooled_.error = std::sqrt(squares / pooled_.dof);
   own_errors_ = n_points() > 0 && std::ranges::min(count_) >= fewest_for_own_error;
@@ -115,13 +120,21 @@ void SweepCurve::pool_matched() {
   }
   Moments levels;
   double squares = 0;
+  std::vector<double> of_points(n_points(), 0.0);
   for (const std::size_t r : common_) {
     Moments deviations;
     for (std::size_t i = 0; i < n_points(); ++i) deviations.add(realizations_[i][r] - fitted_y_[i]);
     levels.add(deviations.mean());
     squares += squares_of(deviations);
+    for (std::size_t i = 0; i < n_points(); ++i) {
+      of_points[i] += square(realizations_[i][r] - fitted_y_[i] - deviations.mean());
+    }
   }
   if (common_.size() < 2) return;
+  const double own_dof = (m - 1) * (n - 1) / n;
+  if (own_dof > 0) {
+    for (const double own : of_points) scatter_.push_back({std::sqrt(own / own_dof), own_dof});
+  }
   level_ = {levels.standard_error() * std::sqrt(m), m - 1};
   if (n_points() > 1) pooled_ = {std::sqrt(squares / ((m - 1) * (n - 1))), (m - 1) * (n - 1)};
 }
@@ -139,6 +152,21 @@ std::vector<double> SweepCurve::weights() const {
 
 bool SweepCurve::pools() const {
   return streams_ == Streams::matched ? common_.size() < fewest_for_own_error : !own_errors_;
+}
+
+double SweepCurve::p_of_equal_scatter() const {
+  double points = 0, dof = 0, squares = 0, logarithms = 0, inverse = 0;
+  for (const ErrorOf& one : scatter_) {
+    if (!one.known() || !(one.error > 0)) continue;
+    ++points;
+    dof += one.dof;
+    squares += one.dof * square(one.error);
+    logarithms += one.dof * std::log(square(one.error));
+    inverse += 1 / one.dof;
+  }
+  if (points < 2) return std::numeric_limits<double>::quiet_NaN();
+  const double correction = 1 + (inverse - 1 / dof) / (3 * (points - 1));
+  return chi_squared_tail((dof * std::log(squares / dof) - logarithms) / correction, points - 1);
 }
 
 ErrorOf SweepCurve::error_of(std::span<const double> coefficients) const {

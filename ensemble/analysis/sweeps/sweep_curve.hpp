@@ -60,6 +60,9 @@ class SweepCurve {
   /// Of one realization (of one value where they are not known), pooled over points: about the mean
   /// of its point, and with matched streams about its own level too. None where no point has two.
   ErrorOf pooled() const { return pooled_; }
+  /// Of realizations scattering alike at all points, as pooling presumes: Bartlett 1937,
+  /// doi:10.1098/rspa.1937.0109. NaN where fewer than two points have a scatter.
+  double p_of_equal_scatter() const;
 
  private:
   void sort_and_drop();
@@ -75,6 +78,7 @@ class SweepCurve {
   Streams streams_ = Streams::independent;
   bool own_errors_ = false;  // serve by themselves
   ErrorOf pooled_;
+  std::vector<ErrorOf> scatter_;     // deviation of one realization at each point, as pooled
   ErrorOf level_;                    // matched: of the mean over points of one realization
   std::vector<std::size_t> common_;  // matched: realizations that all points have
 };

@@ -92,14 +92,40 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
 }
 
 // As error_of() has each point's by itself, [n_points].
-std::vector<double> errors_of_points(const SweepCurve& curve) {
-  std::vector<double> errors;
+std::vector<ErrorOf> errors_of_points(const SweepCurve& curve) {
+  std::vector<ErrorOf> errors;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
     std::vector<double> only(curve.n_points());
     only[i] = 1;
-    errors.push_back(error_or_nan(curve.error_of(only)));
+    errors.push_back(curve.error_of(only));
   }
   return errors;
+}
+
+struct Errors {
+  std::vector<double> error, dof;
+};
+
+Errors numbers(const std::vector<ErrorOf>& errors) {
+  Errors all;
+  for (const ErrorOf& one : errors) {
+    all.error.push_back(error_or_nan(one));
+    all.dof.push_back(one.dof);
+  }
+  return all;
+}
+
+// What pooling presumes.
+void add_scatter(const SweepCurve& curve, Table& table) {
+  const double p = curve.p_of_equal_scatter();
+  add_value("pooled_sigma_p", p, "1", "of realizations scattering alike at all points", table,
+            "Bartlett 1937, doi:10.1098/rspa.1937.0109");
+  constexpr double doubted = 0.01;
+  if (!(p < doubted) || !curve.pools()) return;
+  table.notes.emplace_back(
+      "scatter", fmt::format("realizations do not scatter alike at all points (p = {:.2g}): errors "
+                             "from the pooled variance are too small where they scatter most",
+                             p));
 }
 
 }  // namespace
@@ -114,17 +140,15 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
     table.quantities.push_back(
         {quantity.name + suffix, {swept.name}, std::move(values), units, meaning, quantity.source});
   };
-  std::vector<double> errors, dof;
-  for (const ErrorOf& error : curve.error()) {
-    errors.push_back(error_or_nan(error));
-    dof.push_back(error.dof);
-  }
   add("", curve.y(), quantity.units, quantity.long_name);
-  add("_error", std::move(errors), quantity.units, "standard error");
-  add("_dof", std::move(dof), "1", "degrees of freedom of the error");
+  Errors own = numbers(curve.error());
+  add("_error", std::move(own.error), quantity.units, "standard error");
+  add("_dof", std::move(own.dof), "1", "degrees of freedom of the error");
   if (curve.pools() && curve.pooled().known()) {
-    add("_pooled_error", errors_of_points(curve), quantity.units,
+    Errors pooled = numbers(errors_of_points(curve));
+    add("_pooled_error", std::move(pooled.error), quantity.units,
         "standard error by the variance pooled over points, as of lines and maxima");
+    add("_pooled_dof", std::move(pooled.dof), "1", "its degrees of freedom");
   }
   if (curve.has_realizations()) add("_count", curve.count(), "1", "realizations of the point");
   add_value("pooled_sigma", error_or_nan(curve.pooled()), quantity.units,
@@ -132,6 +156,7 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
                                      : "standard error of a point, pooled over points",
             table);
   add_value("pooled_sigma_dof", curve.pooled().dof, "1", "its degrees of freedom", table);
+  if (curve.has_realizations()) add_scatter(curve, table);
   add_maximum(maximum(curve), swept, quantity, table);
   const std::string slope_units =
       swept.units == "1" ? quantity.units : quantity.units + " / " + swept.units;

@@ -26,6 +26,7 @@ struct Counts {
   double maximum_of_flat = 0, maximum_of_plateau = 0;
   double maximum_of_bell = 0, place = 0;     // the place: of the maxima found
   double maximum_of_skewed = 0, skewed = 0;  // the same, of bells that are no parabolas
+  double unlike = 0;                         // called so where scatters are alike
   double slope_68 = 0, slope_95 = 0, straight = 0, difference = 0;
 };
 
@@ -68,6 +69,7 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
     const SweepCurve flat = curve_of(setting, e, [](double) { return 0; });
     counts.maximum_of_flat += one * maximum(flat).found();
     counts.difference += one * differs(flat);
+    counts.unlike += one * (flat.p_of_equal_scatter() < 0.01);
     const SweepCurve plateau =
         curve_of(setting, e, [](double x) { return -20 * std::exp(-10 * (x - 0.1)); });
     counts.maximum_of_plateau += one * maximum(plateau).found();
@@ -122,6 +124,7 @@ void check(const std::vector<std::size_t>& points, const std::vector<std::size_t
         CHECK(counts.maximum_of_flat <= 0.05 + of_5);
         CHECK(counts.maximum_of_plateau <= 0.05 + of_5);
         CHECK(counts.difference <= 0.05 + of_5);
+        CHECK(counts.unlike <= 0.01 + 3 * std::sqrt(0.01 / static_cast<double>(ensembles)));
         CHECK(std::abs(counts.straight - 0.05) <= of_5);
         CHECK(std::abs(counts.slope_95 - 0.95) <= of_5);
         CHECK(std::abs(counts.slope_68 - 0.6827) <= of_68);
@@ -137,6 +140,23 @@ void check(const std::vector<std::size_t>& points, const std::vector<std::size_t
 }
 
 }  // namespace
+
+TEST_CASE("Realizations that scatter the more the farther on are not pooled in silence",
+          "[statistics]") {
+  std::size_t found = 0;
+  constexpr std::size_t ensembles = 100;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    synthetic::Gaussian gaussian(20261126 + e);
+    std::vector<double> x;
+    std::vector<std::vector<double>> values(8);
+    for (std::size_t i = 0; i < 8; ++i) {
+      x.push_back(static_cast<double>(i));
+      for (int r = 0; r < 4; ++r) values[i].push_back(static_cast<double>(i + 1) * gaussian());
+    }
+    found += SweepCurve(x, values, Streams::independent).p_of_equal_scatter() < 0.01;
+  }
+  CHECK(found >= 50);
+}
 
 TEST_CASE("A maximum is found where there is one, and lines hold the truth, as often as they say",
           "[statistics]") {
