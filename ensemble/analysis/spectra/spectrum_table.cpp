@@ -153,7 +153,8 @@ Table SpectrumAnalysis::table() const {
   add("slope_dof", slope.dof, "1", "degrees of freedom of slope_error");
   add("ar1_slope", memory.slope, "1",
       "in the same band, of an AR(1) process of the same autocorrelation time");
-  add("ar1_slope_error", memory.error.error, "1", "standard error, from that of the time, and 0.03 for the bias of short series");
+  add("ar1_slope_error", memory.error.error, "1",
+      "standard error, from that of the time, and 0.03 for the bias of short series");
   add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
   add("drift", trend.line.value, series_.units,
       "change of the mean over the taps, by a straight line");
