@@ -31,6 +31,7 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/ageing/fits.hpp
     ensemble/analysis/ageing/law.hpp
     ensemble/analysis/ageing/log_curves.hpp
+    ensemble/analysis/ageing/time_scaling.hpp
     ensemble/analysis/ageing/trends.hpp
     ensemble/analysis/analyses.hpp
     ensemble/analysis/histogram_fit.hpp

@@ -50,13 +50,17 @@ double sigma_error(const SteadyState& state) {
 // independent values.
 ErrorOf error_of_one(const std::vector<double>& values) {
   constexpr double fewest = 10;
+  constexpr double evidence = 2;  // of a memory: a mean is not lost by one that is not there
   const auto n = static_cast<Eigen::Index>(values.size());
   std::vector<double> places(values.size());
   std::iota(places.begin(), places.end(), 0.0);
   Eigen::VectorXd residuals = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
-  residuals.array() -= residuals.mean();
-  if (residuals.isZero(0)) return {0, static_cast<double>(n - 1)};
-  const MemoryErrors found = memory_errors(places, Eigen::MatrixXd::Ones(n, 1), residuals, false);
+  Moments all;
+  for (const double value : values) all.add(value);
+  residuals.array() -= all.mean();
+  if (all.sigma() == 0) return {0, static_cast<double>(n - 1)};
+  const MemoryErrors found =
+      memory_errors(places, Eigen::MatrixXd::Ones(n, 1), residuals, false, evidence);
   return {std::sqrt(found.covariance(0, 0)), found.dof < fewest ? 0 : found.dof};
 }
 

@@ -33,11 +33,12 @@ DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
 /// degrees of freedom, which may be negative where the memory is as long as the curve. t:
 /// [n_points], ascending; jacobian, residuals: [n_points], weighted alike. `sigma_given`: the
 /// variance of a residual is 1, and only their correlation is taken from them, where they are no
-/// smaller.
+/// smaller. `evidence`: of residual_memory().
 struct MemoryErrors : DependentErrors {
   Memory memory;
 };
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
-                           const Eigen::VectorXd& residuals, bool sigma_given);
+                           const Eigen::VectorXd& residuals, bool sigma_given,
+                           double evidence = 10);
 
 }  // namespace jostle::inline fitting

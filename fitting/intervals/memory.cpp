@@ -10,11 +10,6 @@ namespace jostle::inline fitting {
 
 namespace {
 
-// Twice the gain of the likelihood by two parameters from which on a memory is taken: chance gives
-// it to 37 of 100 curves of white noise (chi2 of two degrees of freedom), whose errors then grow a
-// little. To overlook a memory costs far more.
-constexpr double significant = 2;
-
 // Distance to the point before; points at one t are taken for neighbours.
 std::vector<double> gaps_of(const std::vector<double>& t) {
   std::vector<double> gaps(t.size(), 0);
@@ -90,7 +85,7 @@ Eigen::MatrixXd correlated(const std::vector<double>& t, const Memory& memory,
 }
 
 Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& residuals,
-                       const Eigen::MatrixXd& basis) {
+                       const Eigen::MatrixXd& basis, double evidence) {
   const std::vector<double> gaps = gaps_of(t);
   const auto n = static_cast<double>(t.size());
   const Likelihood white = restricted(gaps, 0, 0, residuals, basis);
@@ -99,7 +94,7 @@ Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& resi
   const double least = *std::min_element(gaps.begin() + 1, gaps.end());
   const double range = t.back() - t.front();
   if (!(least > 0) || !(range > 0)) return best;
-  double highest = white.logarithm + 0.5 * significant;
+  double highest = white.logarithm + 0.5 * evidence;
   const auto search = [&](double first, double last, std::size_t times,
                           std::initializer_list<double> shares) {
     for (const double time : geometric(first, last, times)) {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "ensemble/statistics/student_tests.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 #include "tests/ensemble/noise.hpp"
 
 namespace jostle {
