@@ -157,7 +157,8 @@ void check_one_realization(double rho, std::size_t n_taps, std::size_t ensembles
              100 * static_cast<double>(given) / static_cast<double>(ensembles), 100 * share(at_68),
              100 * share(at_95));
   CAPTURE(rho, n_taps, given);
-  if (given < 20) return;
+  // Where nine in ten are refused, the others are those that a short memory was read into.
+  if (2 * given < ensembles) return;
   CHECK(share(at_68) >= 0.55 - 3 * deviation(0.6, given));
   CHECK(share(at_95) >= 0.9 - 3 * deviation(0.9, given));
 }
