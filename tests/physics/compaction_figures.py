@@ -185,7 +185,13 @@ def falls_with_age(paper, young, old):
 def with_interval(found, name, place, unit=1.0):
     """A value with its 95 % interval, where there is one."""
     value, low, high = (unit * found[name + end][place] for end in ("", "_low_95", "_high_95"))
-    return f"{value:.3g}" + (f" ({low:.2g} to {high:.2g})" if np.isfinite(low) else "")
+    return rounded(value, 3) + (f" ({rounded(low, 2)} to {rounded(high, 2)})"
+                                if np.isfinite(low) else "")
+
+
+def rounded(value, digits):
+    """To so many digits, without an exponent where it has none by hand."""
+    return f"{float(f'{value:.{digits}g}'):g}"
 
 
 def would_be_found(what, size):
