@@ -237,15 +237,15 @@ void add_spectrum(Kinds& kinds, AnalyseArguments& a, int& code) {
 }
 
 void add_ageing(Kinds& kinds, AnalyseArguments& a, int& code) {
-  Command kind = kinds.add("ageing", "A(t, t_W), C(t, t_W), fits of eq. 6, their collapse",
-                           [&code](AnalyseArguments& arguments) {
-                             const AgeingSettings settings{
-                                 ascending("--waiting-times", arguments.waiting_times),
-                                 ascending("--lags", arguments.lags)};
-                             Analyses analyses;
-                             analyses.ageing = requests(arguments, settings);
-                             code = run_analyses(arguments, analyses);
-                           });
+  Command kind = kinds.add(
+      "ageing", "A(t, t_W), V and C, fits of eq. 6, what lays ages on one curve",
+      [&code](AnalyseArguments& arguments) {
+        const AgeingSettings settings{ascending("--waiting-times", arguments.waiting_times),
+                                      ascending("--lags", arguments.lags)};
+        Analyses analyses;
+        analyses.ageing = requests(arguments, settings);
+        code = run_analyses(arguments, analyses);
+      });
   kinds.add_option(kind, "--waiting-times", a.waiting_times,
                    "Taps t_W, separated by commas (default: 0 and two a decade)",
                    [](Option option) { option.separated_by(','); });

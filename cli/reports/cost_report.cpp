@@ -191,7 +191,7 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
   head += fmt::format(
       "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
       "{} taps.\n",
-      over_replicates(own.bias, own.bias_error, study.replicates()),
+      over_replicates(own.bias, own.bias_error, cost.biases.front().pairs),
       own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
       scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
       study.taps());

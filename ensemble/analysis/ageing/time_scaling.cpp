@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "ensemble/statistics/tested_ends.hpp"
@@ -87,6 +88,16 @@ Eigen::VectorXd ln_lags(const LogCurves& curves) {
       .log();
 }
 
+/// What of a column is beyond the others, [n_points]; nothing where that is rounding: where curves
+/// do not overlap, or have no more points than the function has parameters.
+std::optional<Eigen::VectorXd> weights_beyond(const Eigen::VectorXd& column,
+                                              const Eigen::MatrixXd& others) {
+  constexpr double rounding = 1e-9;
+  Eigen::VectorXd weights = beyond_others(column, others);
+  if (!(weights.norm() > rounding * column.norm())) return std::nullopt;
+  return weights;
+}
+
 struct Ages {
   LogCurves curves;
   Eigen::VectorXd t_w;  // [n_points]
@@ -151,8 +162,9 @@ class PowerOfAge {
   }
   double t_of(double mu) const {
     const SmoothCurve curve = at(mu);
-    const Eigen::VectorXd weights = beyond_others(by_mu(curve), curve.basis);
-    return weights.dot(curve.residuals) / error_of_sum(curves_, weights).error;
+    const auto weights = weights_beyond(by_mu(curve), curve.basis);
+    if (!weights) return 0;  // nothing there refutes it
+    return weights->dot(curve.residuals) / error_of_sum(curves_, *weights).error;
   }
 
  private:
@@ -169,9 +181,9 @@ AgeTrend scale_that_ages(const Ages& ages, const PowerOfAge& power, const Tested
   const Eigen::Index n_scales = best.scale.size(), n = best.basis.cols() - n_scales;
   Eigen::MatrixXd others(places.size(), n + 1);
   others << best.basis.leftCols(n), power.by_mu(best);
-  const Eigen::VectorXd weights = beyond_others(places, others);
-  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not overlap");
-  return tested_change(ages.curves, weights,
+  const auto weights = weights_beyond(places, others);
+  if (!weights) return cannot_decide("the curves do not overlap");
+  return tested_change(ages.curves, *weights,
                        n_scales == 0 ? best.residuals : best.residuals + best.scale[0] * places,
                        words);
 }
@@ -226,11 +238,9 @@ AgeingExponent ageing_exponent(const LogCurves& all,
       agreed(about_mu, beside_mu, static_cast<std::size_t>(curves.influences.cols()), change);
   if (about_mu.p < refuted || beside_mu.p < refuted) return no_exponent(collapse);
   const SmoothCurve best = power.at(power.best());
-  const Eigen::VectorXd weights = beyond_others(power.by_mu(best), best.basis);
-  if (!(weights.squaredNorm() > 0)) {
-    return no_exponent(cannot_decide("the curves say nothing of mu"));
-  }
-  const ErrorOf error = error_of_sum(curves, weights / weights.squaredNorm());
+  const auto weights = weights_beyond(power.by_mu(best), best.basis);
+  if (!weights) return no_exponent(cannot_decide("the curves say nothing of mu"));
+  const ErrorOf error = error_of_sum(curves, *weights / weights->squaredNorm());
   const TestedEnds ends = tested_ends(power.values(), power.best(), error.dof,
                                       [&](double mu) { return power.t_of(mu); });
   AgeingExponent found{power.best(), error.error,  ends.low[0], ends.high[0],
@@ -249,11 +259,10 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
   const Eigen::ArrayXd lags = ln_lags(curves).array().exp(), t_w = ages.t_w.array();
   const SmoothCurve curve(curves, ((lags / t_w).log1p() / t_w.log()).log(),
                           Eigen::MatrixXd(t_w.size(), 0));
-  const Eigen::VectorXd weights =
-      beyond_others(-curve.slope.cwiseProduct(places_of(curves)), curve.basis);
-  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not overlap");
+  const auto weights = weights_beyond(-curve.slope.cwiseProduct(places_of(curves)), curve.basis);
+  if (!weights) return cannot_decide("the curves do not overlap");
   return tested_change(
-      curves, weights, curve.residuals,
+      curves, *weights, curve.residuals,
       {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse refuted", "collapse not refuted"});
 }
 

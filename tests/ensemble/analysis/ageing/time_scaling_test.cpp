@@ -158,4 +158,27 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
         "cannot decide: fewer than two waiting times above 1 have curves");
 }
 
+TEST_CASE("Curves with no more points than F has parameters say nothing of mu") {
+  // Two ages of four lags each, far apart: whatever mu, F can be anything.
+  LogCurves few = curves_of(4, 20, power(0.6));
+  std::vector<Eigen::Index> rows;
+  LogCurves kept;
+  kept.first = {0};
+  for (std::size_t k = 0; k < 2; ++k) {
+    kept.waiting_times.push_back(k);
+    for (std::size_t i = few.first[k]; i < few.first[k] + 4; ++i) {
+      kept.lag_indices.push_back(few.lag_indices[i]);
+      kept.lags.push_back(few.lags[i]);
+      rows.push_back(static_cast<Eigen::Index>(i));
+    }
+    kept.first.push_back(rows.size());
+  }
+  kept.ln_a = few.ln_a(rows);
+  kept.influences = few.influences(rows, Eigen::all);
+  const AgeingExponent found = ageing_exponent(kept, {1, 1'000'000'000}, "a");
+  CAPTURE(found.verdict, found.mu, found.low_95, found.high_95);
+  CHECK_FALSE((std::isfinite(found.low_95) && std::isfinite(found.high_95)));
+  CHECK(found.collapse.verdict.starts_with("cannot decide"));
+}
+
 }  // namespace jostle

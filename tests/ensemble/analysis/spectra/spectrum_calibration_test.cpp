@@ -30,12 +30,12 @@ Table analysed(const std::vector<std::vector<double>>& ensemble, const SpectrumS
   return analysis.table();
 }
 
-void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembles) {
+void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembles,
+           std::size_t n_taps = 2000) {
   fmt::print("{:>3} {:>5} {:>5} | {:>7} {:>9} | {:>13} {:>11}\n", "M", "taps", "rho", "slope",
              "AR(1)'s", "called other", "1/f, other");
   for (const std::size_t realizations : all_realizations) {
     for (const double rho : {0.5, 0.9, 0.99}) {
-      constexpr std::size_t n_taps = 1000;
       Moments slopes, expected;
       double other = 0, found = 0;
       for (std::size_t e = 0; e < ensembles; ++e) {
@@ -64,7 +64,7 @@ void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembl
                  100 * found / static_cast<double>(ensembles));
       CAPTURE(realizations, rho);
       CHECK(share <= 0.05 + 3 * std::sqrt(0.05 * 0.95 / static_cast<double>(ensembles)));
-      CHECK(std::abs(slopes.mean() - expected.mean()) < 0.08);
+      CHECK(std::abs(slopes.mean() - expected.mean()) < 0.05);
     }
   }
   std::fflush(stdout);
@@ -78,7 +78,9 @@ TEST_CASE("A slope that memory alone gives is called other at the level of the t
 }
 
 TEST_CASE("Slopes of AR(1) ensembles are told from others as verdicts say", "[nightly]") {
-  check({1, 2, 3, 4, 10, 20, 50}, 200);
+  check({1, 2, 3, 4, 10, 20}, 400);
+  // Short series, whose slopes are biased, in ensembles that would see it.
+  check({3, 10, 20, 50}, 200, 1000);
 }
 
 TEST_CASE("The expected slope of AR(1) is the mean of measured ones, as steep as a paper's",

@@ -1,0 +1,29 @@
+#include "ensemble/statistics/tested_ends.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <vector>
+
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
+
+namespace jostle {
+
+TEST_CASE("Ends of an interval stand where a straight t crosses Student's") {
+  std::vector<double> values;
+  for (int i = -50; i <= 50; ++i) values.push_back(0.1 * i);
+  const auto t_of = [](double value) { return (value - 0.33) / 0.5; };
+  const TestedEnds ends = tested_ends(values, 0.33, 9, t_of);
+  for (const int level : {0, 1}) {
+    const double reach = 0.5 * student_two_sided(interval_levels[level], 9);
+    CHECK(ends.low[level] == Approx(0.33 - reach));
+    CHECK(ends.high[level] == Approx(0.33 + reach));
+  }
+  // A side on which nothing is refuted is open.
+  const TestedEnds open =
+      tested_ends(values, 0.33, 9, [&](double value) { return value > 0.33 ? 0 : t_of(value); });
+  CHECK(open.high[1] == std::numeric_limits<double>::infinity());
+  CHECK(open.low[1] == ends.low[1]);
+}
+
+}  // namespace jostle
