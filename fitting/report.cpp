@@ -108,7 +108,8 @@ std::string basis_of_errors(const Fit& fit) {
     text << (fit.sigma_given ? "the errors given" : "the scatter about the law");
   }
   if (fit.error_dof < 100) {
-    text << ", Student's t of " << number(std::max(fit.error_dof, 0.0), 3) << " degrees of freedom";
+    text << ", Student's t of " << number(std::max(fit.error_dof, 0.0), 3)
+         << (fit.error_dof == 1 ? " degree of freedom" : " degrees of freedom");
   }
   return text.str();
 }

@@ -159,8 +159,8 @@ Trend TrendTest::result() const {
 std::string Trend::statement() const {
   if (tests == 0) return "no test of a drift is possible";
   const std::string test =
-      fmt::format("p = {:.2g} of {} test{}, least by the {}, {:.3g} degrees of freedom", p, tests,
-                  tests == 1 ? "" : "s", decisive, decisive_dof);
+      fmt::format("p = {:.2g} of {} test{}, least by the {}, {:.3g} degree{} of freedom", p, tests,
+                  tests == 1 ? "" : "s", decisive, decisive_dof, decisive_dof == 1 ? "" : "s");
   if (!drifts()) return fmt::format("no drift found ({})", test);
   return fmt::format(
       "it drifts{}: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",

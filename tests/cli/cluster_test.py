@@ -9,12 +9,7 @@ import subprocess
 import time
 import unittest
 
-from support import BAD_INPUT, BROKEN, FAILED, OK, STOPPED, TINY, Case, changed
-
-# Relaxations of a second, so that a signal falls inside one.
-SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
-               relax={"polar": {}, "stop": {"sweeps": 400000}}, snapshots={"taps": [0, 2]})
-del SLOW["sweep"]
+from support import BAD_INPUT, BROKEN, FAILED, OK, SLOW, STOPPED, TINY, Case, changed
 
 
 class Script(Case):

@@ -6,13 +6,9 @@ import unittest
 
 import h5py
 
-from support import FAILED, STOPPED, TINY, Case, changed
+from support import FAILED, SLOW, STOPPED, TINY, Case, changed
 
-# Relaxations of 2e7 trials, so that a stop falls inside one; two seconds on one core.
-SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
-               relax={"polar": {}, "stop": {"sweeps": 400000}}, snapshots={"taps": [0, 2]})
-del SLOW["sweep"]
-# The same with trials that are skipped by the hundred.
+# With trials that are skipped by the hundred.
 SKIPPING = changed(SLOW, relax={"polar": {}, "stop": {"sweeps": 20000000},
                                 "max_sweeps": 20000000, "sampler": "skipping"})
 
@@ -39,7 +35,6 @@ class Stops(Case):
             with self.subTest(signal=number.name):
                 process = self.popen("run", "scene.json", "--threads", "2", "--force")
                 self.wait_for_file(process)
-                time.sleep(0.1)
                 process.send_signal(number)
                 _, err = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, STOPPED, err)
@@ -56,7 +51,6 @@ class Stops(Case):
         self.run_scene("-o", "straight.h5")
         process = self.popen("run", "scene.json", "--force")
         self.wait_for_file(process)
-        time.sleep(0.1)
         process.send_signal(signal.SIGTERM)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, STOPPED, err)
@@ -75,7 +69,7 @@ class Stops(Case):
         self.run_scene("-o", "straight.h5")
         stops = 0
         while True:
-            result = self.run_scene("--resume", "--time-limit", "300ms", expect=None)
+            result = self.run_scene("--resume", "--time-limit", "150ms", expect=None)
             if result.returncode != STOPPED:
                 break
             self.assertIn("stopped by the time limit", result.stderr)

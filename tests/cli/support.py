@@ -43,6 +43,13 @@ def changed(scene, **changes):
     return {**copy.deepcopy(scene), **changes}
 
 
+# Two realizations of two relaxations of 5e7 trials each, a third of a second and more on any machine:
+# a stop that comes as soon as the file is there falls inside one, and others find the run at work.
+SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
+               relax={"polar": {}, "stop": {"sweeps": 1000000}}, snapshots={"taps": [0, 2]})
+del SLOW["sweep"]
+
+
 class Case(unittest.TestCase):
     """A test in a folder of its own, where it runs the program."""
 

@@ -107,10 +107,14 @@ class Statement:
     word: str = ""  # decided by an interval, not by p
 
 
+def degrees_of_freedom(dof):
+    return f"{dof:.3g} degree{'' if dof == 1 else 's'} of freedom"
+
+
 def of_test(estimate, name):
     """The test of an estimate, or why there is none."""
     if estimate.testable:
-        return f"{name}, {estimate.dof:.3g} degrees of freedom"
+        return f"{name}, {degrees_of_freedom(estimate.dof)}"
     return "no test: no scatter" if estimate.dof > 0 else "no test: one realization"
 
 
@@ -151,7 +155,7 @@ def are_positive(paper, estimates, found, digits=4, scale=1.0, name="t-tests"):
     p = max(map(p_two_sided, estimates)) if favours else min(1.0, len(estimates) * min(
         p_two_sided(estimate) for estimate in estimates if estimate.value <= 0))
     worst = max(estimates, key=lambda estimate: estimate.error)
-    return Statement(paper, text, f"{name}, {worst.dof:.3g} degrees of freedom each", p, favours,
+    return Statement(paper, text, f"{name}, {degrees_of_freedom(worst.dof)} each", p, favours,
                      lambda level: found_with(worst, level, digits, scale))
 
 
