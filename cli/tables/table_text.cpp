@@ -95,16 +95,45 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
   return value_with_error(numbers->at(index), width, scale_of(*numbers));
 }
 
-std::string single_values(const Block& block) {
+/// No row has a number.
+bool is_empty(const Quantity& quantity) {
+  const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
+  return numbers && std::ranges::all_of(*numbers, [](double x) { return std::isnan(x); });
+}
+
+/// "  --wide shows also     a, b".
+std::string named(const char* what, const std::vector<std::string>& names) {
+  return names.empty() ? "" : fmt::format("  {:<22} {}\n", what, joined(names, ", "));
+}
+
+/// Numbers that a verdict's sentence has in it.
+bool is_said_by_verdicts(const Quantity& quantity, const Table& table) {
+  const bool of_a_test = is_probability(quantity.name) || quantity.name.ends_with("_detectable");
+  return of_a_test && std::ranges::any_of(table.notes, [](const auto& note) {
+           return note.first.ends_with("_verdict");
+         });
+}
+
+std::string single_values(const Table& table, const Block& block, const Layout& layout) {
   std::string text;
+  std::vector<std::string> hidden, empty;
   for (const Quantity* quantity : block.columns) {
     if (is_shown_beside(*quantity, block)) continue;
+    if (layout.columns == Columns::few) {
+      auto* unshown = is_said_by_verdicts(*quantity, table) ? &hidden
+                      : is_empty(*quantity)                 ? &empty
+                                                            : nullptr;
+      if (unshown) {
+        unshown->push_back(quantity->name);
+        continue;
+      }
+    }
     const bool unitless = quantity->units.empty() || quantity->units == "1";
     text += fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0),
                         unitless ? "" : " " + quantity->units);
     text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
   }
-  return text;
+  return text + named("without a value", empty) + named("--wide shows also", hidden);
 }
 
 /// Sentences have no place among numbers.
@@ -157,7 +186,11 @@ class BlockText {
       : table_(table), block_(block), layout_(layout), keys_(block.axes.size()) {
     for (const Quantity* quantity : block.columns) {
       if (is_shown_beside(*quantity, block)) continue;
-      (holds_sentences(*quantity) ? said_ : numbers_).push_back(quantity);
+      if (layout.columns == Columns::few && is_empty(*quantity)) {
+        empty_.push_back(quantity->name);
+      } else {
+        (holds_sentences(*quantity) ? said_ : numbers_).push_back(quantity);
+      }
     }
   }
 
@@ -177,17 +210,16 @@ class BlockText {
       }
     }
     if (!numbers_.empty() && text.size() > 1) text += '\n';
-    if (!numbers_.empty() || said_.empty()) text += columns(hidden);
-    if (hidden.empty()) return text;
+    if (!numbers_.empty() || (said_.empty() && empty_.empty())) text += columns(hidden);
     return text +
-           wrapped(fmt::format("  --wide shows also     {}\n", joined(hidden, ", ")), width());
+           wrapped(named("without a value", empty_) + named("--wide shows also", hidden), width());
   }
 
  private:
   std::size_t width() const { return layout_.width; }
 
   std::vector<std::string> all_names() const {
-    std::vector<std::string> names;
+    std::vector<std::string> names = empty_;
     for (const auto* list : {&numbers_, &said_}) {
       for (const Quantity* quantity : *list) names.push_back(quantity->name);
     }
@@ -234,6 +266,7 @@ class BlockText {
   const Layout& layout_;
   std::size_t keys_;
   std::vector<const Quantity*> numbers_, said_;
+  std::vector<std::string> empty_;  // of few columns: names of those without a number
 };
 
 /// What was found stands before how.
@@ -257,7 +290,7 @@ std::string table_text(const Table& stored, const Layout& layout) {
   const Table table = with_half_widths(stored);
   std::string text = wrapped(fmt::format("{}\n", table.name) + notes(table), layout.width);
   for (const Block& block : blocks_of(table)) {
-    text += block.axes.empty() ? wrapped(single_values(block), layout.width)
+    text += block.axes.empty() ? wrapped(single_values(table, block, layout), layout.width)
                                : BlockText(table, block, layout).text();
   }
   return text;

@@ -133,15 +133,17 @@ class Point:
     @property
     def series(self) -> Columns:
         """name -> [tap, realization]. NaN: not reached, failed, or undefined (no acceptance at tap 0)."""
+        group = self._group("observables") if self.begun else None
+
         def read(name: str) -> np.ndarray:
-            if not self.begun:
-                return np.zeros((0, self.n_realizations))
-            return self._group("observables")[name][()]
+            return np.zeros((0, self.n_realizations)) if group is None else group[name][()]
         return Columns(self.observables, read, f"sweep point {self.index}")
 
     def _fold(self, fold: str) -> Columns:
+        group = self._group("ensemble") if self.begun else None
+
         def read(name: str) -> np.ndarray:
-            return self._group("ensemble")[f"{name}_{fold}"][()] if self.begun else np.zeros(0)
+            return np.zeros(0) if group is None else group[f"{name}_{fold}"][()]
         return Columns(self.observables, read, f"sweep point {self.index}")
 
     @property

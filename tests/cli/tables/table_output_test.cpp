@@ -98,9 +98,34 @@ TEST_CASE("Few columns are those that have room, and the others are named") {
   const std::string few = table_text(table, {.width = 50}), all = table_text(table, all_columns);
   CAPTURE(few, all);
   CHECK(few.find("\nn  a_long_name_of_a_column  another_long_name\n") != std::string::npos);
-  CHECK(few.find("  --wide shows also     the_last_of_them\n") != std::string::npos);
+  CHECK(few.find("  --wide shows also      the_last_of_them\n") != std::string::npos);
   CHECK(all.find("another_long_name  the_last_of_them\n") != std::string::npos);
   CHECK(all.find("--wide") == std::string::npos);
+}
+
+TEST_CASE("Of few columns none is without a value, and no test stands beside its verdict") {
+  Table table = example();
+  const double none = std::nan("");
+  table.notes = {{"ageing_verdict", "it ages (p = 0.02)"}};
+  table.quantities = {{"b", {"age"}, std::vector{none, none}, "1", "", ""},
+                      {"misfit", {"age"}, std::vector{0.1, none}, "1", "", ""},
+                      {"mu", {}, std::vector{none}, "1", "", ""},
+                      {"ageing_factor", {}, std::vector{0.5}, "1", "", ""},
+                      {"ageing_p", {}, std::vector{0.02}, "1", "", ""},
+                      {"ageing_detectable", {}, std::vector{1.5}, "1", "", ""}};
+  const std::string few = table_text(table, {}), all = table_text(table, all_columns);
+  CAPTURE(few, all);
+  CHECK(few.find("age  misfit\n") != std::string::npos);
+  CHECK(few.find("  without a value        b\n") != std::string::npos);
+  CHECK(few.find("  without a value        mu\n") != std::string::npos);
+  CHECK(few.find("  ageing_factor          0.5\n") != std::string::npos);
+  CHECK(few.find("  --wide shows also      ageing_p, ageing_detectable\n") != std::string::npos);
+  CHECK(all.find("age  b  misfit\n") != std::string::npos);
+  CHECK(all.find("  mu                     -\n") != std::string::npos);
+  CHECK(all.find("  ageing_p               0.02\n") != std::string::npos);
+
+  table.notes.clear();
+  CHECK(table_text(table, {}).find("  ageing_p               0.02\n") != std::string::npos);
 }
 
 TEST_CASE("Rounding noise is seen beside the column it is in") {
