@@ -47,6 +47,10 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
+/// How files are opened, for reading and for writing: what is in them is read and written once from
+/// start to end, and a group may have a million members.
+Hdf5Handle file_access();
+
 /// Keeps HDF5 from printing its errors: they come as exceptions.
 void silence_hdf5();
 /// The innermost message on HDF5's error stack, which is then cleared.

@@ -56,20 +56,8 @@ std::string only(const std::string& name, const std::vector<std::string>& texts)
 
 }  // namespace
 
-// HDF5's cache of objects grows to 32 MB of the file by itself, which take ten times as much in
-// memory, of files that are read once from start to end. It grows for large entries only, the names
-// of a group's many members.
 Hdf5Handle open_to_read(const std::string& path) {
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5AC_cache_config_t cache{};
-  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-  checked(H5Pget_mdc_config(access, &cache));
-  cache.set_initial_size = true;
-  cache.initial_size = cache.min_size = 2u << 20;
-  cache.incr_mode = H5C_incr__off;
-  cache.decr_mode = H5C_decr__off;
-  cache.flash_incr_mode = H5C_flash_incr__add_space;
-  checked(H5Pset_mdc_config(access, &cache));
+  const Hdf5Handle access = file_access();
   // What is read is never written in place; and where there is no flock, HDF5 would open nothing.
   checked(H5Pset_file_locking(access, false, true));
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};

@@ -203,7 +203,7 @@ WritableHdf5File::WritableHdf5File(const std::string& path, Begin begin)
   constexpr hsize_t least_room = 1;
   checked(H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_FSM_AGGR, across_processes,
                                      least_room));
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Hdf5Handle access = file_access();
   const DriverSettings settings{error_.get(), begin == Begin::as_it_is};
   checked(H5Pset_driver(access, driver_, &settings));
   const hid_t file = begin == Begin::as_it_is
