@@ -295,16 +295,29 @@ MostComplete most_complete(const std::vector<PilotSetting>& settings) {
   return found;
 }
 
+namespace {
+
+constexpr double layer_spacing = 0.8165;  // of close-packed layers, sqrt(2/3) diameters
+
+/// Whether a window of heights leaves room for it above the floor.
+bool can_taper(const Window& window) {
+  const auto* heights = std::get_if<HeightWindow>(&window);
+  return heights == nullptr || heights->low >= 0.5 * layer_spacing;
+}
+
+}  // namespace
+
 std::vector<OtherWindow> other_windows(const Scene& scene) {
   constexpr std::size_t longest_name = 64;
   std::vector<OtherWindow> windows;
   std::vector<std::string> taken;
   for (const Observable& observable : scene.observables) taken.push_back(label(observable).name);
-  const auto add = [&](const BulkFraction& of, const char* ending, const Window& window) {
+  const auto add = [&](const BulkFraction& of, const char* ending, const Window& window,
+                       double taper) {
     const std::string name = of.name + ending;
     if (name.size() > longest_name || std::ranges::find(taken, name) != taken.end()) return;
     taken.push_back(name);
-    windows.push_back({of.name, {name, window}});
+    windows.push_back({of.name, {name, window, taper}});
   };
   for (const Observable& observable : scene.observables) {
     const auto* of = std::get_if<BulkFraction>(&observable);
@@ -314,13 +327,15 @@ std::vector<OtherWindow> other_windows(const Scene& scene) {
           const double quarter = 0.25 * (window.high - window.low);
           window.low = rounded(window.low + quarter);
           window.high = rounded(window.high - quarter);
-          if (window.low < window.high) add(*of, "_narrow", window);
+          if (window.low < window.high) add(*of, "_narrow", window, of->taper);
         },
         of->window);
     if (const auto* quantiles = std::get_if<QuantileWindow>(&of->window)) {
       add(*of, "_wide",
-          QuantileWindow{rounded(0.5 * quantiles->low), rounded(0.5 * (1 + quantiles->high))});
+          QuantileWindow{rounded(0.5 * quantiles->low), rounded(0.5 * (1 + quantiles->high))},
+          of->taper);
     }
+    if (of->taper == 0 && can_taper(of->window)) add(*of, "_tapered", of->window, layer_spacing);
   }
   return windows;
 }

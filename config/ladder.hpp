@@ -42,9 +42,10 @@ struct OtherWindow {
   BulkFraction observable;
 };
 
-/// For every bulk fraction of the scene a window half as wide about the same middle, and, of
-/// quantiles, one with both edges halfway to the ends of the bed. They are named after it
-/// ("_narrow", "_wide"); those whose name is taken or too long are left out.
+/// For every bulk fraction of the scene a window half as wide about the same middle, of quantiles
+/// one with both edges halfway to the ends of the bed, and where its edges are sharp one that is
+/// tapered over a layer spacing. They are named after it ("_narrow", "_wide", "_tapered"); those
+/// whose name is taken or too long are left out.
 std::vector<OtherWindow> other_windows(const Scene& scene);
 
 /// The scene without its sweep, cut to `taps` taps, as a sweep over the settings in their order,

@@ -55,7 +55,9 @@ struct Measure {
            5.0 / 11.0 * solids_fraction(packing, {0, thinned}) * (thinned / top);
   }
 
-  double operator()(const BulkFraction&) const { return solids_fraction(packing, window); }
+  double operator()(const BulkFraction& bulk) const {
+    return tapered_solids_fraction(packing, window, bulk.taper);
+  }
 };
 
 }  // namespace

@@ -35,10 +35,12 @@ struct CorrectedFraction {
 };
 
 /// Solids fraction between two heights, or two height quantiles of the starting packing.
-/// Rosato et al. 2010 ("bulk solids fraction").
+/// Rosato et al. 2010 ("bulk solids fraction"). `taper`, diameters, at least 0: over what height
+/// its edges rise and fall (tapered_solids_fraction); 0 cuts layers sharply, as the paper.
 struct BulkFraction {
   std::string name = "bulk_fraction";
   Window window = QuantileWindow{};
+  double taper = 0;
   bool operator==(const BulkFraction&) const = default;
 };
 

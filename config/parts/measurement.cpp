@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t longest_name = 64;
 constexpr double highest = 1e6;
+constexpr double widest_taper = 10;  // diameters
 
 struct Bounds {
   double low, high;
@@ -43,7 +44,7 @@ bool is_name(const std::string& name) {
 
 Observable read_bulk_fraction(const Reader& in) {
   BulkFraction bulk;
-  if (!in.is_object_of({"name", "heights", "quantiles"})) return bulk;
+  if (!in.is_object_of({"name", "heights", "quantiles", "taper"})) return bulk;
   if (const auto name = in.find("name")) {
     bulk.name = name->text().value_or(bulk.name);
     if (!is_name(bulk.name)) {
@@ -58,6 +59,13 @@ Observable read_bulk_fraction(const Reader& in) {
   if (heights) bulk.window = read_heights(*heights);
   if (quantiles) bulk.window = read_quantiles(*quantiles);
   if (heights && quantiles) in.fault("expected only one of the keys heights, quantiles");
+  in.read("taper", bulk.taper, between(0, widest_taper));
+  const auto* window = std::get_if<HeightWindow>(&bulk.window);
+  if (window && window->low < 0.5 * bulk.taper) {
+    in.fault(
+        fmt::format("a window from {} tapered over {} begins below the floor: begin at {} or more",
+                    window->low, bulk.taper, 0.5 * bulk.taper));
+  }
   return bulk;
 }
 
@@ -86,6 +94,7 @@ Json written_corrected_fraction(const CorrectedFraction& corrected) {
 Json written_bulk_fraction(const BulkFraction& bulk) {
   Json settings{{"name", bulk.name}};
   settings.update(written(bulk.window));
+  if (bulk.taper > 0) settings["taper"] = plain_number(bulk.taper);
   return settings;
 }
 

@@ -18,6 +18,16 @@ double cap_volume(double h) {
   return pi * h * h * (1.5 - h) / 3;
 }
 
+// Integral of cap_volume(h) over h from low to high: a cubic where the sphere is cut, of which
+// Gauss's rule of two points is exact, and the whole sphere above.
+double cap_integral(double low, double high) {
+  const double from = std::clamp(low, 0.0, 1.0), to = std::clamp(high, 0.0, 1.0);
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  const double offset = half / std::sqrt(3.0);
+  return half * (cap_volume(middle - offset) + cap_volume(middle + offset)) +
+         sphere_volume * (std::max(high, 1.0) - std::max(low, 1.0));
+}
+
 double quantile(std::vector<double>& heights, double q) {
   const double position = q * static_cast<double>(heights.size() - 1);
   const auto below = static_cast<std::ptrdiff_t>(position);
@@ -62,6 +72,26 @@ double solids_fraction(const Packing& packing, HeightWindow window) {
   }
   const double depth = is_cut ? 1 : window.high - window.low;
   return solid / (footprint_area(packing.container) * depth);
+}
+
+double tapered_solids_fraction(const Packing& packing, HeightWindow window, double taper) {
+  assert(window.low <= window.high && taper >= 0 && !Boundary(packing.container).periodic_z);
+  constexpr double thin = 1e-5;  // the mean over so small a shift is that without, to 1e-11
+  if (taper < thin) return solids_fraction(packing, window);
+  const double depth = window.high - window.low;
+  if (depth < taper) {  // the same weight of heights, from taper and depth exchanged
+    const double middle = 0.5 * (window.low + window.high);
+    return tapered_solids_fraction(packing, {middle - 0.5 * taper, middle + 0.5 * taper}, depth);
+  }
+  double solid = 0;
+  for (const Vec3& centre : packing.centres) {
+    const double low = window.low - (centre.z - sphere_radius);
+    const double high = window.high - (centre.z - sphere_radius);
+    if (low - 0.5 * taper > 1 || high + 0.5 * taper < 0) continue;
+    solid += cap_integral(high - 0.5 * taper, high + 0.5 * taper) -
+             cap_integral(low - 0.5 * taper, low + 0.5 * taper);
+  }
+  return solid / taper / (footprint_area(packing.container) * depth);
 }
 
 HeightWindow resolve(const Window& window, const Packing& packing) {

@@ -19,6 +19,13 @@ double sphere_volume_in_slab(double z, double low, double high);
 /// height]: spheres that reach through its ends count on both sides.
 double solids_fraction(const Packing& packing, HeightWindow window);
 
+/// Mean of the solids fractions of the windows [low + s, high + s], s uniform from -taper/2 to
+/// taper/2, exact but for rounding: as if both edges rose and fell linearly over `taper` diameters.
+/// A taper of one layer spacing takes every layer of a crystal wholly or not at all, wherever
+/// the edges lie. 0: solids_fraction. Heights below the floor and above the bed count as empty.
+/// Requires low <= high, taper >= 0, and a container with a floor.
+double tapered_solids_fraction(const Packing& packing, HeightWindow window, double taper);
+
 /// The window in heights: a height window is itself; a quantile window is taken from the heights
 /// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
 HeightWindow resolve(const Window& window, const Packing& packing);

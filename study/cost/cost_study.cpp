@@ -60,12 +60,13 @@ void add_windows(const CostOfObservable& cost, Table& table) {
        {"window_difference_error", window, errors, units, "standard error over replicates", ""}});
 }
 
-std::string window_name(const Window& window) {
-  if (const auto* heights = std::get_if<HeightWindow>(&window)) {
-    return fmt::format("heights {:g} to {:g}", heights->low, heights->high);
+std::string window_name(const BulkFraction& bulk) {
+  const std::string taper = bulk.taper > 0 ? fmt::format(", tapered over {:g}", bulk.taper) : "";
+  if (const auto* heights = std::get_if<HeightWindow>(&bulk.window)) {
+    return fmt::format("heights {:g} to {:g}{}", heights->low, heights->high, taper);
   }
-  const auto& quantiles = std::get<QuantileWindow>(window);
-  return fmt::format("quantiles {:g} to {:g}", quantiles.low, quantiles.high);
+  const auto& quantiles = std::get<QuantileWindow>(bulk.window);
+  return fmt::format("quantiles {:g} to {:g}{}", quantiles.low, quantiles.high, taper);
 }
 
 /// What the most complete setting may itself be off by.
@@ -189,7 +190,7 @@ std::vector<WindowEffect> CostStudy::read_windows(const ResultsFile& file,
     if (other.of != of) continue;
     const std::vector<double> own = file.block(0, of, last, {0, replicates_});
     effects.push_back(
-        {window_name(other.observable.window),
+        {window_name(other.observable),
          paired_bias(file.block(0, other.observable.name, last, {0, replicates_}), own)});
   }
   return effects;

@@ -70,7 +70,8 @@ TEST_CASE("Every key of a scene is read") {
   REQUIRE(scene.observables.size() == 6);
   CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
   CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});
-  CHECK(scene.observables[5] == Observable{BulkFraction{"middle", QuantileWindow{0.4, 0.6}}});
+  CHECK(scene.observables[5] ==
+        Observable{BulkFraction{"middle", QuantileWindow{0.4, 0.6}, 0.8165}});
   CHECK(std::get<LogarithmicTaps>(scene.snapshots.taps) == LogarithmicTaps{1, 100, 2, {0, 120}});
   CHECK(scene.snapshots.positions);
   CHECK(scene.snapshots.coordination);

@@ -78,21 +78,32 @@ TEST_CASE("Between walls the other of the two pours is a setting") {
   CHECK(start_settings(relaxed).empty());
 }
 
-TEST_CASE("A bulk fraction is read through a narrower and a wider window, too") {
+TEST_CASE("A bulk fraction is read through a narrower, a wider and a tapered window, too") {
   Scene scene = shipped("quickstart.json");
   scene.observables = {MeanHeight{}, BulkFraction{}, BulkFraction{"low", HeightWindow{2, 6}}};
   std::vector<OtherWindow> windows = other_windows(scene);
-  REQUIRE(windows.size() == 3);
+  REQUIRE(windows.size() == 5);
   CHECK(windows[0].of == "bulk_fraction");
   CHECK(windows[0].observable == BulkFraction{"bulk_fraction_narrow", QuantileWindow{0.35, 0.65}});
   CHECK(windows[1].observable == BulkFraction{"bulk_fraction_wide", QuantileWindow{0.1, 0.9}});
-  CHECK(windows[2].of == "low");
-  CHECK(windows[2].observable == BulkFraction{"low_narrow", HeightWindow{3, 5}});
+  CHECK(windows[2].observable ==
+        BulkFraction{"bulk_fraction_tapered", QuantileWindow{0.2, 0.8}, 0.8165});
+  CHECK(windows[3].of == "low");
+  CHECK(windows[3].observable == BulkFraction{"low_narrow", HeightWindow{3, 5}});
+  CHECK(windows[4].observable == BulkFraction{"low_tapered", HeightWindow{2, 6}, 0.8165});
   // A name that the scene has already is left alone.
   scene.observables.push_back(BulkFraction{"low_narrow", HeightWindow{1, 2}});
   windows = other_windows(scene);
-  CHECK(windows.back().observable.name == "low_narrow_narrow");
-  CHECK(windows.size() == 3);
+  CHECK(windows[3].observable.name == "low_tapered");
+  CHECK(windows.back().observable.name == "low_narrow_tapered");
+  CHECK(windows.size() == 6);
+  // A taper stays, and needs its half above the floor.
+  scene.observables = {BulkFraction{"low", HeightWindow{2, 6}, 0.5},
+                       BulkFraction{"lowest", HeightWindow{0.25, 2}}};
+  windows = other_windows(scene);
+  REQUIRE(windows.size() == 2);
+  CHECK(windows[0].observable == BulkFraction{"low_narrow", HeightWindow{3, 5}, 0.5});
+  CHECK(windows[1].observable.name == "lowest_narrow");
 }
 
 TEST_CASE("A ladder of an absolute stop goes up and down from the scene's change") {

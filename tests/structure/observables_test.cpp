@@ -68,6 +68,9 @@ TEST_CASE("Quantile windows are those of the starting packing and stay for the r
   CHECK(values[1] == solids_fraction(lifted, observer.windows()[1]));
   CHECK(values[2] == solids_fraction(lifted, {3, 9}));
 
+  const Observer tapered({BulkFraction{.taper = 0.8165}}, start);
+  CHECK(tapered(lifted)[0] == tapered_solids_fraction(lifted, observer.windows()[1], 0.8165));
+
   const Observer resumed(observables, observer.windows());
   CHECK(resumed(lifted) == values);
 }

@@ -77,6 +77,53 @@ TEST_CASE("a window without depth gives the area fraction of its plane cut") {
   }
 }
 
+TEST_CASE("a tapered window is the mean of windows shifted through its taper") {
+  const Packing packing = random_packing(WalledBox{4, 5}, 60, 8, 1);
+  struct Case {
+    HeightWindow window;
+    double taper;
+  };
+  // Deeper than its taper, less deep, of no depth, and one that reaches below floor and above the
+  // bed.
+  for (const auto& [window, taper] :
+       {Case{{2, 6}, 0.8165}, {{2, 6}, 0.01}, {{3, 3.5}, 2}, {{4, 4}, 1.5}, {{0.2, 12}, 3}}) {
+    constexpr int shifts = 20'000;
+    double sum = 0;
+    for (int k = 0; k < shifts; ++k) {
+      const double shift = taper * ((k + 0.5) / shifts - 0.5);
+      sum += solids_fraction(packing, {window.low + shift, window.high + shift});
+    }
+    CAPTURE(window.low, window.high, taper);
+    CHECK(tapered_solids_fraction(packing, window, taper) == Approx(sum / shifts).epsilon(1e-7));
+  }
+  CHECK(tapered_solids_fraction(packing, {2, 6}, 0) == solids_fraction(packing, {2, 6}));
+  CHECK(tapered_solids_fraction(packing, {2, 6}, 1e-9) ==
+        Approx(solids_fraction(packing, {2, 6})).epsilon(1e-8));
+}
+
+TEST_CASE("a window tapered over one layer spacing finds a crystal close-packed wherever it cuts") {
+  const double spacing = std::sqrt(2.0 / 3), close_packed = std::numbers::pi / std::sqrt(18.0);
+  Packing crystal{PeriodicBox{4, 4 * std::sqrt(3.0) / 2}, {}};
+  for (int layer = 0; layer < 12; ++layer) {
+    for (int row = 0; row < 4; ++row) {
+      for (int k = 0; k < 4; ++k) {  // where a layer lies sideways no horizontal window sees
+        crystal.centres.push_back(
+            {std::fmod(k + 0.5 * row, 4.0), row * std::sqrt(3.0) / 2, 0.5 + layer * spacing});
+      }
+    }
+  }
+  double most = 0;
+  for (double low = 1.5; low < 2.4; low += 0.05) {
+    for (const double depth : {3.0, 4.3, 5.1}) {
+      const HeightWindow window{low, low + depth};
+      CHECK(tapered_solids_fraction(crystal, window, spacing) ==
+            Approx(close_packed).epsilon(1e-12));
+      most = std::max(most, solids_fraction(crystal, window));
+    }
+  }
+  CHECK(most > close_packed + 0.01);  // what sharp edges make of it
+}
+
 TEST_CASE("quantile windows interpolate order statistics") {
   Packing packing{PeriodicBox{4, 4}, {}};
   for (const double z : {5.0, 1.0, 3.0, 2.0, 4.0}) packing.centres.push_back({0, 0, z});
