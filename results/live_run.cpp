@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "results/checkpoints/lock.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/scratch_folder.hpp"
@@ -103,7 +104,13 @@ ResultsFile live_results(const std::string& named, Content content) {
 }
 
 void write_copy(const std::string& named, const std::string& output, bool live) {
-  const std::string results_path = end_of_links(named);
+  const std::string results_path = end_of_links(named), replaced = end_of_links(output);
+  const RunLock lock(replaced, false);
+  if (parts_exist(replaced)) {
+    throw ResultsError(parts_folder(replaced),
+                       "holds parts of another run, which the copy would cut off from theirs; "
+                       "choose another name");
+  }
   read_undisturbed(results_path, [&] {
     const auto parts = live ? realizations_with_parts(results_path) : std::vector<RealizationId>{};
     write_joined(ResultsFile(results_path, named), results_path, parts, output,

@@ -75,7 +75,7 @@ void claim(Owners& owners, MergeInputs& inputs, std::size_t number, const Study&
 /// run.
 std::string missing_shares(const std::vector<ResultsFile>& files) {
   const std::uint32_t count = files.front().shard().count;
-  std::vector<bool> is_there(count + 1, false);
+  std::vector<bool> is_there(std::size_t{count} + 1, false);
   for (const ResultsFile& file : files) {
     if (file.shard().count != count) return "";
     is_there[file.shard().index] = true;

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By a pointer, or by as much of its end as is given; as tables label points, too ("dilate = 0.05").
+/// By a pointer, or by as much of its end as is given; as tables label points, too ("dilate =
+/// 0.05").
 bool has_value(const StudyPoint& point, std::string wanted) {
   if (const auto equals = wanted.find(" = "); equals != wanted.npos) wanted.replace(equals, 3, "=");
   return std::ranges::any_of(point.sweep_values, [&](const auto& value) {
@@ -52,10 +53,12 @@ bool is_results_file(const std::string& path) {
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  if (fs::equivalent(a, b, ignored)) return true;
-  return fs::weakly_canonical(fs::absolute(a), ignored) ==
-         fs::weakly_canonical(fs::absolute(b), ignored);
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path one = fs::weakly_canonical(fs::absolute(a), error);
+  if (error) return false;
+  const fs::path other = fs::weakly_canonical(fs::absolute(b), error);
+  return !error && one == other;
 }
 
 NoTapsYet::NoTapsYet(const std::string& path, Live live)

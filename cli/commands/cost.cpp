@@ -75,7 +75,6 @@ RunSettings settings_of(const CostArguments& arguments, const std::string& outpu
 }
 
 int run_cost(const CostArguments& arguments) {
-  ignore_sigpipe();
   const LoadedScene loaded = load_scene(arguments.scene);
   CostPilot pilot = make_cost_pilot(loaded, arguments.scene, arguments.point,
                                     arguments.taps > 0 ? arguments.taps : default_taps);

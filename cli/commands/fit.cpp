@@ -203,6 +203,7 @@ int run_fits(const FitArguments& arguments) {
   const Provenance by = provenance_of_this_run("");
   bool any = false;
   std::vector<Table> tables;
+  std::string csv;
   Json curves = Json::array();
   for (const FitSource& source : sources) {
     const FittedCurve fitted{source, fit_models(models, source.curve, manner)};
@@ -218,13 +219,14 @@ int run_fits(const FitArguments& arguments) {
       const auto fits = fit_tables(fitted, manner);
       tables.insert(tables.end(), fits.begin(), fits.end());
     }
-    if (!arguments.csv.empty()) write_text(arguments.csv, fit_csv(source.curve, fitted.outcomes));
+    if (!arguments.csv.empty()) csv = fit_csv(source.curve, fitted.outcomes);
   }
   if (arguments.json) {
     const Json object = {
         {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
     print_json(object);
   }
+  if (any && !arguments.csv.empty()) write_text(arguments.csv, csv);
   if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
     keep_tables(arguments.input, "fits", tables, by);
   }

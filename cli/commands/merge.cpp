@@ -75,7 +75,6 @@ void add_merge(Command& app, int& code) {
     require_output(*arguments);
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"), arguments->force,
                 joined_study(arguments->inputs));
-    ignore_sigpipe();
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
     TablesDisplay display(Quiet::no, {.width = screen().width});

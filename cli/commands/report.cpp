@@ -50,7 +50,10 @@ void write_page(const ReportArguments& arguments) {
       !arguments.output.empty()
           ? arguments.output
           : std::filesystem::path(arguments.inputs.front()).stem().string() + ".html";
-  if (output != arguments.output) require_no_link(output);
+  if (output != arguments.output) {
+    require_no_link(output);
+    require_replaceable(output, "page.html");
+  }
   require_text_output("-o", output, arguments.inputs, arguments.force);
   const std::vector<ResultsFile> files = opened(arguments);
   std::vector<PageSource> sources;

@@ -53,8 +53,9 @@ Shard parse_shard(std::string_view text) {
   const bool slash = index.ptr != end && *index.ptr == '/';
   const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
   if (!slash || count.ptr != end || index.ec != std::errc{} || count.ec != std::errc{} ||
-      shard.index < 1 || shard.index > shard.count) {
-    throw BadValue(fmt::format("\"{}\" is not a share i/n with 1 <= i <= n, as 1/4", text));
+      shard.index < 1 || shard.index > shard.count || shard.count > most_realizations) {
+    throw BadValue(fmt::format("\"{}\" is not a share i/n with 1 <= i <= n <= {}, as 1/4", text,
+                               most_realizations));
   }
   return shard;
 }
@@ -203,7 +204,6 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
 
 int run(const RunArguments& arguments) {
   StopRequest stop;  // from here on, signals stop and do not kill
-  ignore_sigpipe();
   if (arguments.quiet) silence_log();
   if (arguments.force && (arguments.resume || arguments.retry_failed)) {
     log_line("--force with a resume takes over another host's lock, and replaces no file");

@@ -35,6 +35,14 @@ struct SlurmArguments {
 };
 
 /// What a text in the script must be: one line.
+/// A command line as a comment of one line: what would end it is shown as printable() shows the
+/// rest.
+std::string commented(const std::string& text) {
+  std::string line;
+  for (const char c : text) line += c == '\n' ? std::string("\\x0a") : std::string(1, c);
+  return line;
+}
+
 std::string one_line(const std::string& text, const char* what) {
   if (std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; }))
     throw BadInput(
@@ -110,7 +118,7 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
               one_line(arguments.folder.empty() ? name + ".shards" : arguments.folder, "--folder"),
           .folder = one_line(fs::current_path().string(), "the folder"),
           .program = one_line(fs::read_symlink("/proc/self/exe").string(), "the program"),
-          .made_by = shell_words(command_line()),
+          .made_by = commented(shell_words(command_line())),
           .cpus = arguments.cpus,
           .time_limit = time_limit(arguments),
           .megabytes = megabytes_to_ask_for(
@@ -152,8 +160,9 @@ void write_script(const SlurmArguments& arguments) {
   say(script.estimate);
   for (const std::string& warning : warnings_of(plan, arguments, cost)) say("warning: " + warning);
   const std::string file = arguments.output.empty() ? script.name + ".sbatch" : arguments.output;
-  say(fmt::format("next:\n  {}\n  {}\n  {}", shell_words({"sbatch", file}),
-                  shell_words({"jostle", "status", script.results}),
+  say(fmt::format("next{}:\n  {}\n  {}\n  {}",
+                  arguments.output.empty() ? ", with the script in " + file : "",
+                  shell_words({"sbatch", file}), shell_words({"jostle", "status", script.results}),
                   shell_words({"jostle", "merge", script.results, "-o", script.name + ".h5"})));
 }
 

@@ -65,8 +65,11 @@ void require_no_link(const std::string& output) {
 
 void require_not_read(const std::string& option, const std::string& output,
                       std::span<const std::string> read) {
+  std::error_code ignored;
   for (const std::string& input : read) {
-    if (!is_same_file(output, input)) continue;
+    const bool is_checkpoint =
+        fs::equivalent(fs::path(output).parent_path(), input + ".parts", ignored);
+    if (!is_checkpoint && !is_same_file(output, input)) continue;
     throw BadInput(
         fmt::format("{} {}: this command works with that file and would destroy it. "
                     "Write elsewhere.",

@@ -39,6 +39,10 @@ void require_folder_for(const FigureFolder& folder, const std::vector<FigureOfFi
     for (const char* const kind : kinds) {
       const std::string path = (fs::path(folder.path) / (one.figure.name + kind)).string();
       require_no_link(path);
+      if (is_stream(path)) {
+        throw BadInput(fmt::format(
+            "{} is a pipe or a device: name another folder with --figures, or remove it", path));
+      }
       require_not_read("--figures", path, inputs);
       if (!folder.force && fs::exists(path, fault)) {
         throw BadInput(fmt::format(

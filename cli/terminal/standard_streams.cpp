@@ -34,9 +34,6 @@ void reserve_standard_fds() {
     if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0) return;
   }
   std::signal(SIGXFSZ, SIG_IGN);
-}
-
-void ignore_sigpipe() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 

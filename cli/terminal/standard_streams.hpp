@@ -10,11 +10,9 @@ namespace jostle::inline cli {
 
 /// First thing in the program. A standard stream that the caller closed is opened, so that no
 /// results file takes its number and is written over by messages; writing to it still fails. Beyond
-/// a limit on file sizes (ulimit -f) a write fails and says so, where it would kill.
+/// a limit on file sizes (ulimit -f) a write fails and says so, where it would kill; a reader of
+/// standard output or error that went away costs the text, not the work.
 void reserve_standard_fds();
-
-/// From now on a reader of standard output or error that went away costs the text, not the run.
-void ignore_sigpipe();
 
 /// Writes a text for people to standard output; what a terminal could take for a command is shown
 /// as \xNN. Throws nothing: results are stored though nobody reads about them. The first failure

@@ -48,9 +48,11 @@ std::uint64_t start_time_of(long pid) {
   return rest ? std::stoull(word) : 0;
 }
 
-/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name". Whether it is alive
-/// is not in it.
+/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", in one line.
+/// Whether it is alive is not in it.
 std::optional<LockOwner> parse_owner(const std::string& text) {
+  if (text.find('\n') + 1 < text.size() && text.find('\n') != std::string::npos)
+    return std::nullopt;
   std::istringstream words(text);
   LockOwner owner;
   if (!(words >> owner.host >> owner.pid >> owner.start_time)) return std::nullopt;

@@ -9,6 +9,7 @@
 #include "results/error.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/lammps_dump.hpp"
+#include "results/export/printable.hpp"
 #include "results/export/vtk_points.hpp"
 
 namespace jostle::inline results {
@@ -141,6 +142,11 @@ std::vector<ExportedFile> exported_files(ExportFormat format, const std::string&
     listed.emplace_back(frame.tap, std::filesystem::path(name).filename().string());
     files.push_back({name, vtk_points_text(frame)});
   }
+  const std::string& first = listed.front().second;
+  if (printable(first) != first)
+    throw ResultsError(path,
+                       "has a name that XML cannot hold, in which the .pvd names the others; "
+                       "choose another name");
   files.push_back({stem.string() + ".pvd", vtk_collection_text(listed)});
   return files;
 }

@@ -16,6 +16,8 @@ namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t piece = 1u << 16;
+constexpr std::size_t longest_line = 64u << 20;
+constexpr std::size_t longest_text = 256u << 20;  // of a scene with 100 000 points and more
 
 /// Without waiting for one who writes to a pipe where none may be.
 Descriptor opened(const std::string& path, Pipes pipes) {
@@ -75,6 +77,8 @@ bool InputFile::next_line(std::string& line) {
         std::find(begin + static_cast<std::ptrdiff_t>(searched), buffer_.end(), std::byte{'\n'});
     const bool whole = end != buffer_.end();
     searched = static_cast<std::size_t>(end - begin);
+    if (searched > longest_line)
+      throw ResultsError(path_, "has a line of more than 64 MB: no text that jostle reads");
     if (!whole && fill()) continue;
     line.assign(reinterpret_cast<const char*>(buffer_.data()) + taken_, searched);
     taken_ += searched + (whole ? 1 : 0);
@@ -106,6 +110,8 @@ std::string InputFile::rest() {
   std::vector<std::byte> some(piece);
   for (std::size_t n = some.size(); n == some.size();) {
     n = read(some);
+    if (text.size() + n > longest_text)
+      throw ResultsError(path_, "is longer than 256 MB: no text that jostle reads");
     text.append(reinterpret_cast<const char*>(some.data()), n);
   }
   return text;

@@ -21,14 +21,14 @@ class InputFile {
 
   /// Fills the bytes; fewer come only at the end of the file.
   std::size_t read(std::span<std::byte> bytes);
-  /// The next line without its newline; false at the end of the file.
+  /// The next line without its newline; false at the end of the file. Throws at one of over 64 MB.
   bool next_line(std::string& line);
   /// Fills the bytes from a place in the file; throws where the file ends before.
   void read_at(std::uint64_t offset, std::span<std::byte> bytes);
   /// Tells it from another that was put in its place: of no other file that is there or was made
   /// since.
   std::string stamp() const;
-  /// All that has not been read.
+  /// All that has not been read; throws beyond 256 MB.
   std::string rest();
 
  private:

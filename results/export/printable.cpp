@@ -19,9 +19,11 @@ std::size_t character_length(std::string_view text) {
   return std::ranges::all_of(text.substr(1, length - 1), continues) ? length : 0;
 }
 
-/// U+202A to U+202E and U+2066 to U+2069 turn the direction of what follows: a name could show
-/// another one.
+/// U+061C, U+200E, U+200F, U+202A to U+202E and U+2066 to U+2069 turn the direction of what is
+/// written: a name could show another one.
 bool turns_direction(std::string_view character) {
+  if (character == "\xd8\x9c" || character == "\xe2\x80\x8e" || character == "\xe2\x80\x8f")
+    return true;
   if (!character.starts_with("\xe2\x80") && !character.starts_with("\xe2\x81")) return false;
   const auto last = static_cast<unsigned char>(character[2]);
   return character[1] == '\x80' ? last >= 0xaa && last <= 0xae : last >= 0xa6 && last <= 0xa9;

@@ -92,7 +92,7 @@ void validate(const Study& study, const FileProvenance& provenance) {
           fmt::format("{} realizations of all sweep points together", in_all));
   require(!provenance.processes.empty(), "no process has worked on the file");
   const Shard shard = provenance.shard;
-  require(shard.index >= 1 && shard.index <= shard.count,
+  require(shard.index >= 1 && shard.index <= shard.count && shard.count <= most_realizations,
           fmt::format("shard {}/{}", shard.index, shard.count));
   require(nesting_of(study.resolved_scene) <= deepest_nesting,
           "the scene (/scene/resolved) is nested too deep");

@@ -70,6 +70,9 @@ std::vector<std::string> faults_of_the_names(const OwnLaw& law) {
   for (const FormulaName& name : names_in(law.formula)) {
     if (!name.is_function) words.push_back(name.text);
   }
+  if (law.start.empty()) {
+    faults.push_back("it has no parameter to fit: name at least one, with its start");
+  }
   std::set<std::string> seen;
   for (const auto& [name, value] : law.start) {
     if (!is_word(name)) {

@@ -71,6 +71,12 @@ class Script(Case):
         self.assertEqual(self.digest("tiny.h5"), self.digest("whole.h5"))
         self.assertEqual(self.requeued(), "")
 
+    def test_a_name_of_two_lines_is_no_command(self):
+        self.script("--jobs", 2, "-o", "a\ntouch made\n.sbatch")
+        text = (self.folder / "a\ntouch made\n.sbatch").read_text()
+        self.assertNotIn("\ntouch made", text)
+        self.assertIn("a\\x0atouch made", text)
+
     def test_more_shards_than_an_array_may_have_come_one_after_another(self):
         text = self.script("--jobs", 5, "--array-limit", 2, "-o", "tiny.sbatch").stderr
         self.assertIn("2 tasks, 5 shards", text)

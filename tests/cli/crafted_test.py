@@ -28,6 +28,7 @@ COMMANDS = (["info", "file.h5"], ["info", "file.h5", "--json"], ["info", "file.h
             ["report", "file.h5", "-o", "page.html", "--force"],
             ["export", "file.h5", "--format", "lammps", "--tap", "all", "--force"],
             ["merge", "file.h5", "-o", "merged.h5", "--force"],
+            ["status", "file.h5"],
             ["run", "scene.json", "--no-progress", "--resume", "-o", "file.h5"],
             ["run", "longer.json", "--no-progress", "--resume", "-o", "file.h5"],
             ["check", "from.json", "--no-pilot"])
@@ -153,6 +154,7 @@ CRASHED = {
     "no realizations": attribute("scene", "realizations", np.uint32(0)),
     "-5 realizations": attribute("scene", "realizations", np.int32(-5)),
     "shard (0, 0)": attribute("provenance", "shard", np.array([0, 0], np.uint32)),
+    "shard of 2^32 - 1": attribute("provenance", "shard", np.array([1, 2 ** 32 - 1], np.uint32)),
     "fewer taps than are stored": attribute(POINT, "taps", np.uint64(3)),
     "2^64 - 1 taps": attribute(POINT, "taps", np.uint64(2**64 - 1)),
     "rows too small": lambda file: replace(file, f"{SERIES}/rows", np.zeros(1, np.uint64)),

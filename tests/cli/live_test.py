@@ -6,7 +6,7 @@ import signal
 import time
 import unittest
 
-from support import BAD_INPUT, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, TINY, Case, changed
 
 # Hours of taps that take a millisecond each.
 ENDLESS = changed(TINY, name="endless", realizations=2, spheres=24,
@@ -66,6 +66,26 @@ class Live(Case):
         process.kill()
         process.communicate()
         self.look()
+
+    def test_its_checkpoints_are_written_over_by_nothing(self):
+        process = self.begin()
+        process.kill()
+        process.communicate()
+        parts = self.folder / "endless.h5.parts"
+        before = {path.name: path.read_bytes() for path in parts.iterdir()}
+        state = "endless.h5.parts/" + min(name for name in before if name.endswith(".state"))
+        fit = ("fit", "endless.h5", "--observable", "mean_height", "--model", "kww", "--live")
+        for command in (("report", "endless.h5", "--live", "-o", state), (*fit, "--csv", state),
+                        ("export", "endless.h5", "--format", "extxyz", "--live", "--tap", "0",
+                         "-o", state)):
+            refused = self.jostle(*command, "--force", expect=BAD_INPUT).stderr
+            self.assertIn("works with that file", refused)
+        self.write(TINY)
+        self.run_scene()
+        refused = self.jostle("export", "tiny.h5", "--format", "results", "-o", "endless.h5",
+                              "--force", expect=BROKEN).stderr
+        self.assertIn("holds parts of another run", refused)
+        self.assertEqual({path.name: path.read_bytes() for path in parts.iterdir()}, before)
 
     def test_a_whole_run_has_nothing_more(self):
         self.write(TINY)

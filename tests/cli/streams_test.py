@@ -112,6 +112,18 @@ class Streams(Case):
                               done.stderr)
         self.assertEqual(self.digest("again.h5"), self.digest("tiny.h5"))  # and it is stored
 
+    def test_a_reader_that_went_away_is_an_error_of_every_command(self):
+        for command in self.OUTPUTS:
+            with self.subTest(command=command):
+                reader, writer = os.pipe()
+                os.close(reader)
+                done = subprocess.run([JOSTLE, *command], cwd=self.folder, env=PLAIN, text=True,
+                                      stdin=subprocess.DEVNULL, stdout=writer,
+                                      stderr=subprocess.PIPE, timeout=120)
+                os.close(writer)
+                self.assertEqual(done.returncode, BROKEN, done.stderr)
+                self.assertIn("cannot write to standard output: Broken pipe", done.stderr)
+
 
 class Pipes(Case):
     def setUp(self):
@@ -128,6 +140,27 @@ class Pipes(Case):
                 self.assertEqual(piped.returncode, OK, piped.stderr)
         whole = self.jostle("fit", "curve.csv", "--model", "inverse_log").stdout
         self.assertEqual(piped.stdout.splitlines()[1:], whole.splitlines()[1:])
+
+    def test_a_pipe_where_a_page_or_a_figure_goes_by_itself_is_refused(self):
+        self.run_scene()
+        os.mkfifo(self.folder / "tiny.html")
+        refused = self.jostle("report", "tiny.h5", "--force", expect=BAD_INPUT).stderr
+        self.assertIn("tiny.html is a pipe", refused)
+        (self.folder / "figures").mkdir()
+        os.mkfifo(self.folder / "figures/mean-height.svg")
+        refused = self.jostle("report", "tiny.h5", "--figures", "figures", "--force",
+                              expect=BAD_INPUT).stderr
+        self.assertIn("mean-height.svg is a pipe", refused)
+
+    def test_text_without_an_end_is_refused_before_it_fills_the_memory(self):
+        for name, size, command, code in (("long.json", 300, "check", BAD_INPUT),
+                                          ("long.csv", 100, "fit", BROKEN),
+                                          ("long.xyz", 100, "structure", BROKEN)):
+            with self.subTest(name=name):
+                (self.folder / name).touch()
+                os.truncate(self.folder / name, size << 20)
+                refused = self.jostle(command, name, expect=code).stderr
+                self.assertIn("no text that jostle reads", refused)
 
     def test_a_pipe_in_the_place_of_a_file_is_refused_and_not_waited_for(self):
         os.mkfifo(self.folder / "pipe.xyz")
@@ -194,11 +227,12 @@ class Starts(Case):
 
 
 class Terminals(Case):
-    ESCAPE = "\x1b]0;owned\x07\x1b[2J\x9b31m\x7f\u202e"
+    ESCAPE = "\x1b]0;owned\x07\x1b[2J\x9b31m\x7f\u202e\u200f\u061c"
 
     def assert_harmless(self, done):
         for name, text in (("stdout", done.stdout), ("stderr", done.stderr)):
-            found = re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]", text)
+            found = re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]",
+                              text)
             self.assertIsNone(found, f"{name}: {text!r}")
 
     def test_no_text_of_a_scene_reaches_the_terminal_as_a_command(self):

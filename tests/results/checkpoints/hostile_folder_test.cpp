@@ -119,6 +119,15 @@ TEST_CASE("whatever lies at the name of the lock is refused, and left as it is")
   around.check_untouched();
 }
 
+TEST_CASE("a text that begins as a lock does is no lock, and left as it is") {
+  const Surroundings around;
+  const std::string name = around.path + ".lock", text = "notes 12 30\nof a text of somebody\n";
+  std::ofstream(name) << text;
+  CHECK_THROWS_WITH(run_whole(around.path, true), Contains("is no lock of jostle"));
+  std::ifstream left(name);
+  CHECK(std::string(std::istreambuf_iterator<char>(left), {}) == text);
+}
+
 TEST_CASE("whatever lies at the name of the parts is refused, and left as it is") {
   const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
   if (what == Planted::folder) return;  // that is what belongs there

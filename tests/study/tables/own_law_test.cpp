@@ -238,6 +238,7 @@ TEST_CASE("What is wrong with an own law is said, all of it") {
       {{.formula = "a*lgo(t)", .start = {{"a", 1}}}, "there is no function lgo; there are abs, "},
       {{.formula = "a*log(t/tau)", .start = {{"a", 1}}}, "the parameter tau has no start"},
       {{.formula = "a + b", .start = {{"a", 1}, {"b", 1}}}, "there is no t in it"},
+      {{.formula = "log(t)", .start = {}}, "it has no parameter to fit"},
       {{.formula = "a*t + (", .start = {{"a", 1}}}, "cannot be read"},
       {{.formula = "2t + a", .start = {{"a", 1}}}, "cannot be read"},
       {{.formula = "X = a*t", .start = {{"X", 1}, {"a", 1}}}, "without \"X =\""},
