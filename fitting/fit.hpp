@@ -52,6 +52,9 @@ enum class Identifiability {
   not_identifiable,  // no limit at all
 };
 
+/// "identified", "bounded_below", ...: as JSON and tables have it.
+const char* name_of(Identifiability identifiability);
+
 struct Estimate {
   Parameter parameter;
   double value = 0;

@@ -56,7 +56,8 @@ std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std:
   const std::size_t places = std::set<double>(curve.t.begin(), curve.t.end()).size();
   if (places < n_free) {
     std::ostringstream few;
-    few << curve.t.size() << " points at " << places << " different t cannot determine " << n_free
+    few << curve.t.size() << (curve.t.size() == 1 ? " point" : " points") << " at " << places
+        << " different t cannot determine " << n_free
         << " parameters: fix some, or use a wider range";
     return Refusal{RefusalKind::too_few_points, few.str()};
   }

@@ -42,6 +42,12 @@ std::string value_text(const Estimate& estimate) {
   }
   if (!estimate.has_value()) return "-";
   if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
+  // Of so lopsided an interval half its length says nothing of the value; the limits stand beside
+  // it.
+  constexpr double lopsided = 4;
+  const double shorter = std::min(estimate.value - estimate.intervals[0].lower,
+                                  estimate.intervals[0].upper - estimate.value);
+  if (estimate.half_width() > lopsided * shorter) return number(estimate.value, 3);
   return value_with_error(estimate.value, estimate.half_width());
 }
 

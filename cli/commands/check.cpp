@@ -114,7 +114,8 @@ void print_scene(const std::string& resolved) {
     Json description = Json::array();
     for (std::size_t start = 0; start < lines.size();) {
       const std::size_t end = std::min(lines.find('\n', start), lines.size());
-      description.push_back(lines.substr(start, end - start));
+      const std::size_t begin = std::min(lines.find_first_not_of(' ', start), end);  // no indent
+      description.push_back(lines.substr(begin, end - begin));
       start = end + 1;
     }
     scene["description"] = description;

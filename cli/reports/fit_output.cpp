@@ -16,26 +16,6 @@ constexpr const char* legend =
     "no "
     "limit. docs/fitting.md says what the rest means.\n";
 
-const char* name_of(Identifiability identifiability) {
-  switch (identifiability) {
-    case Identifiability::fixed:
-      return "fixed";
-    case Identifiability::not_examined:
-      return "not_examined";
-    case Identifiability::identified:
-      return "identified";
-    case Identifiability::wide:
-      return "wide";
-    case Identifiability::bounded_below:
-      return "bounded_below";
-    case Identifiability::bounded_above:
-      return "bounded_above";
-    case Identifiability::not_identifiable:
-      return "not_identifiable";
-  }
-  return "";
-}
-
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
@@ -73,7 +53,8 @@ Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
     const Estimate& estimate = fit.estimates[j];
     Json entry = estimate_json(estimate);
     if (resampled) {
-      entry["resampled_error"] = number(resampled->errors[j]);
+      const bool known = fit.estimates[j].has_value();
+      entry["resampled_error"] = known ? number(resampled->errors[j]) : Json();
       if (!resampled->central.empty()) {
         entry["bootstrap_68"] = interval_json(resampled->middle[j]);
         entry["bootstrap_95"] = interval_json(resampled->central[j]);
@@ -96,8 +77,9 @@ std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
   text +=
       fmt::format("  standard errors from {} resamples of the realizations:", resampled.resamples);
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
-    text += fmt::format("{} {} {:.2g}", j == 0 ? "" : ",", fit.estimates[j].parameter.name,
-                        resampled.errors[j]);
+    const Estimate& estimate = fit.estimates[j];
+    text += fmt::format("{} {} {}", j == 0 ? "" : ",", estimate.parameter.name,
+                        estimate.has_value() ? fmt::format("{:.2g}", resampled.errors[j]) : "-");
   }
   text += "\n";
   if (resampled.failed > 0) {

@@ -38,6 +38,7 @@ std::string TextTable::rows_of(const std::vector<std::size_t>& columns) const {
       if (i > 0) text.append(gap, ' ');
       text.append(widths[i] - width_of(cell), ' ').append(cell);
     }
+    text.erase(text.find_last_not_of(' ') + 1);
     text += '\n';
   }
   return text;

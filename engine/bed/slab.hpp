@@ -23,7 +23,7 @@ double solids_fraction(const Packing& packing, HeightWindow window);
 /// taper/2, exact but for rounding: as if both edges rose and fell linearly over `taper` diameters.
 /// A taper of one layer spacing takes every layer of a crystal wholly or not at all, wherever
 /// the edges lie. 0: solids_fraction. Heights below the floor and above the bed count as empty.
-/// Requires low <= high, taper >= 0, and a container with a floor.
+/// Requires low <= high, taper >= 0, and for a taper a container with a floor.
 double tapered_solids_fraction(const Packing& packing, HeightWindow window, double taper);
 
 /// The window in heights: a height window is itself; a quantile window is taken from the heights

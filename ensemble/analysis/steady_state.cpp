@@ -23,10 +23,11 @@ std::string reasons_for_doubt(const SteadyState& state) {
   if (state.trend.tests == 0) {
     add("one realization, too short for its memory, tells nothing of a drift");
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
-    add(fmt::format(
-        "only a change of {:.2g} or more over the taps, {:.2g} deviations of single taps, "
-        "would have been found with 80 %",
-        state.trend.detectable, state.detectable()));
+    add(
+        fmt::format("only a change of {:.2g} or more over the taps, {:.2g} times the scatter of "
+                    "taps about their line, "
+                    "would have been found with 80 %",
+                    state.trend.detectable, state.detectable()));
   }
   if (!state.autocorrelation.found() ||
       n < SteadyStateTest::fewest_times * state.autocorrelation.time) {
@@ -93,7 +94,8 @@ std::string SteadyState::statement() const {
       return "not reached: " + trend.statement();
     case Verdict::reached:
       return fmt::format(
-          "reached: {}; a change of {:.2g} over the taps, {:.2g} deviations of single taps, would "
+          "reached: {}; a change of {:.2g} over the taps, {:.2g} times the scatter of taps about "
+          "their line, would "
           "have been found with 80 %",
           trend.statement(), trend.detectable, detectable());
     case Verdict::cannot_decide:

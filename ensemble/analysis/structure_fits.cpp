@@ -18,6 +18,7 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_depth = 2;  // of bed between the layers at the floor and the surface
 
 /// What a law gave at one tap.
 struct FoundLaw {
@@ -35,6 +36,7 @@ struct FittedLaw {
   std::vector<std::string> units;  // of its parameters; empty: one that says nothing, left out
   std::function<FoundLaw(const Model&, const Packings&)> found;
   bool of_counts = false;
+  std::string variable = "";  // what t of the formula is, where it is not the quantity's place
 };
 
 const std::vector<double>& places_of(const Measurement& measurement, std::string_view name) {
@@ -148,6 +150,7 @@ void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
   name.append("_").append(in_lower_case(parameter.name));
   std::string meaning = parameter.meaning;
   meaning.append(", of ").append(law.quantity).append(" = ").append(model.formula());
+  if (!law.variable.empty()) meaning.append("; t: ").append(law.variable);
   const auto add = [&](const char* ending, std::vector<double> of_taps, std::string long_name,
                        std::string source) {
     table.quantities.push_back({name + ending,
@@ -226,9 +229,16 @@ FittedLaw density_profile(const ProfileSettings& settings) {
           "profile",
           {"1", "1/R", "1/R", "R"},
           [low](const Model& model, const Packings& packings) {
-            return fitted_curve("phi", model, packings, [low](double height) {
+            FoundLaw found = fitted_curve("phi", model, packings, [low](double height) {
               return height >= low ? std::optional(height / sphere_radius) : std::nullopt;
             });
+            const double surface = found.fit.values[3] * sphere_radius;  // z*
+            if (surface < low + least_depth) {
+              std::ranges::fill(found.fit.values, nan);
+              std::ranges::fill(found.fit.errors, nan);
+              found.fit.status = "the surface is less than 2 d above the layers at the floor";
+            }
+            return found;
           }};
 }
 
@@ -247,7 +257,8 @@ FittedLaw free_volumes(const VoronoiSettings& settings) {
                 "free_volume_density", model, packings, bin,
                 [width](const Measurement& packing) { return width * single(packing, "n_cells"); });
           },
-          true};
+          true,
+          "the free volume less the least that a cell can have"};
 }
 
 FittedLaw pore_tail(const PoresSettings& settings) {

@@ -174,6 +174,26 @@ bool Interval::closed() const {
   return std::isfinite(lower) && std::isfinite(upper);
 }
 
+const char* name_of(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::fixed:
+      return "fixed";
+    case Identifiability::not_examined:
+      return "not_examined";
+    case Identifiability::identified:
+      return "identified";
+    case Identifiability::wide:
+      return "wide";
+    case Identifiability::bounded_below:
+      return "bounded_below";
+    case Identifiability::bounded_above:
+      return "bounded_above";
+    case Identifiability::not_identifiable:
+      return "not_identifiable";
+  }
+  return "";
+}
+
 bool Estimate::has_value() const {
   if (identifiability == Identifiability::fixed) return true;
   if (identifiability == Identifiability::not_examined) {

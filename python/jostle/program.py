@@ -103,7 +103,7 @@ def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
         faults = faults_in(done.stderr)
         if faults:
             return SceneError(faults, **about)
-    said = done.stderr.strip().removeprefix("jostle: ")
+    said = (done.stderr.strip() or done.stdout.strip()).removeprefix("jostle: ")
     if done.returncode < 0:
         said = f"jostle was killed by {signal.Signals(-done.returncode).name}. {said}"
     return ProgramError(said or f"jostle ended with exit code {done.returncode}", **about)

@@ -40,6 +40,8 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     except ProgramMissing as missing:
         return _check_by_schema(scene, missing)
     resolved, end = json.JSONDecoder().raw_decode(done.stdout)
+    if isinstance(resolved.get("description"), list):  # folded to the width of a terminal
+        resolved["description"] = " ".join(resolved["description"])
     text = done.stdout[end:].strip()
     found = re.search(r"^warnings\n((?:  .*\n?)+)", text, re.MULTILINE)
     warnings = [line.strip() for line in found[1].splitlines()] if found else []

@@ -54,7 +54,7 @@ void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
   add_panel(file, std::nullopt,
             {.title = sentence(words(name)),
              .caption = fmt::format(
-                 "{} against the number of taps; {}. Tap 0 is the starting packing.",
+                 "{}, against the number of taps; {}. Tap 0 is the starting packing.",
                  sentence(label.long_name.empty() ? words(name) : label.long_name), errors),
              .source = label.source == "jostle" ? "" : label.source,
              .x = file.tap_axis(),

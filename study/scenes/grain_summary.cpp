@@ -52,8 +52,8 @@ std::vector<std::string> grain_summary(const Plan& plan) {
     const double speed = floor->amplitude * engine->diameter * omega;
     const double overlap = speed * std::sqrt(times.mass / (2 * stiffness)) / engine->diameter;
     const std::string line = fmt::format(
-        "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap up to {:.2g} "
-        "d, "
+        "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap {:.2g} "
+        "d where two spheres meet at it, "
         "{:.0f} steps while the floor moves{}",
         floor->amplitude, floor->frequency, gamma, speed, overlap,
         floor->seconds / times.step_seconds,

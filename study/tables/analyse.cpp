@@ -133,7 +133,8 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
   const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
   const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
   if (available < least) {
-    throw BadInput(fmt::format("needs at least {} taps; there are {}", least, available));
+    throw BadInput(fmt::format("needs at least {} taps; there {} {}", least,
+                               available == 1 ? "is" : "are", available));
   }
   if (wanted < least) {
     throw BadInput(fmt::format("asks for the last {} taps; at least {} are needed", wanted, least));

@@ -56,17 +56,19 @@ Quantity values(std::string name, std::vector<std::string> axes, std::vector<dou
 }
 
 void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
-  std::vector<std::string> names, units, statements;
+  std::vector<std::string> names, units, statements, found;
   std::vector<double> value, error, linear, resampled, lower, upper, covariance, correlation;
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
     names.push_back(estimate.parameter.name);
     units.push_back(unit_text(estimate.parameter.unit));
     statements.push_back(estimate.statement);
+    found.push_back(name_of(estimate.identifiability));
     value.push_back(estimate.has_value() ? estimate.value : not_a_number);
     error.push_back(estimate.has_value() ? estimate.error : not_a_number);
     linear.push_back(estimate.standard_error);
-    if (outcome.resampled) resampled.push_back(outcome.resampled->errors[j]);
+    if (outcome.resampled)
+      resampled.push_back(estimate.has_value() ? outcome.resampled->errors[j] : not_a_number);
     for (const Interval& interval : estimate.intervals) {
       lower.push_back(interval.lower);
       upper.push_back(interval.upper);
@@ -90,6 +92,7 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
       values("standard_error", one, linear, "of a linear problem with independent points"),
       {"units", one, units, "", "units of the parameter", ""},
       {"statement", one, statements, "", "what the data say of the parameter", ""},
+      {"identifiability", one, found, "", "the same in a word", ""},
       values("interval_lower", ends, lower, "lower end of the profile-likelihood interval"),
       values("interval_upper", ends, upper, "upper end of the profile-likelihood interval"),
       values("covariance", matrix, covariance, "covariance"),

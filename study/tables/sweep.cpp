@@ -14,6 +14,8 @@
 #include "config/json/json_text.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/observable_series.hpp"
@@ -36,6 +38,8 @@ struct Member {
   ErrorOf y_error;
   Column label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
+  std::string taps;                                // whose mean the value is: "151 to 200"
+  std::string no_value;                            // why it has none, where a fit says so
 };
 
 /// "/protocol/0/tap/dilate" -> 0.
@@ -87,6 +91,7 @@ void set_value(Member& member, const ObservableSeries& series, std::optional<std
   if (series.n_realizations() == 0) return;
   const AnalysedSeries taps = last_taps(series, last, 4, 1);
   const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
+  member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
   member.realizations.assign(n_realizations, not_a_number);
   for (std::size_t i = 0; i < means.size(); ++i) {
     member.realizations[series.realizations()[i]] = means[i];
@@ -122,16 +127,39 @@ bool take_single(Member& member, const Table& table, const std::string& name) {
   return true;
 }
 
-/// A parameter of a fit with its error, which counts realizations or memory.
+std::string text_at(const Quantity* quantity, std::size_t place) {
+  const auto* texts = quantity ? std::get_if<std::vector<std::string>>(&quantity->values) : nullptr;
+  return texts && place < texts->size() ? (*texts)[place] : "";
+}
+
+/// The error of which Student's t makes half the 68 % interval of the fit, and no less than the
+/// linear one.
+ErrorOf error_of_interval(const Table& table, std::size_t place) {
+  const ErrorOf linear = error_of(number_at(quantity_named(table, "error"), place),
+                                  number_at(quantity_named(table, "error_dof"), 0));
+  const std::size_t end = 2 * place;  // [parameter, level], 68 % first
+  const double half = 0.5 * (number_at(quantity_named(table, "interval_upper"), end) -
+                             number_at(quantity_named(table, "interval_lower"), end));
+  if (!linear.known() || !(half > 0)) return linear;
+  return {std::max(linear.error, half / two_sided(interval_levels[0], linear.dof)), linear.dof};
+}
+
+/// A parameter of a fit with its error, which counts realizations or memory, if the data identify
+/// it: what is wide, or a limit, is no point of a curve.
 bool take_parameter(Member& member, const Table& table, const std::string& name) {
   for (const Quantity& axis : table.axes) {
     const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
     if (axis.name != "parameter" || !names) continue;
     const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
     if (place == names->size()) return false;
-    member.y = number_at(quantity_named(table, "value"), place);
-    member.y_error = error_of(number_at(quantity_named(table, "error"), place),
-                              number_at(quantity_named(table, "error_dof"), 0));
+    const std::string found = text_at(quantity_named(table, "identifiability"), place);
+    if (found == name_of(Identifiability::identified)) {
+      member.y = number_at(quantity_named(table, "value"), place);
+      member.y_error = error_of_interval(table, place);
+    } else {
+      member.no_value = found.empty() ? "fitted by an earlier version: fit it again"
+                                      : text_at(quantity_named(table, "statement"), place);
+    }
     member.label = {name, "1", "parameter of a fit", ""};
     return true;
   }
@@ -177,6 +205,22 @@ std::size_t point_at(const SweepCurve& curve, double x) {
       fmt::format("reference {}: there is no such point; there are {}", x, joined(places, ", ")));
 }
 
+/// Which taps are averaged, and which points have no value.
+void add_notes(std::span<const Member> members, Table& table) {
+  std::vector<std::string> taps;
+  std::string left_out;
+  for (const Member& member : members) {
+    if (!member.taps.empty() && std::ranges::find(taps, member.taps) == taps.end())
+      taps.push_back(member.taps);
+    if (!member.no_value.empty()) {
+      left_out.append(left_out.empty() ? "" : "; ")
+          .append(fmt::format("at {:.4g} {}", member.x, member.no_value));
+    }
+  }
+  if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
+  if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
+}
+
 Table curve_table(std::string name, std::span<const Member> members,
                   const std::optional<double>& reference) {
   std::vector<double> x, y;
@@ -198,7 +242,10 @@ Table curve_table(std::string name, std::span<const Member> members,
       means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
   std::optional<std::size_t> point;
   if (reference) point = point_at(curve, *reference);
-  return sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
+  Table table =
+      sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
+  add_notes(members, table);
+  return table;
 }
 
 /// A file with what is read of it once for all sweeps.

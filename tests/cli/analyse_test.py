@@ -235,17 +235,23 @@ class Analysed(Case):
             for found, point in zip(sigma, (1, 2, 0)):
                 steady = stored[f"analysis/point_{point:04}/steady/mean_height/sigma"][()]
                 self.assertEqual(found, steady)
-            # Points whose fits give the parameter no value are left out.
+            # Points whose fits do not identify the parameter are left out, and named.
             drawn = stored["analysis/sweep/bottom_fraction/inverse_log_X_inf"]
-            known = {}
+            known, unknown = {}, 0
             for x, point in ((0.1, 1), (0.2, 2), (0.3, 0)):
                 fit = stored[f"fits/point_{point:04}/bottom_fraction/inverse_log"]
                 names = [name.decode() for name in fit["parameter"][:]]
-                found = fit["value"][names.index("X_inf")]
-                if math.isfinite(found):
-                    known[x] = found
+                place = names.index("X_inf")
+                if fit["identifiability"][place] == b"identified":
+                    known[x] = fit["value"][place]
+                else:
+                    unknown += 1
+                    self.assertIn(f"at {x:.4g} {fit['statement'][place].decode()}",
+                                  drawn.attrs["note_left_out"])
             self.assertEqual(dict(zip((round(x, 12) for x in drawn["sqrt_epsilon"][:]),
                                       drawn["X_inf"][:])), known)
+            self.assertGreater(unknown, 0)
+            self.assertEqual(value.attrs["note_taps"], "111 to 160")
 
         # What is zipped with the swept value is no sweep of its own, what is crossed is.
         crossed = changed(scene, name="crossed", analyse={}, fits=[], realizations=2, sweep={

@@ -66,7 +66,8 @@ class Cost(Case):
         self.assertRegex(done.stdout, r"\n *theta_0 = 0.393  ")
         self.assertRegex(done.stdout, r"Since tap 3 the scene's changed by [+-][\d.]+\(\d+\)\S*: ")
         self.assertRegex(done.stdout, r"the same beds differ by \S+\) \(quantiles 0.35 to 0.65\); "
-                                      r"\S+\) \(quantiles 0.1 to 0.9\)\.")
+                                      r"\S+\) \(quantiles 0.1 to 0.9\); "
+                                      r"\S+\) \(quantiles 0.2 to 0.8, tapered over 0.8165\)\.")
         with h5py.File(self.folder / "tiny-cost.h5") as stored:
             table = stored["analysis/cost/bulk_fraction"]
             names = [name.decode() for name in table["setting"][:]]

@@ -282,6 +282,9 @@ class Check(Case):
     def test_a_good_scene_is_resolved(self):
         checked = jostle.check(TINY)
         self.assertEqual(checked.resolved["relax"]["polar"]["max_step"], 0.1)
+        described = {**SHORT, "description": "a bed that is tapped, " * 20 + "and nothing else"}
+        self.assertEqual(jostle.check(described, program=PROGRAM).resolved["description"],
+                         described["description"])
         self.assertEqual(checked.warnings, [])
         self.assertIn("4 sweep points x 3 realizations", checked.text)
         warned = jostle.check(changed(SHORT, snapshots=None, protocol=[{"tap": {"dilate": 5}, "count": 1}]))

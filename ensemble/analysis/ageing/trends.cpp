@@ -35,7 +35,7 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
 std::string power_of(const AgeTrend& found, const std::string& of) {
   const std::string power =
       std::isnan(found.detectable)
-          ? "none would be found"
+          ? "but its error is beyond all factors: none would be found"
           : fmt::format("a factor of {:.3g} would be found with power 0.8", found.detectable);
   return fmt::format("change of {} from the first waiting time to the last: p = {:.2g}, {}", of,
                      found.p, power);

@@ -39,7 +39,8 @@ std::string drift_verdict(const Trend& trend, Detrending detrending) {
   if (!trend.drifts()) {
     if (trend.tests == 0) return trend.statement();
     const std::string power = fmt::format(
-        "a change of {:.2g} over the taps, {:.2g} deviations of single taps, would have been found "
+        "a change of {:.2g} over the taps, {:.2g} times the scatter of taps about their line, "
+        "would have been found "
         "with 80 %",
         trend.detectable, trend.detectable / trend.sigma);
     return trend.detectable <= SteadyStateTest::largest_unseen * trend.sigma

@@ -23,13 +23,15 @@ void add_maximum(const SweepMaximum& top, const SweptValue& swept, const Column&
                  Table& table) {
   constexpr const char* source = "multiple comparisons with the best: Hsu 1996";
   add_value("maximum_at", top.x, swept.units,
-            swept.long_name + " at the highest point of a parabola", table);
+            swept.long_name + ", at the highest point of a parabola", table);
   add_value("maximum_at_low", top.x_low, swept.units,
             "lower end of the 95 % interval of the maximum's place, of any shape with one maximum",
             table, source);
   add_value("maximum_at_high", top.x_high, swept.units, "its upper end", table, source);
   add_value("maximum", top.y, quantity.units,
-            quantity.long_name + " at the highest point of the parabola", table);
+            quantity.long_name +
+                ", at the highest point of the parabola: a description, without an error",
+            table);
   add_value("maximum_p", top.p, "1", "of no maximum inside the sweep", table,
             "two lines: Simonsohn 2018, doi:10.1177/2515245918805755");
   table.quantities.push_back({"maximum_points",

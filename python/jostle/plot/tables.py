@@ -122,7 +122,7 @@ def sweep(table: Table, *, ax: Axes | None = None) -> Axes:
     errorbars(ax, table[against], table[quantity], half, fmt="o-", linewidth=0.8)
     at = float(table["maximum_at"])
     if np.isfinite(at) and table["maximum_p"] < 0.05:
-        ax.axvline(at, color="C3", linewidth=0.8, label=f"highest at {at:.3g}")
+        ax.axvline(at, color="C3", linewidth=0.8, label=f"parabola's top at {at:.3g}")
         low, high = float(table["maximum_at_low"]), float(table["maximum_at_high"])
         if np.isfinite(low) and np.isfinite(high):
             ax.axvspan(low, high, color="C3", alpha=0.15, linewidth=0)

@@ -38,7 +38,7 @@ function sentence(text) {
 function meanFigure(chapter, name, title) {
   return columnFigure(chapter, name, (column) => ({
     title: title ?? sentence(words(name)),
-    caption: `${sentence(column.long_name || words(name))} against the number of taps; ${bars(chapter)}. ` +
+    caption: `${sentence(column.long_name || words(name))}, against the number of taps; ${bars(chapter)}. ` +
       zeroText,
     source: column.source === "jostle" ? "" : column.source,
     rows: (curve, own) => rowsOf(curve.taps, own.mean, own.error),
