@@ -162,7 +162,7 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
                      .source = "Philippe & Bideau 2001, fig. 10"}};
   add_single("n_pores", number, "pores of the region", out, "Philippe & Bideau 2001, sec. V");
   add_single("nu", mean_pore_volume(found), "mean of xi^3", out, "Philippe & Bideau 2001, sec. V",
-             "R^3");
+             "sphere volumes");
   add_single("mean_touched", touched / number, "spheres that a pore touches", out);
   add_single("tetrahedral", tetrahedral / number,
              "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", out,

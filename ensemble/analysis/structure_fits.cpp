@@ -265,7 +265,7 @@ FittedLaw pore_tail(const PoresSettings& settings) {
   return {"rho_v",
           "tail",
           "pore_tail",
-          {"1", "R^3"},
+          {"1", "sphere volumes"},
           [from = settings.tail_from, width = settings.bin_width](const Model& model,
                                                                   const Packings& packings) {
             const auto bin = [from, width](double xi) -> std::optional<Bin> {
