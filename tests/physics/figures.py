@@ -79,8 +79,8 @@ OUTDATED = "(Of earlier numbers.) "
 def remark_of(page, figure, numbers):
     """What a person wrote below the numbers, kept when they are made again, and marked if they
     are not the same any more."""
-    found = re.search(rf"## {re.escape(figure)}\n(.*?)\n{re.escape(REMARK)}(.*?)(?=\n## |\Z)", page,
-                      re.S)
+    section = re.search(rf"^## {re.escape(figure)}\n.*?(?=^## |\Z)", page, re.S | re.M)
+    found = section and re.match(rf"(.*)\n{re.escape(REMARK)}(.*)", section[0], re.S)
     if not found:
         return ""
     remark = found.group(2).strip()

@@ -2,6 +2,7 @@
 import numpy as np
 
 from compaction_figures import falls_with_age
+from figures import remark_of
 from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
                       detectable, holm, is_positive, is_within, judge, of_interval)
 
@@ -104,6 +105,15 @@ def intervals():
     check(judge([one])[0][2] == UNDECIDED, "one realization says nothing")
 
 
+def remarks_are_those_of_their_section():
+    page = "## a\n\none\n\n## b\n\ntwo\n\n**Remark**: of b.\n\n## c\n\nthree\n"
+    for figure, numbers, wanted in (("a", "one", ""), ("b", "two", "**Remark**: of b."),
+                                    ("b", "2", "**Remark**: (Of earlier numbers.) of b."),
+                                    ("c", "three", "")):
+        found = remark_of(page, figure, numbers)
+        check(found == wanted, "remark of", figure, repr(found))
+
+
 if __name__ == "__main__":
     generator = np.random.default_rng(20010222)
     signs(generator)
@@ -112,4 +122,5 @@ if __name__ == "__main__":
     families(generator)
     ages(generator)
     intervals()
+    remarks_are_those_of_their_section()
     print("verdicts: as often right as they say")
