@@ -40,6 +40,7 @@ struct Member {
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
   std::string taps;                                // whose mean the value is: "151 to 200"
   std::string no_value;                            // why it has none, where a fit says so
+  bool error_is_no_basis = false;                  // a fit's, of too few realizations
 };
 
 /// "/protocol/0/tap/dilate" -> 0.
@@ -132,38 +133,30 @@ std::string text_at(const Quantity* quantity, std::size_t place) {
   return texts && place < texts->size() ? (*texts)[place] : "";
 }
 
-/// The error of which Student's t makes half the 68 % interval of the fit, and no less than the
-/// linear one.
+/// Of three realizations and fewer too many points have no closed interval, and those that have one
+/// scatter less than they should: their errors are no basis of a curve's.
+constexpr double fewest_dof_of_a_point = 3;
+
+/// The error of which Student's t makes the longer side of the 68 % interval of the fit.
 ErrorOf error_of_interval(const Table& table, std::size_t place) {
-  const ErrorOf linear = error_of(number_at(quantity_named(table, "error"), place),
-                                  number_at(quantity_named(table, "error_dof"), 0));
+  const double dof = number_at(quantity_named(table, "error_dof"), 0);
+  const double value = number_at(quantity_named(table, "value"), place);
   const std::size_t end = 2 * place;  // [parameter, level], 68 % first
-  const double half = 0.5 * (number_at(quantity_named(table, "interval_upper"), end) -
-                             number_at(quantity_named(table, "interval_lower"), end));
-  if (!linear.known() || !(half > 0)) return linear;
-  return {std::max(linear.error, half / two_sided(interval_levels[0], linear.dof)), linear.dof};
+  const double side = std::max(number_at(quantity_named(table, "interval_upper"), end) - value,
+                               value - number_at(quantity_named(table, "interval_lower"), end));
+  if (!(side > 0 && dof >= fewest_dof_of_a_point)) return {};
+  return {side / two_sided(interval_levels[0], dof), dof};
 }
 
-/// A parameter of a fit with its error, which counts realizations or memory, if the data identify
-/// it: what is wide, or a limit, is no point of a curve.
 bool take_parameter(Member& member, const Table& table, const std::string& name) {
-  for (const Quantity& axis : table.axes) {
-    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
-    if (axis.name != "parameter" || !names) continue;
-    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
-    if (place == names->size()) return false;
-    const std::string found = text_at(quantity_named(table, "identifiability"), place);
-    if (found == name_of(Identifiability::identified)) {
-      member.y = number_at(quantity_named(table, "value"), place);
-      member.y_error = error_of_interval(table, place);
-    } else {
-      member.no_value = found.empty() ? "fitted by an earlier version: fit it again"
-                                      : text_at(quantity_named(table, "statement"), place);
-    }
-    member.label = {name, "1", "parameter of a fit", ""};
-    return true;
-  }
-  return false;
+  const auto point = parameter_point(table, name);
+  if (!point) return false;
+  member.y = point->value;
+  member.y_error = point->error;
+  member.no_value = point->no_value;
+  member.error_is_no_basis = point->no_value.empty() && !point->error.known();
+  member.label = {name, "1", "parameter of a fit", ""};
+  return true;
 }
 
 /// "kww/rho_inf" of fits, "steady/sigma" of analyses.
@@ -219,6 +212,11 @@ void add_notes(std::span<const Member> members, Table& table) {
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
   if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
+  if (std::ranges::any_of(members, &Member::error_is_no_basis)) {
+    table.notes.emplace_back("errors",
+                             "those of fits to three realizations or fewer are not taken: too many "
+                             "such fits set no limit, and the others scatter less than all would");
+  }
 }
 
 Table curve_table(std::string name, std::span<const Member> members,
@@ -310,6 +308,24 @@ std::string table_name(const AnalysisRequest<SweepSettings>& request) {
 }
 
 }  // namespace
+
+std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
+  for (const Quantity& axis : fit.axes) {
+    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
+    if (axis.name != "parameter" || !names) continue;
+    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
+    if (place == names->size()) return std::nullopt;
+    const std::string found = text_at(quantity_named(fit, "identifiability"), place);
+    if (found == name_of(Identifiability::identified) || found == name_of(Identifiability::wide))
+      return ParameterPoint{number_at(quantity_named(fit, "value"), place),
+                            error_of_interval(fit, place), ""};
+    return ParameterPoint{not_a_number,
+                          {},
+                          found.empty() ? "fitted by an earlier version: fit it again"
+                                        : text_at(quantity_named(fit, "statement"), place)};
+  }
+  return std::nullopt;
+}
 
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests) {
