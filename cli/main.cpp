@@ -7,6 +7,7 @@
 #include "cli/terminal/exit_codes.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/log.hpp"
+#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/export/printable.hpp"
 #include "results/hdf5/at_exit.hpp"
@@ -20,7 +21,7 @@ int parse_and_run(int argc, char** argv) {
   int code = exit_ok;
   describe_program(line, code);
   const CommandLine::Outcome outcome = line.parse_and_run(argc, argv);
-  print(outcome.asked_for);
+  print_wrapped(outcome.asked_for);
   print_to_standard_error(outcome.fault);
   return outcome.refused ? exit_bad_input : code;
 }

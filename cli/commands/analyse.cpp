@@ -306,7 +306,7 @@ void add_analyse(Command& app, int& code) {
       "Examples:\n"
       "  jostle analyse quickstart.h5 steady --observable mean_height --last 50\n"
       "  jostle analyse *.h5 spectrum --observable mean_height --band 0.001:0.1 --json\n"
-      "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,100,1000\n"
+      "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99\n"
       "  jostle analyse fig4.h5 hysteresis --observable bulk_fraction\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"

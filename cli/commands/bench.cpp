@@ -94,9 +94,9 @@ void add_bench(Command& app, int& code) {
   command.add_flag("--json", arguments->json, "Print JSON instead of one line a state");
   command.footer(
       "Examples:\n"
-      "  jostle bench                                       about half a minute\n"
+      "  jostle bench                                about half a minute\n"
       "  jostle bench tapped_bed --json\n"
-      "  JOSTLE_INSTRUCTION_SET=avx2 jostle bench           as on a machine without AVX-512\n"
+      "  JOSTLE_INSTRUCTION_SET=avx2 jostle bench    as without AVX-512\n"
       "\n"
       "The states: a bed of 4096 spheres poured, dilated and settled; one lifted and settled by\n"
       "Metropolis moves; a dense disordered packing and two fluids.");

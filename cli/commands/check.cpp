@@ -150,7 +150,7 @@ void add_check(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle check scene.json              up to about ten seconds\n"
-      "  jostle check scene.json --no-pilot   at once, without estimates of time and memory\n"
+      "  jostle check scene.json --no-pilot   at once, without time and memory\n"
       "\n"
       "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
   command.run([arguments, &code] {

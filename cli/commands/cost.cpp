@@ -158,7 +158,7 @@ void add_cost(Command& app, int& code) {
       .environment("JOSTLE_NO_PROGRESS");
   command.footer(
       "Example:\n"
-      "  jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 30m\n"
+      "  jostle cost scene.json --target 0.001 --observable bulk_fraction --budget 30m\n"
       "\n"
       "A ladder of settings is run for a few taps, in pairs from the same packings. Of Monte "
       "Carlo:\n"

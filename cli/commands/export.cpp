@@ -180,12 +180,11 @@ void add_export(Command& app, int& code) {
   command.add_flag("--force", a.force, "Replace files that exist");
   command.footer(
       "Examples:\n"
-      "  jostle export quickstart.h5 --format extxyz            writes quickstart.xyz\n"
-      "  jostle export quickstart.h5 --format lammps --tap all  every snapshot, a frame each\n"
-      "  jostle export quickstart.h5 --format vtp --tap 0,100   two .vtp files, and a .pvd of "
-      "both\n"
+      "  jostle export quickstart.h5 --format extxyz            into quickstart.xyz\n"
+      "  jostle export quickstart.h5 --format lammps --tap all  a frame a snapshot\n"
+      "  jostle export quickstart.h5 --format vtp --tap 0,100   two .vtp, and a .pvd\n"
       "  jostle export packing.xyz --format vtp -o packing.vtp\n"
-      "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis, and h5py\n"
+      "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis\n"
       "  jostle export quickstart.h5 --format results --live -o so_far.h5\n"
       "\n"
       "Every sphere with its radius, coordination (centres within 1.05 diameters), the volume of\n"

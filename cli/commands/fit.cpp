@@ -303,12 +303,11 @@ void add_fit(Command& app, int& code) {
   command.add_flag("--force", a.force, "Replace the file of --csv if it exists");
   command.footer(
       "Examples:\n"
-      "  jostle fit quickstart.h5 --observable bottom_fraction                all laws, compared\n"
-      "  jostle fit quickstart.h5 --observable bottom_fraction --model inverse_log --range 1:4000\n"
+      "  jostle fit quickstart.h5 --observable bottom_fraction     all laws\n"
+      "  jostle fit bell.h5 --observable bulk_fraction --model kww --range 1:400\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
-      "  jostle fit measured.csv --law \"X0 + a*log(1 + t/tau)\" --start X0=0.58,a=0.01,tau=10\n"
-      "  jostle fit experiments.csv --realizations --model inverse_log      a column an "
-      "experiment\n"
+      "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
+      "  jostle fit experiments.csv --realizations       a column an experiment\n"
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");

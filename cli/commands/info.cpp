@@ -188,7 +188,7 @@ void add_info(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
-      "  jostle info quickstart.h5 --digest   tells whether two runs gave the same numbers");
+      "  jostle info quickstart.h5 --digest   the same for runs of the same numbers");
   command.run([arguments, &code] {
     info(*arguments);
     code = exit_ok;

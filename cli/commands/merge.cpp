@@ -64,9 +64,9 @@ void add_merge(Command& app, int& code) {
       "Examples:\n"
       "  jostle run scene.json --shard 1/2 -o a.h5\n"
       "  jostle run scene.json --shard 2/2 -o b.h5\n"
-      "  jostle merge a.h5 b.h5 -o all.h5       the digest of all.h5 is that of an undivided run\n"
+      "  jostle merge a.h5 b.h5 -o all.h5        has the digest of an undivided run\n"
       "  jostle merge scene.shards -o merged.h5  the shards of a folder\n"
-      "  jostle merge low.h5 high.h5 -o all.h5  one sweep of two with other values of it\n"
+      "  jostle merge low.h5 high.h5 -o all.h5   joins two sweeps of one scene\n"
       "\n"
       "Refuses unfinished, damaged, overlapping and incomplete sets of files, and files of\n"
       "scenes that differ in more than the values of their sweeps, naming which.");

@@ -281,10 +281,9 @@ void add_run(Command& app, int& code) {
   add_options(command, *arguments);
   command.footer(
       "Examples:\n"
-      "  jostle run scene.json                              writes NAME.h5, prints its curves\n"
-      "  jostle run scene.json --resume --time-limit 23h    the same line for every job of a "
-      "chain\n"
-      "  jostle run scene.json --shard 3/8 -o part3.h5      one eighth of the realizations\n"
+      "  jostle run scene.json                    writes NAME.h5, prints its curves\n"
+      "  jostle run scene.json --resume --time-limit 23h    for every job of a chain\n"
+      "  jostle run scene.json --shard 3/8 -o part3.h5      one eighth of it\n"
       "\n"
       "SIGINT, SIGTERM, SIGUSR1 and the time limit stop at the end of a sweep: all is stored, the\n"
       "command that goes on is printed, and the exit code is 75.");

@@ -140,9 +140,9 @@ void add_structure(Command& app, int& code) {
   command.add_threads(a.threads);
   command.footer(
       "Examples:\n"
-      "  jostle structure quickstart.h5                             every part, every kept tap\n"
+      "  jostle structure quickstart.h5                 every part, every kept tap\n"
       "  jostle structure fig10.h5 --part pores --tap 0,99 --csv pores.csv\n"
-      "  jostle structure a.xyz b.xyz c.xyz --json                  three packings, their mean\n"
+      "  jostle structure a.xyz b.xyz c.xyz --json      three packings, their mean\n"
       "  jostle structure fig9.h5 --settings '{\"pores\": {\"bin_width\": 0.01}}'\n"
       "\n"
       "Tables are kept in the results file, under /structure; what they mean:\n"

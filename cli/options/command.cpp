@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "cli/options/command_text.hpp"
@@ -42,6 +43,20 @@ void note_offer(CLI::Option& option, const char* kind, const std::vector<std::st
   std::string name = kind;
   for (const std::string& text : texts) name += " " + text;
   option.check(CLI::Validator([](std::string&) { return std::string(); }, "", name));
+}
+
+/// Paragraphs as one line each, for a screen of any width; examples, which are indented, as they
+/// are.
+std::string filled(const std::string& text) {
+  std::string all, line, before;
+  for (std::istringstream lines(text); std::getline(lines, line); before = line) {
+    const auto of_paragraph = [](const std::string& one) {
+      return !one.empty() && one.front() != ' ' && !one.ends_with(':');
+    };
+    if (!all.empty()) all += of_paragraph(before) && of_paragraph(line) ? ' ' : '\n';
+    all += line;
+  }
+  return all;
 }
 
 }  // namespace
@@ -174,7 +189,7 @@ void Command::add_threads(int& threads, const std::string& description) {
 }
 
 void Command::footer(const std::string& text) {
-  app_->footer(text);
+  app_->footer(filled(text));
 }
 
 void Command::run(std::function<void()> act) {

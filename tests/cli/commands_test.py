@@ -10,12 +10,14 @@ from support import (BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SOURCE, STOPPED, TINY
 
 class Help(Case):
     def test_every_command_has_help_with_an_example(self):
-        for command in ("new", "run", "check", "schema", "info", "merge", "fit", "bench",
-                        "selftest", "export", "report", "slurm", "status"):
+        for command in ("new", "run", "check", "schema", "info", "merge", "fit", "bench", "cost",
+                        "analyse", "structure", "selftest", "export", "report", "slurm",
+                        "status"):
             with self.subTest(command=command):
                 text = self.jostle(command, "--help").stdout
                 self.assertIn("Example", text)
                 self.assertIn(f"jostle {command}", text)
+                self.assertLessEqual(max(map(len, text.splitlines())), 80)
 
     def test_version_names_revision_compiler_and_libraries(self):
         text = self.jostle("--version").stdout
