@@ -34,7 +34,6 @@ struct SlurmArguments {
   bool force = false;
 };
 
-/// What a text in the script must be: one line.
 /// A command line as a comment of one line: what would end it is shown as printable() shows the
 /// rest.
 std::string commented(const std::string& text) {
@@ -43,6 +42,7 @@ std::string commented(const std::string& text) {
   return line;
 }
 
+/// What a text in the script must be: one line.
 std::string one_line(const std::string& text, const char* what) {
   if (std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; }))
     throw BadInput(

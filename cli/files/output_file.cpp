@@ -68,7 +68,7 @@ void require_not_read(const std::string& option, const std::string& output,
   std::error_code ignored;
   for (const std::string& input : read) {
     const bool is_checkpoint =
-        fs::equivalent(fs::path(output).parent_path(), input + ".parts", ignored);
+        fs::equivalent(fs::absolute(output).parent_path(), input + ".parts", ignored);
     if (!is_checkpoint && !is_same_file(output, input)) continue;
     throw BadInput(
         fmt::format("{} {}: this command works with that file and would destroy it. "

@@ -51,8 +51,8 @@ std::uint64_t start_time_of(long pid) {
 /// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", in one line.
 /// Whether it is alive is not in it.
 std::optional<LockOwner> parse_owner(const std::string& text) {
-  if (text.find('\n') + 1 < text.size() && text.find('\n') != std::string::npos)
-    return std::nullopt;
+  const std::size_t end = text.find('\n');
+  if (end != std::string::npos && end + 1 < text.size()) return std::nullopt;
   std::istringstream words(text);
   LockOwner owner;
   if (!(words >> owner.host >> owner.pid >> owner.start_time)) return std::nullopt;

@@ -127,6 +127,18 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   // Curves that differ by a factor: so do Phi_0 and alpha, and z* not at all.
   CHECK(numbers(table, "eq7_phi_0_error")[0] == Approx(0.61 * 0.01 / std::sqrt(3.0)).epsilon(1e-4));
   CHECK(numbers(table, "eq7_z_star_error")[0] < 1e-6);
+  // Of a bed that ends 1.5 d above the layers at the floor nothing but its surface would be fitted.
+  std::vector<double> shallow;
+  for (const double height : at) {
+    const double truth[] = {0.61, 0.001, 2, 2 * (GradientRange{}.low + 1.5)};
+    shallow.push_back(DensityProfile().value(2 * height, truth));
+  }
+  table =
+      structure_tables("", three_curves("profile", "height", "phi", at, shallow), settings).at(0);
+  CHECK(std::get<std::vector<std::string>>(quantity(table, "eq7_status").values)[0] ==
+        "the surface is less than 2 d above the layers at the floor");
+  CHECK(std::isnan(numbers(table, "eq7_phi_0")[0]));
+  CHECK(std::isnan(numbers(table, "eq7_phi_0_error")[0]));
 
   // The expected counts of an exponential tail; below the tail stands something else.
   std::vector<double> xi, rho;

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "fitting/models/models.hpp"
@@ -56,6 +58,32 @@ TEST_CASE("a report for people names what it gives") {
   const std::string table = compare({wide, other});
   const bool first = wide.aic < other.aic;
   CHECK((table.find("inverse_log") < table.find("kww")) == first);
+}
+
+TEST_CASE("a report gives a value the error that its interval bears out") {
+  Curve curve;
+  for (double t : geometric(1, 1000, 30)) {
+    curve.t.push_back(t);
+    curve.x.push_back(0.6 - 0.05 * std::exp(-t / 100) + 1e-4 * ((curve.t.size() % 3) - 1.0));
+  }
+  Fit fit = std::get<Fit>(jostle::fit(StretchedExponential(), curve));
+  Estimate& estimate = fit.estimates.front();
+  estimate.value = 0.6;
+  const auto row = [&](double lower, double upper) {
+    estimate.intervals[0] = {lower, upper};
+    const std::string text = describe(fit);
+    const std::size_t start = text.find("\n  " + estimate.parameter.name) + 1;
+    return text.substr(start, text.find('\n', start) - start);
+  };
+  CHECK(contains(row(0.599, 0.601), "0.6000(10)"));
+  CHECK(contains(row(0.598, 0.601), "0.6000(15)"));
+  // Lower by 0.0001 or higher by 0.02: half of their distance says neither.
+  const std::string lopsided = row(0.5999, 0.62);
+  CHECK(contains(lopsided, " 0.6 "));
+  CHECK_FALSE(contains(lopsided, "("));
+  const double infinity = std::numeric_limits<double>::infinity();
+  estimate.identifiability = Identifiability::bounded_below;
+  CHECK(contains(row(0.59, infinity), " - "));
 }
 
 }  // namespace jostle

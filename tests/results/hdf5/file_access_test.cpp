@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -10,7 +9,7 @@
 using namespace jostle;
 
 // As many as a scene may have realizations. Where their names, 44 MB, find no room in HDF5's cache
-// they are read again for each, and the rate of hits falls to three in four.
+// they are read and written again for each: hours.
 TEST_CASE("A group of a million members keeps its names in the cache, written and read") {
   const TemporaryFolder folder;
   const std::string path = folder / "million.h5";
@@ -24,7 +23,8 @@ TEST_CASE("A group of a million members keeps its names in the cache, written an
     WritableHdf5File file(path);
     const Hdf5Handle group(H5Gcreate2(file, "group", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                            H5Gclose);
-    Hdf5Handle member(H5Gcreate2(group, "member", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    const Hdf5Handle member(H5Gcreate2(group, "member", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                            H5Gclose);
     for (int i = 0; i < members; ++i) {
       checked(H5Lcreate_hard(group, "member", group, fmt::format("realization_{:06}", i).c_str(),
                              H5P_DEFAULT, H5P_DEFAULT));
