@@ -200,9 +200,10 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       "interval\n",
       cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
       study.settings()[study.reference().last].name);
-  const std::string below = shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +
-                            failures(study) + growth_of_the_bias(study, cost) +
-                            other_windows_line(cost);
+  const std::string below =
+      "front: no other setting has both a smaller |bias| + error and a smaller time.\n" +
+      shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study) +
+      growth_of_the_bias(study, cost) + other_windows_line(cost);
   return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(below, layout.width);
 }
 

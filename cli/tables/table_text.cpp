@@ -106,6 +106,10 @@ std::string named(const char* what, const std::vector<std::string>& names) {
   return names.empty() ? "" : fmt::format("  {:<22} {}\n", what, joined(names, ", "));
 }
 
+bool has_units(const Quantity& quantity) {
+  return !quantity.units.empty() && quantity.units != "1";
+}
+
 /// Numbers that a verdict's sentence has in it.
 bool is_said_by_verdicts(const Quantity& quantity, const Table& table) {
   const bool of_a_test = is_probability(quantity.name) || quantity.name.ends_with("_detectable");
@@ -128,9 +132,8 @@ std::string single_values(const Table& table, const Block& block, const Layout& 
         continue;
       }
     }
-    const bool unitless = quantity->units.empty() || quantity->units == "1";
     text += fmt::format("  {:<22} {}{}", quantity->name, shown(*quantity, block, 0),
-                        unitless ? "" : " " + quantity->units);
+                        has_units(*quantity) ? " " + quantity->units : "");
     text += quantity->long_name.empty() ? "\n" : fmt::format("   ({})\n", quantity->long_name);
   }
   return text + named("without a value", empty) + named("--wide shows also", hidden);
@@ -212,7 +215,8 @@ class BlockText {
     if (!numbers_.empty() && text.size() > 1) text += '\n';
     if (!numbers_.empty() || (said_.empty() && empty_.empty())) text += columns(hidden);
     return text +
-           wrapped(named("without a value", empty_) + named("--wide shows also", hidden), width());
+           wrapped(units() + named("without a value", empty_) + named("--wide shows also", hidden),
+                   width());
   }
 
  private:
@@ -224,6 +228,20 @@ class BlockText {
       for (const Quantity* quantity : *list) names.push_back(quantity->name);
     }
     return names;
+  }
+
+  /// "  in diameter            height, eq7_z_star", a line for each of the units of what is shown.
+  std::string units() const {
+    std::map<std::string, std::vector<std::string>> names;
+    const auto add = [&](const Quantity& quantity) {
+      const bool says_them = quantity.units.starts_with(quantity.name);  // a tap's are taps
+      if (has_units(quantity) && !says_them) names["in " + quantity.units].push_back(quantity.name);
+    };
+    for (const std::string& axis : block_.axes) add(axis_named(table_, axis));
+    for (const Quantity* quantity : numbers_) add(*quantity);
+    std::string text;
+    for (const auto& [unit, of] : names) text += named(unit.c_str(), of);
+    return text;
   }
 
   /// Of few columns those from the first on that have room, below one another where rows are few.

@@ -33,6 +33,7 @@ TEST_CASE("A table for people has values with their errors, then columns") {
   CHECK(text.find("tau_error") == std::string::npos);
   CHECK(text.find("age  lag  a\n  1    2  1\n") != std::string::npos);
   CHECK(text.find(" 10    8  -\n") != std::string::npos);
+  CHECK(text.find("  in taps                age, lag\n") != std::string::npos);
 }
 
 TEST_CASE("A table for people has values with their 95 % intervals") {
