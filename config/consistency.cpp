@@ -43,14 +43,17 @@ class Check {
     }
   }
 
+  /// Of a ramp the tap of its greatest strength.
+  static Tap strongest_tap(const ProtocolLine& line) {
+    Tap tap = line.tap;
+    if (line.ramp) strength(tap) = std::max(line.ramp->from, line.ramp->to);
+    return tap;
+  }
+
   void taps_suit_container() {
     if (!all_sound({"/container", "/protocol"})) return;
     for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
-      const ProtocolLine& line = scene_.protocol[i];
-      Tap tap = line.tap;
-      if (line.ramp) strength(tap) = std::max(line.ramp->from, line.ramp->to);
-      const auto fault = tap_fault(tap, scene_.container);
-      if (fault) note(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"), *fault);
+      note_if(pointer_to_tap(i), tap_fault(strongest_tap(scene_.protocol[i]), scene_.container));
     }
   }
 
@@ -60,10 +63,13 @@ class Check {
       note_if("/engine/discrete_element", engine_fault(*scene_.grains, scene_.container));
     if (!all_sound({"/protocol"})) return;
     for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
-      const ProtocolLine& line = scene_.protocol[i];
-      note_if(fmt::format("/protocol/{}/{}", i, line.ramp ? "ramp" : "tap"),
-              engine_tap_fault(engine_of(scene_), line.tap));
+      note_if(pointer_to_tap(i),
+              engine_tap_fault(engine_of(scene_), strongest_tap(scene_.protocol[i])));
     }
+  }
+
+  std::string pointer_to_tap(std::size_t i) const {
+    return fmt::format("/protocol/{}/{}", i, scene_.protocol[i].ramp ? "ramp" : "tap");
   }
 
   void relaxations_can_be() {

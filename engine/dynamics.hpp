@@ -20,7 +20,7 @@ enum class DynamicsStatus : std::uint32_t { running = 0, settled = 1, capped = 2
 
 /// What moving the spheres took.
 struct Effort {
-  std::uint64_t units = 0;       // of the engine: trials
+  std::uint64_t units = 0;       // of the engine: trials, sphere steps
   std::uint64_t pair_tests = 0;  // pair distances computed in them
 
   Effort& operator+=(const Effort& other) {

@@ -4,25 +4,21 @@ namespace jostle::inline engine {
 
 namespace {
 
-std::optional<std::string> motion_fault(const DiscreteElement& grains, const Tap& tap) {
+std::optional<std::string> motion_fault(const DiscreteElement& grains, const FloorTap auto& tap) {
   constexpr double least_steps = 20, largest_amplitude = 100;
-  const double gravity = grains.gravity / grains.diameter;
-  const auto* half_sine = std::get_if<HalfSine>(&tap);
-  const auto* vibration = std::get_if<Vibration>(&tap);
-  const double amplitude =
-      half_sine ? floor_amplitude(*half_sine, gravity) : floor_amplitude(*vibration, gravity);
+  const double amplitude = floor_amplitude(tap, grains.gravity / grains.diameter);
   if (amplitude > largest_amplitude)
     return "at this acceleration and frequency the floor moves by " + std::to_string(amplitude) +
            " diameters, " + std::to_string(static_cast<int>(largest_amplitude)) +
            " at most: raise the frequency, or lower the acceleration";
-  const double frequency = half_sine ? half_sine->frequency : vibration->frequency;
   if (grains.spheres.index() != grains.floor.value_or(grains.spheres).index() ||
       grains.spheres.index() != grains.sides.value_or(grains.spheres).index())
     return std::nullopt;  // a fault of its own
-  const double steps = 0.5 / frequency / contact_times(grains).step_seconds;
+  const double steps = 0.5 / tap.frequency / contact_times(grains).step_seconds;
   if (steps >= least_steps) return std::nullopt;
-  return "half a period of the floor takes " + std::to_string(steps) +
-         " time steps, 20 at least: lower the frequency, or raise stiffness or steps_per_contact";
+  return "half a period of the floor takes " + std::to_string(steps) + " time steps, " +
+         std::to_string(static_cast<int>(least_steps)) +
+         " at least: lower the frequency, or raise stiffness or steps_per_contact";
 }
 
 }  // namespace
@@ -33,8 +29,14 @@ std::vector<Column> columns(const EngineSettings& settings) {
 
 std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap) {
   if (!moves_floor(tap)) return std::nullopt;
-  if (const auto* grains = std::get_if<DiscreteElement>(&settings))
-    return motion_fault(*grains, tap);
+  if (const auto* grains = std::get_if<DiscreteElement>(&settings)) {
+    return std::visit(
+        [&]<class T>(const T& motion) -> std::optional<std::string> {
+          if constexpr (FloorTap<T>) return motion_fault(*grains, motion);
+          return std::nullopt;
+        },
+        tap);
+  }
   return "the floor moves under discrete elements only: set \"engine\" to "
          "{\"discrete_element\": {}}, or tap by dilate, dilate_floor_held, lift or shake";
 }
@@ -48,15 +50,15 @@ std::optional<std::string> engine_start_fault(const EngineSettings& settings, co
 }
 
 const char* unit_name(const EngineSettings& settings) {
-  return std::holds_alternative<MonteCarlo>(settings) ? "trials" : "sphere steps";
+  return std::visit([](const auto& engine) { return engine.unit; }, settings);
 }
 
 const char* round_name(const EngineSettings& settings) {
-  return std::holds_alternative<MonteCarlo>(settings) ? "sweeps" : "time steps";
+  return std::visit([](const auto& engine) { return engine.round; }, settings);
 }
 
 const char* work_column(const EngineSettings& settings) {
-  return std::holds_alternative<MonteCarlo>(settings) ? sweeps_column : seconds_column;
+  return std::visit([](const auto& engine) { return engine.work_column; }, settings);
 }
 
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,

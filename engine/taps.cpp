@@ -102,8 +102,7 @@ struct Excite {
     for (Vec3& centre : packing.centres) centre.z = centre.z * (1 + tap.lambda);
     return {LateralOffsets(packing, tap)(random)};
   }
-  template <class FloorTap>
-  TapReport operator()(const FloorTap&) const {
+  TapReport operator()(const FloorTap auto&) const {
     throw std::invalid_argument("only discrete elements follow a floor that moves");
   }
 };
@@ -126,8 +125,7 @@ struct ControlOf {
   }
   Control operator()(const Lift& tap) const { return {"gamma", "diameter", tap.gamma}; }
   Control operator()(const Shake& tap) const { return {"lambda", "1", tap.lambda}; }
-  template <class FloorTap>
-  Control operator()(const FloorTap& tap) const {
+  Control operator()(const FloorTap auto& tap) const {
     if (tap.kind == FloorStrength::acceleration) return {"Gamma", "1", tap.strength};
     return {"amplitude", "diameter", tap.strength};
   }
@@ -150,7 +148,7 @@ std::optional<std::string> tap_fault(const Tap& tap, const Container& container)
 }
 
 bool moves_floor(const Tap& tap) {
-  return std::holds_alternative<HalfSine>(tap) || std::holds_alternative<Vibration>(tap);
+  return std::visit([]<class T>(const T&) { return FloorTap<T>; }, tap);
 }
 
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {

@@ -68,9 +68,15 @@ struct Vibration {
 
 using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake, HalfSine, Vibration>;
 
+/// A tap that moves the floor, not the spheres.
+template <class T>
+concept FloorTap = requires(const T& tap) {
+  tap.frequency;
+  tap.kind;
+};
+
 /// The amplitude of the floor, diameters, where `gravity` is in diameters / s^2.
-template <class FloorTap>
-double floor_amplitude(const FloorTap& tap, double gravity) {
+double floor_amplitude(const FloorTap auto& tap, double gravity) {
   if (tap.kind == FloorStrength::amplitude) return tap.strength;
   const double angular = 2 * std::numbers::pi * tap.frequency;
   return tap.strength * gravity / (angular * angular);

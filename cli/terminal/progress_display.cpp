@@ -61,17 +61,17 @@ void ProgressDisplay::show_until(std::stop_token token) {
   const Clock::duration interval = interval_of(style_);
   const auto began = Clock::now();
   auto last_time = began;
-  std::uint64_t last_trials = progress_.units_done;
+  std::uint64_t last_units = progress_.units_done;
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, token, interval, [&] { return token.stop_requested(); })) {
     const auto now = Clock::now();
-    const std::uint64_t trials = progress_.units_done;
+    const std::uint64_t units = progress_.units_done;
     const std::chrono::duration<double> since = now - last_time;
-    const double rate = static_cast<double>(trials - last_trials) / since.count();
+    const double rate = static_cast<double>(units - last_units) / since.count();
     const std::string line = progress_line(progress_, ahead_, rate, now - began);
     print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
     last_time = now;
-    last_trials = trials;
+    last_units = units;
   }
 }
 

@@ -56,7 +56,7 @@ class StoringDisplay {
 };
 
 /// One line of progress: "3/8 done, 2 running, 0 failed; taps 120/408; 41.0 M trials/s; 1 min 5 s
-/// left". `rate` in trials/s; `elapsed` since the run began.
+/// left". `rate` in units of the engine a second; `elapsed` since the run began.
 std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
                           std::chrono::duration<double> elapsed);
 

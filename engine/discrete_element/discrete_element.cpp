@@ -19,7 +19,7 @@ std::optional<std::string> engine_fault(const DiscreteElement& settings,
 
 std::vector<Column> columns(const DiscreteElement&) {
   const std::string energy = "m g d per sphere", source = "jostle";
-  return {{.name = seconds_column,
+  return {{.name = DiscreteElement::work_column,
            .units = "s",
            .long_name = "time of the tap, its rest included",
            .source = source,

@@ -54,6 +54,9 @@ struct TimedRest {
 using Rest = std::variant<QuietRest, TimedRest>;
 
 struct DiscreteElement {
+  static constexpr const char *unit = "sphere steps", *round = "time steps";
+  static constexpr const char* work_column = "seconds";  // simulated time of a tap
+
   double diameter = 0.02;  // m
   double density = 1200;   // kg/m^3
   double gravity = 9.81;   // m/s^2
@@ -76,9 +79,6 @@ struct ContactTimes {
   double step_seconds = 0;
 };
 ContactTimes contact_times(const DiscreteElement& settings);
-
-/// Simulated time of a tap.
-inline constexpr const char* seconds_column = "seconds";
 
 /// What is recorded of every tap, and of the start.
 std::vector<Column> columns(const DiscreteElement& settings);

@@ -23,9 +23,7 @@ struct MotionOf {
     return {floor_amplitude(tap, gravity()), tap.frequency * seconds, 2 * tap.cycles};
   }
   template <class Displacement>
-  FloorMotion operator()(const Displacement&) const {
-    return {};
-  }
+  requires(!FloorTap<Displacement>) FloorMotion operator()(const Displacement&) const { return {}; }
   double gravity() const { return 1 / (seconds * seconds); }  // diameters / s^2
 };
 
@@ -82,20 +80,15 @@ class GrainDynamics final : public Dynamics {
     const Energies now = loop.energies();
     const ContactCensus census = loop.census();
     const auto n = static_cast<double>(loop.n_spheres());
-    const double floor_work = now.floor_work - state_.before.floor_work;
-    const double latched = now.latched - state_.before.latched;
-    const double friction = now.friction - state_.before.friction;
-    // What came in and was held before is held now or was dissipated.
-    const double came = floor_work + state_.before.held();
-    const double missing = came - now.held() - latched - friction;
-    const double turnover = std::abs(latched) + std::abs(friction);
+    const Ledger tap = ledger(now);
     return {loop.time() * units_.seconds,
             now.kinetic / n,
             now.elastic / n,
-            (state_.input + floor_work) / n,
-            latched / n,
-            friction / n,
-            turnover > 0 ? missing / turnover : std::numeric_limits<double>::quiet_NaN(),
+            (state_.input + tap.floor_work) / n,
+            tap.latched / n,
+            tap.friction / n,
+            tap.dissipated() > 0 ? tap.missing / tap.dissipated()
+                                 : std::numeric_limits<double>::quiet_NaN(),
             loop.greatest_overlap(),
             census.mean_overlap,
             census.contacts,
@@ -167,14 +160,33 @@ class GrainDynamics final : public Dynamics {
     if (state_.status != DynamicsStatus::running) require_closed_ledger();
   }
 
+  /// Of the tap so far, in units of m g d.
+  struct Ledger {
+    double floor_work, latched, friction;
+    double missing;  // of what came in and was held before, neither held now nor dissipated
+
+    double dissipated() const { return std::abs(latched) + std::abs(friction); }
+  };
+  Ledger ledger(const Energies& now) const {
+    Ledger tap{.floor_work = now.floor_work - state_.before.floor_work,
+               .latched = now.latched - state_.before.latched,
+               .friction = now.friction - state_.before.friction,
+               .missing = 0};
+    const double came = tap.floor_work + state_.before.held();
+    tap.missing = came - now.held() - tap.latched - tap.friction;
+    return tap;
+  }
+
   // A step that is too long makes or loses energy: no such tap is recorded.
   void require_closed_ledger() const {
     constexpr double widest = 0.1, least = 1e-2;  // of what is dissipated; m g d a sphere
-    const std::vector<double> values = diagnostics();
-    const double ledger_error = values[6], dissipated = std::abs(values[4]) + std::abs(values[5]);
-    if (!(std::abs(ledger_error) > widest && std::abs(ledger_error) * dissipated > least)) return;
+    const Ledger tap = ledger(loop_->energies());
+    const double missing = std::abs(tap.missing);
+    if (!(missing > widest * tap.dissipated() &&
+          missing > least * static_cast<double>(loop_->n_spheres())))
+      return;
     throw std::runtime_error("the energy ledger of a tap misses " +
-                             std::to_string(100 * std::abs(ledger_error)) +
+                             std::to_string(100 * missing / tap.dissipated()) +
                              " % of what was dissipated: the time step is too long, raise "
                              "steps_per_contact");
   }

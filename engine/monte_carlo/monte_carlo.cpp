@@ -10,7 +10,7 @@ const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& s
 }
 
 std::vector<Column> columns(const MonteCarlo&) {
-  return {{.name = sweeps_column,
+  return {{.name = MonteCarlo::work_column,
            .units = "1",
            .long_name = "sweeps of the relaxation after the tap",
            .source = "jostle",

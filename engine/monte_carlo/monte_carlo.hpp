@@ -23,6 +23,10 @@ struct Relaxation {
 };
 
 struct MonteCarlo {
+  static constexpr const char *unit = "trials", *round = "sweeps";
+  /// Sweeps of the relaxation after each tap, a sweep being n_spheres trials: what a tap takes.
+  static constexpr const char* work_column = "sweeps";
+
   Relaxation relax;                                      // after every tap
   std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself
   bool operator==(const MonteCarlo&) const = default;
@@ -31,9 +35,6 @@ struct MonteCarlo {
 /// How the start is relaxed before tap 0 is recorded: as `relax_start` says; without it a random
 /// settle as after a tap, any other start not at all (null).
 const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& start);
-
-/// Sweeps of the relaxation after each tap, a sweep being n_spheres trials: what a tap takes.
-inline constexpr const char* sweeps_column = "sweeps";
 
 /// What is recorded of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
 /// without trials; capped; dropped_offsets, of a shake.
