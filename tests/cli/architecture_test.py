@@ -53,9 +53,9 @@ def includes():
 
 # What stands in an anonymous namespace may have any name.
 ANONYMOUS = re.compile(r"^namespace \{.*?^\}  // namespace$", re.DOTALL | re.MULTILINE)
-# A class, struct or enumeration that is defined here: neither declared nor specialised.
-DEFINED = re.compile(r"(?<!template <>\n)^(?:class|struct|enum class|enum)\s+"
-                     r"(?:alignas\([^)]*\)\s*)?(\w+)\b(?!::)[^;{(]*\{", re.MULTILINE)
+# A class, struct, union or enumeration that is defined here: neither declared nor specialised.
+DEFINED = re.compile(r"(?<!template <>\n)^(?:template <[^>\n]+> )?(?:class|struct|union|enum class|enum)"
+                     r"\s+(?:alignas\([^)]*\)\s*)?(\w+)\b(?!::|<)[^;{(]*\{", re.MULTILINE)
 
 
 def types_by_name():
