@@ -152,9 +152,12 @@ TEST_CASE("Where B and tau diverge together, their ratio has limits that hold th
 
 TEST_CASE("The calibration table: every law, 2 to 20 realizations, memories up to 0.99",
           "[nightly]") {
+  // Hours in all: -c NAME takes one law.
   for (const Law& law : laws()) {
-    for (const int n_realizations : {2, 3, 4, 10, 20}) {
-      for (const double rho : {0.0, 0.9, 0.99}) check(law, n_realizations, rho, 200);
+    DYNAMIC_SECTION(law.model) {
+      for (const int n_realizations : {2, 3, 4, 10, 20}) {
+        for (const double rho : {0.0, 0.9, 0.99}) check(law, n_realizations, rho, 200);
+      }
     }
   }
 }
