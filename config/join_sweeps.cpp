@@ -66,8 +66,8 @@ void add_rows(SweepAxis& axis, const SweepAxis& more) {
 }  // namespace
 
 ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) {
-  ParsedScene first = parse_scene(resolved_scene.dump());
-  const ParsedScene other = parse_scene(other_resolved.dump());
+  ParsedScene first = checked_scene(resolved_scene);
+  const ParsedScene other = checked_scene(other_resolved);
   if (!first.scene) return first;
   if (!other.scene) return other;
   ParsedScene refused;
@@ -81,7 +81,7 @@ ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) 
   for (std::size_t i = 0; i < first.scene->sweep.size(); ++i) {
     add_rows(first.scene->sweep[i], other.scene->sweep[i]);
   }
-  return parse_scene(resolved(*first.scene).dump());
+  return checked_scene(resolved(*first.scene));
 }
 
 }  // namespace jostle::inline config

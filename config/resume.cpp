@@ -131,7 +131,7 @@ void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& fault
 }  // namespace
 
 std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resolved) {
-  const ParsedScene was = parse_scene(old_resolved.dump()), is = parse_scene(new_resolved.dump());
+  const ParsedScene was = checked_scene(old_resolved), is = checked_scene(new_resolved);
   if (!was.scene) {
     return {{"", "the scene of the stored run is no scene for this version of the program: " +
                      was.faults.front().pointer + ": " + was.faults.front().message}};

@@ -154,6 +154,9 @@ struct ParsedScene {
 /// keys, wrong types, values out of range or at odds with each other, also at single sweep points.
 ParsedScene parse_scene(std::string_view json_text);
 
+/// The same of what is no text any more: every fault but those of syntax.
+ParsedScene checked_scene(const Json& document);
+
 /// What is measured of packings, or every fault that keeps the text from being that.
 struct ParsedStructure {
   std::optional<StructureSettings> settings;
@@ -172,7 +175,7 @@ std::vector<std::string> parts_of(const StructureSettings& settings);
 /// The settings with exactly the named parts; those that they lack have their defaults.
 StructureSettings with_parts(StructureSettings settings, std::span<const std::string> names);
 
-/// The scene with every default written out, keys in a fixed order: parse_scene(resolved(s).dump())
+/// The scene with every default written out, keys in a fixed order: checked_scene(resolved(s))
 /// gives s again.
 Json resolved(const Scene& scene);
 
