@@ -3,9 +3,12 @@
 add_library(jostle_options INTERFACE)
 target_compile_features(jostle_options INTERFACE cxx_std_20)
 target_compile_options(jostle_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
-# Assertions name their sources from the root: the same bytes, whatever folder this is built in.
-target_compile_options(jostle_options INTERFACE
-                       $<$<CONFIG:Release>:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>)
+# Assertions name their sources from the root: the same bytes, whatever folder this is built in. A
+# compiler cache may hand paths on as seen from the folder of the build.
+file(RELATIVE_PATH root_from_build ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR})
+target_compile_options(
+  jostle_options INTERFACE $<$<CONFIG:Release>:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=
+                           -fmacro-prefix-map=${root_from_build}=>)
 # The trial loop joins conditions with | where a branch would cost.
 target_compile_options(jostle_options
                        INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
