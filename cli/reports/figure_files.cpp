@@ -11,6 +11,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
 #include "study/figures/figures.hpp"
+#include "study/report/study_words.hpp"
 #include "study/results_input.hpp"
 
 namespace jostle::inline cli {
@@ -77,8 +78,9 @@ std::string write_figures(std::span<const ResultsFile> files, const FigureFolder
     if (!words.insert(word).second) word += fmt::format("-file-{}", i + 1);
     for (Figure& figure : drawn.figures) {
       if (files.size() > 1) figure.name = word + "-" + figure.name;
-      figures.push_back({std::move(figure), fmt::format("Of {}, drawn by jostle {} ({})", name,
-                                                        by.version, by.git_revision)});
+      figures.push_back(
+          {std::move(figure), fmt::format("Of {}: {}. Drawn by jostle {} ({})", name,
+                                          study_words(file.study()), by.version, by.git_revision)});
     }
   }
   if (figures.empty()) {

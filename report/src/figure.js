@@ -67,10 +67,21 @@ class Figure {
 
   describe() {
     this.spec = this.make();
+    this.writeCaption();
+  }
+
+  writeCaption() {
     const {title, caption, source} = this.spec;
     this.title.textContent = title;
     this.caption.replaceChildren(caption,
-      source ? element("span", {class: "source"}, ` Source: ${source}.`) : "");
+      source ? element("span", {class: "source"}, ` Source: ${source}.`) : "",
+      this.study ? element("span", {class: "source"}, ` ${this.study}.`) : "");
+  }
+
+  /// Of what study it is, so that the caption stands alone.
+  of(study) {
+    this.study = study;
+    this.writeCaption();
   }
 
   draw() {
@@ -79,7 +90,7 @@ class Figure {
     this.isDrawn = true;
     const svg = drawn(this.spec, {width: this.width, dark: isDark()});
     svg.setAttribute("role", "img");
-    svg.setAttribute("aria-label", `${this.spec.title}. ${this.spec.caption}`);
+    svg.setAttribute("aria-label", `${this.spec.title}. ${this.caption.textContent}`);
     this.canvas.replaceChildren(svg);
   }
 
@@ -107,7 +118,7 @@ class Figure {
   saveSvg() {
     const svg = drawn(this.spec, {width: 680, dark: false, still: true});
     svg.insertBefore(element("title", {}, this.spec.title), svg.firstChild);
-    svg.insertBefore(element("desc", {}, this.spec.caption), svg.firstChild.nextSibling);
+    svg.insertBefore(element("desc", {}, this.caption.textContent), svg.firstChild.nextSibling);
     save(this.name("svg"), '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(svg),
       "image/svg+xml");
   }

@@ -102,10 +102,12 @@ class Chapter {
                       steadySection(this), ageingSection(this), spectraSection(this), hysteresisSection(this), sweepSection(this),
                       ...structureSections(this), engineSection(this), costSection(this), precisionSection(this), otherSection(this)].filter(Boolean);
     const description = run.scene.description;
-    return element("article", {id: this.id, "aria-label": run.file},
+    const article = element("article", {id: this.id, "aria-label": run.file},
       element("header", {class: "chapter"}, element("h2", {}, run.scene.name || run.file), element("p", {class: "file"}, run.file),
         description ? element("p", {class: "lead"}, Array.isArray(description) ? description.join(" ") : String(description)) : null),
       leftOut(this), sections);
+    for (const node of article.querySelectorAll("figure.plot")) node.figure.of(`${run.file}: ${run.about}`);
+    return article;
   }
 }
 

@@ -120,8 +120,7 @@ void CostStudy::read_times(const ResultsFile& file) {
 }
 
 std::string CostStudy::work_name() const {
-  const bool sweeps = std::holds_alternative<MonteCarlo>(settings_.front().engine);
-  return sweeps ? "sweeps" : "simulated seconds";
+  return jostle::work_name(settings_.front().engine);
 }
 
 double CostStudy::realization_seconds(std::size_t setting) const {

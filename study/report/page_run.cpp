@@ -7,6 +7,7 @@
 
 #include "results/export/container_text.hpp"
 #include "study/report/page_json.hpp"
+#include "study/report/study_words.hpp"
 #include "study/report/thinning.hpp"
 #include "study/scenes/stored_scene.hpp"
 
@@ -73,6 +74,7 @@ Json page_points(const Study& study, const std::vector<Tally>& tallies) {
                       {"spheres", point.n_spheres},
                       {"taps", point.taps},
                       {"seed", fmt::to_string(point.seed)},
+                      {"bed", bed_words(point)},
                       {"container", page_container(point.container)},
                       {"realizations", tallies[p].json()}});
   }
@@ -120,6 +122,7 @@ Json page_run(const ResultsFile& file, const std::string& digest,
           {"state", name_of(file.state())},
           {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
           {"digest", digest},
+          {"about", study_words(study)},
           {"realizations_a_point", study.realizations},
           {"realizations", all.json()},
           {"unit", page_text(study.points.empty() ? "trials" : study.points.front().unit)},

@@ -92,6 +92,9 @@ class Everything(Figures):
         self.assert_drawn()
 
     def curves(self, file):
+        first = (self.folder / "figures/mean-height.dat").read_text().split("\n")[0]
+        self.assertRegex(first, r"^# Of everything\.h5: 48 spheres in .* diameters; 3 realizations a sweep "
+                                r"point\. Drawn by jostle ")
         series = self.data("mean-height")
         self.assertEqual([name for name, _, _ in series],
                          ["dilate = 0.02", "dilate = 0.05", "dilate = 0.1"])

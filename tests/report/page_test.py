@@ -88,6 +88,7 @@ class Sections(Open):
                             caption: arguments[0].querySelector("figcaption").textContent};""", figure)
                 self.assertGreater(facts["marks"], 2)
                 self.assertGreater(len(facts["caption"]), 20)
+                self.assertRegex(facts["caption"], r"\.h5: .* realizations")  # it stands alone
                 self.assertIn(title, facts["label"])
                 self.assertTrue(facts["inside"], "a text leaves its figure")
                 for bad in ("NaN", "Infinity", "undefined", "null"):

@@ -42,15 +42,6 @@ function definitions(rows, kind) {
     element("div", {}, element("dt", {}, term), element("dd", {}, value))));
 }
 
-const containers = {periodic: "periodic sides", walls: "four walls", cylinder: "a cylinder",
-                    fully_periodic: "a fully periodic box"};
-
-function bed(point) {
-  const {kind, width_x: x, width_y: y} = point.container;
-  const size = kind === "cylinder" ? `${x} diameters wide` : `${x} \u00d7 ${y} diameters`;
-  return `${plural(point.spheres, "sphere")} in ${containers[kind]}, ${size}`;
-}
-
 function range(values) {
   const low = Math.min(...values), high = Math.max(...values);
   return low === high ? count(low) : `${count(low)} to ${count(high)}`;
@@ -65,7 +56,7 @@ export function runSection(chapter) {
   const stateText = {complete: "complete", interrupted: "interrupted: the run is not finished", running: "running"}[run.state];
   const facts = definitions([
     ["state", run.shard.count > 1 ? `${stateText}; share ${run.shard.index} of ${run.shard.count}` : stateText],
-    ["bed", run.points.length > 0 ? bed(run.points[0]) : ""],
+    ["bed", run.points[0]?.bed ?? ""],
     ["taps", range(run.points.map((point) => point.taps))],
     ["sweep points", count(run.n_points)],
     ["realizations", `${count(run.realizations_a_point)} a sweep point: ${states}`],
