@@ -61,6 +61,10 @@ const char* work_column(const EngineSettings& settings) {
   return std::visit([](const auto& engine) { return engine.work_column; }, settings);
 }
 
+const char* work_name(const EngineSettings& settings) {
+  return std::visit([](const auto& engine) { return engine.work; }, settings);
+}
+
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,
                                         const DynamicsStreams& streams) {
   return std::visit([&](const auto& engine) { return make_dynamics(engine, streams); }, settings);

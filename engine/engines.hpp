@@ -33,8 +33,9 @@ const char* unit_name(const EngineSettings& settings);
 const char* round_name(const EngineSettings& settings);
 
 /// Of what the engine records, what the work of a tap grows with: "sweeps", or "seconds" of
-/// simulated time.
+/// simulated time; and what reports call that: "sweeps", "simulated seconds".
 const char* work_column(const EngineSettings& settings);
+const char* work_name(const EngineSettings& settings);
 
 /// The mechanics of one realization, before anything is loaded.
 std::unique_ptr<Dynamics> make_dynamics(const EngineSettings& settings,

@@ -18,6 +18,7 @@ struct LockOwner {
   std::optional<SlurmJob> job;   // where it is part of one
   bool alive = false;  // known on its own host, and where Slurm knows its job; else taken to be
 };
+/// Nothing where there is no lock. Throws ResultsError where it cannot be read.
 std::optional<LockOwner> lock_owner(const std::string& results_path);
 /// Of many files: Slurm is asked once for all.
 std::optional<LockOwner> lock_owner(const std::string& results_path, SlurmQueue& queue);
@@ -30,7 +31,7 @@ struct RunStatus {
   std::uint64_t file_bytes = 0, parts_bytes = 0;
 };
 
-/// Looks without disturbing: a live run may go on while this reads.
+/// Looks without disturbing: a live run may go on while this reads. Throws ResultsError.
 RunStatus run_status(const std::string& results_path);
 
 /// A file and its status, of the realizations of its share. Of the file's checksum it is only
@@ -39,7 +40,8 @@ struct LiveLook {
   ResultsFile file;
   RunStatus status;
 };
-/// `sibling`: a file of the same study, if there is one; it makes this quicker.
+/// `sibling`: a file of the same study, if there is one; it makes this quicker. Throws
+/// ResultsError.
 LiveLook look_at_run(const std::string& results_path, SlurmQueue& queue,
                      const ResultsFile* sibling = nullptr);
 

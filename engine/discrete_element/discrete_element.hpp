@@ -55,7 +55,8 @@ using Rest = std::variant<QuietRest, TimedRest>;
 
 struct DiscreteElement {
   static constexpr const char *unit = "sphere steps", *round = "time steps";
-  static constexpr const char* work_column = "seconds";  // simulated time of a tap
+  /// Simulated time of a tap.
+  static constexpr const char *work_column = "seconds", *work = "simulated seconds";
 
   double diameter = 0.02;  // m
   double density = 1200;   // kg/m^3

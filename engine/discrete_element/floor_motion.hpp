@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "engine/bed/elementary.hpp"
 
@@ -21,7 +22,7 @@ struct FloorMotion {
   };
   Place at(double time) const {
     if (!(time < duration())) return {};
-    constexpr double pi = 3.14159265358979323846;
+    using std::numbers::pi;
     const double turns = frequency * time;
     const double quarter = 0.5 * pi * (turns - std::floor(turns) - 0.5);  // of the angle less pi
     const SineCosine angle = doubled(doubled(sine_cosine(quarter)));

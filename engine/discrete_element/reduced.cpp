@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "engine/bed/container.hpp"
@@ -11,7 +12,7 @@ namespace jostle::inline engine {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // Of a contact whose two bodies have this mass together: 1/2 of two spheres, 1 of one and a side.
 // `unit` is the stiffness m g / d.

@@ -25,7 +25,7 @@ struct Relaxation {
 struct MonteCarlo {
   static constexpr const char *unit = "trials", *round = "sweeps";
   /// Sweeps of the relaxation after each tap, a sweep being n_spheres trials: what a tap takes.
-  static constexpr const char* work_column = "sweeps";
+  static constexpr const char *work_column = "sweeps", *work = "sweeps";
 
   Relaxation relax;                                      // after every tap
   std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import h5py
 import numpy as np
 
-from .errors import NotThere
+from .errors import NotThere, ResultsError
 from .text import attribute, text, texts
 
 if TYPE_CHECKING:
@@ -253,6 +253,8 @@ class Point:
         attributes = self._file[f"sweep/{self._name}"].attrs
         x, y, z = attributes["widths"]
         kind = text(attributes["container"])
+        if kind not in ("periodic", "walls", "cylinder", "fully_periodic"):
+            raise ResultsError(f"a container of a kind that this version does not know: {kind}")
         sides = "periodic" if "periodic" in kind else "none"
         open_top = kind != "fully_periodic"
         if kind == "cylinder":

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "engine/bed/elementary.hpp"
@@ -70,7 +71,7 @@ class CubicDirections {
   }
   static Bins bins(double step) { return cubic_bins(step); }
   static double probability(double share, const Bins& bins, double step) {
-    constexpr double solid_angle = 2 * 3.14159265358979323846;
+    constexpr double solid_angle = 2 * std::numbers::pi;
     const double ratio = bins.longest / (2 * step);
     return share * (ratio * ratio * ratio) * (solid_angle / 3);
   }

@@ -3,6 +3,8 @@
 // static functions only.
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
+#include <numbers>
+
 #include "engine/bed/elementary.hpp"
 
 namespace jostle::inline engine::JOSTLE_KERNELS {
@@ -208,7 +210,7 @@ inline double unit_interval(std::uint32_t w) {
 
 void candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch) {
   constexpr std::uint32_t n = CandidateBatch::size;
-  const double half_sector = 3.14159265358979323846 / n_sectors;
+  const double half_sector = std::numbers::pi / n_sectors;
   alignas(64) std::uint32_t w[2][n];
   philox_words(key, first, 2, n, w[0], batch.theta, w[1], batch.length[0]);
   for (std::uint32_t t = 0; t < n; ++t) batch.waiting[t] = -natural_log(unit_interval(w[0][t]));

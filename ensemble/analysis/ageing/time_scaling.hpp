@@ -44,7 +44,9 @@ struct TimeScaling {
   AgeTrend logarithmic;
 };
 
+/// No numbers, and both verdicts "cannot decide: WHY".
 TimeScaling cannot_scale(const std::string& why);
+/// Both, of the curves of the grid's waiting times; `name`: of A in words.
 TimeScaling time_scaling(const LogCurves& curves, const AgeingGrid& grid, const std::string& name);
 
 }  // namespace jostle::inline ensemble

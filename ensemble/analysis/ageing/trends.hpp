@@ -15,15 +15,17 @@ struct AgeTrend {
   std::string verdict;
 };
 
+/// No numbers, and the verdict "cannot decide: WHY".
 AgeTrend cannot_decide(const std::string& why);
 
-/// Of what the weights times `values`, over the sum of the weights' squares, estimate the logarithm
-/// of the factor, both [n_points].
+/// The words of a test.
 struct TestedChange {
   std::string of;        // "a": what may change
   std::string changes;   // the verdict where it does: "a changes with age"
   std::string does_not;  // and where a factor of ten would have been found
 };
+/// The logarithm of the factor is the sum of weights times `values` over that of the weights'
+/// squares, both [n_points].
 AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
                        const Eigen::VectorXd& values, const TestedChange& words);
 
