@@ -106,7 +106,7 @@ class Chapter {
       element("header", {class: "chapter"}, element("h2", {}, run.scene.name || run.file), element("p", {class: "file"}, run.file),
         description ? element("p", {class: "lead"}, Array.isArray(description) ? description.join(" ") : String(description)) : null),
       leftOut(this), sections);
-    for (const node of article.querySelectorAll("figure.plot")) node.figure.of(`${run.file}: ${run.about}`);
+    for (const node of article.querySelectorAll("figure.plot")) node.figure.of(`Of ${run.file}: ${run.about}`);
     return article;
   }
 }
