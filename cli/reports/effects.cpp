@@ -5,14 +5,21 @@
 namespace jostle::inline cli {
 namespace {
 
+constexpr std::size_t longest_list = 40, first_of_long = 10;  // elements
+
 /// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
 std::string in_words(const Json& value) {
   if (value.is_string()) return value.text();
   if (!value.is_structured()) return value.dump();
   std::string words;
   if (value.is_array()) {
-    for (const Json& element : value.elements()) {
-      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(element));
+    const auto& elements = value.elements();
+    const bool is_long = elements.size() > longest_list;
+    for (std::size_t i = 0; i < (is_long ? first_of_long : elements.size()); ++i) {
+      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(elements[i]));
+    }
+    if (is_long) {
+      words += fmt::format("; ...; {} ({} values)", in_words(elements.back()), elements.size());
     }
     return words;
   }

@@ -14,6 +14,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "fitting/value_text.hpp"
 #include "study/amounts.hpp"
+#include "study/report/thinning.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -124,6 +125,7 @@ std::string failure_line(const RealizationSummary& failed, const StudyPoint& poi
 }
 
 constexpr std::size_t most_failures = 20;  // that are told one by one
+constexpr std::size_t most_points = 40;    // whose curves are shown, and those with failures
 
 std::string further_failures(std::size_t n) {
   return n <= most_failures ? ""
@@ -201,6 +203,21 @@ std::string verdict_line(const ResultsFile& file,
   return text + "\n\n";
 }
 
+/// Points whose curves are shown: of long sweeps some, the first with failures among them.
+std::vector<std::size_t> shown_points(std::span<const RealizationSummary> realizations,
+                                      std::size_t a_point, const Layout& layout) {
+  const std::size_t n_points = realizations.size() / a_point;
+  if (layout.columns == Columns::all) return evenly_spread(n_points, n_points);
+  std::vector<std::size_t> with_failures;
+  for (std::size_t i = 0; i < realizations.size() && with_failures.size() < most_failures; ++i) {
+    const std::size_t point = i / a_point;
+    const bool is_known = !with_failures.empty() && with_failures.back() == point;
+    if (realizations[i].status == RealizationStatus::failed && !is_known)
+      with_failures.push_back(point);
+  }
+  return joined(evenly_spread(n_points, most_points), with_failures);
+}
+
 /// How numbers are written, and what is not shown.
 std::string legend(const Layout& layout) {
   std::string text = "a(b): mean over realizations, b its standard error in the last digits of a";
@@ -225,9 +242,20 @@ std::string report(const ResultsFile& file, const Layout& layout) {
   const std::vector<RealizationSummary> all = file.realizations();
   const std::size_t a_point = file.study().realizations;
   std::string text = wrapped(verdict_line(file, all), layout.width);
-  for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
+  const std::vector<std::size_t> shown = shown_points(all, a_point, layout);
+  if (const std::size_t n = file.study().points.size(); shown.size() < n) {
+    const std::size_t even = std::min(n, most_points);
+    text +=
+        wrapped(fmt::format("{} of {} sweep points, evenly spread{}; --wide shows all\n\n", even, n,
+                            shown.size() > even
+                                ? fmt::format(", and {} more with failures", shown.size() - even)
+                                : ""),
+                layout.width);
+  }
+  for (const std::size_t point : shown) {
     if (point > 0) text += '\n';
-    text += point_report(file, point, std::span(all).subspan(point * a_point, a_point), layout);
+    text += point_report(file, static_cast<std::uint32_t>(point),
+                         std::span(all).subspan(point * a_point, a_point), layout);
   }
   return text + wrapped(legend(layout), layout.width);
 }

@@ -96,7 +96,7 @@ void add_wide(Command& command, Layout& layout) {
   layout.width = screen().width;
   command.add_flag(
       "--wide", [&layout] { layout.columns = Columns::all; },
-      "Print all columns, lines as long as they are");
+      "Print all columns, rows and sweep points, lines as long as they are");
 }
 
 void print_curves(const ResultsFile& file) {

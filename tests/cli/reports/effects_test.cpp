@@ -36,3 +36,10 @@ TEST_CASE("Effects are named with their settings") {
                        Contains("off        sweep, until, fits, "
                                 "analyse, structure\n"));
 }
+
+TEST_CASE("A long list is named by its first values, its last and their number") {
+  std::string values = "1";
+  for (int i = 2; i <= 100; ++i) values += ", " + std::to_string(i);
+  const std::string text = effects_text(Json::parse(R"({"sweep": {"count": [)" + values + "]}}"));
+  CHECK_THAT(text, Contains("count 1; 2; 3; 4; 5; 6; 7; 8; 9; 10; ...; 100 (100 values)\n"));
+}

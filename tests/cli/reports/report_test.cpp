@@ -8,6 +8,7 @@
 #include "tests/results/temporary_folder.hpp"
 
 using namespace jostle;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -135,4 +136,30 @@ TEST_CASE("A report shows the columns of an engine as they ask for") {
   CHECK(text.find("  3.0  ") != std::string::npos);
   CHECK(text.find("\nno tap was late\n") != std::string::npos);
   CHECK(text.find("\ntaps lost 43.8 % of it\n") != std::string::npos);
+}
+
+TEST_CASE("Of a long sweep some points are shown, and all that failed") {
+  const TemporaryFolder folder;
+  const Study study = synthetic::study({.points = 101, .realizations = 1, .snapshot_taps = {}});
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  for (std::uint32_t point = 0; point < 101; ++point) {
+    synthetic::Conduct conduct;
+    if (point == 50) conduct.fail_at_tap = 4;
+    synthetic::run(*store, study, {point, 0}, conduct);
+  }
+  store->finish();
+  const ResultsFile file(folder / "a.h5");
+  const auto points_in = [](const std::string& text) {
+    std::size_t n = 0;
+    for (std::size_t at = 0; (at = text.find("\nepsilon = ", at)) != std::string::npos; ++at) ++n;
+    return n;
+  };
+  const std::string some = report(file, {.width = 100});
+  CHECK_THAT(some, Contains("40 of 101 sweep points, evenly spread, and 1 more with failures; "
+                            "--wide shows all\n"));
+  CHECK(points_in(some) == 41);
+  CHECK_THAT(some, Contains("realization 0 failed (seed"));
+  const std::string all = report(file, {.columns = Columns::all});
+  CHECK_THAT(all, !Contains("shows all"));
+  CHECK(points_in(all) == 101);
 }
