@@ -1,9 +1,10 @@
-"""Figures 2 to 5 of Philippe & Bideau: curves against taps, and what hangs on the strength."""
+"""Figures 2 to 5 of Philippe & Bideau, and their moves: curves against taps, and what hangs on the
+strength and on the settings."""
 import numpy as np
 
 from page_text import at, interval, parameters, steadiness, table, window
-from verdicts import (Estimate, detectable, is_positive, is_within, is_zero, of_interval,
-                      of_program, undecided)
+from verdicts import (Estimate, are_positive, detectable, is_positive, is_within, is_zero,
+                      of_interval, of_program, undecided)
 
 
 def compaction(run):
@@ -113,6 +114,50 @@ def maximum_of(sweep, statement, symbol):
     if np.isfinite(sweep["maximum_at"]):
         found += f"; a parabola's is at {symbol} = {sweep['maximum_at']:.3g}"
     return of_program(statement, found, "two lines (Simonsohn 2018)", sweep["maximum_p"], True)
+
+
+THETAS, STEPS = (0.0982, 0.3927, 0.589, 0.7854, 1.1781, 1.5708), (0.003, 0.03, 0.1, 0.3, 1.0)
+
+
+def moves(run):
+    """Each pair of theta_0 and d_max, and two other laws of the same width."""
+    zipped = run.scene["sweep"]["zip"]
+    settings = list(zip(*(zipped[f"/relax/polar/{name}"]
+                          for name in ("theta0", "max_step", "law"))))
+    curves = dict(zip(settings, run.curves("corrected_fraction")))
+    sweeps = dict(zip(settings, run.curves("sweeps")))
+
+    def gain(theta, step=0.1):
+        curve = curves[theta, step, "gaussian"]
+        return curve[30] - curve[0]
+    rows = [[f"{theta / np.pi:.4g} pi"] + [
+        f"{Estimate.of(1e4 * gain(theta, step)).text(0)}; "
+        f"{np.mean(sweeps[theta, step, 'gaussian'][1:]):.0f}" for step in STEPS]
+        for theta in THETAS]
+    at_best = gain(0.7854)
+    statements = [
+        are_positive("theta_0 = pi/4 compacts most, d_max = R/5",
+                     [Estimate.of(at_best - gain(theta)) for theta in THETAS if theta != 0.7854],
+                     "gain of 30 taps at pi/4 less that at " + ", ".join(
+                         f"{theta / np.pi:.4g} pi" for theta in THETAS if theta != 0.7854) + ": ",
+                     name="paired t-tests"),
+        is_positive("a very small theta_0 decompacts", Estimate.of(-gain(THETAS[0])),
+                    "fall of Phi_c in 30 taps at pi/32: ")]
+    for step, name in ((STEPS[0], "a very small"), (STEPS[-1], "a large")):
+        statements.append(is_positive(
+            f"{name} d_max freezes the bed",
+            Estimate.of(np.abs(at_best) - np.abs(gain(0.7854, step))),
+            f"size of the change in 30 taps, at d_max = 0.1 less at {step:g}: ",
+            name="paired t-test"))
+    gaussian = curves[0.7854, 0.1, "gaussian"]
+    for (_, _, law), curve in list(curves.items())[-2:]:
+        statements.append(is_within(
+            f"the width of the law matters, not its form: {law} (0.002)",
+            Estimate.of(curve[30] - gaussian[30]), 0.002,
+            f"Phi_c at tap 30, {law} less Gaussian: "))
+    text = table(["10^4 (Phi_c(30) - Phi_c(0)); sweeps a tap, at theta_0"] +
+                 [f"d_max = {step:g} d" for step in STEPS], rows)
+    return text + f"\n\nPhi_c(0) = {at(gaussian, 0)}.", statements
 
 
 def steps_of(curve, found):

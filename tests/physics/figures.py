@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
 """Runs the reduced scenes of the papers' figures and judges what came out in docs/physics-results.md.
 
-figures.py JOSTLE FOLDER PAGE [FIGURE ...]: results are kept in FOLDER, and a finished one is not run
-again. Sections of other figures stay as they are."""
-import functools
+figures.py JOSTLE FOLDER PAGE [--hours H] [FIGURE ...]: results are kept in FOLDER, and a finished
+one is not run again. After H hours the run under way stops, and the next call goes on with it.
+Sections of other figures stay as they are."""
+import argparse
 import pathlib
 import re
-import sys
+import time
 
-from compaction_figures import ageing, bell, compaction, fluctuations, hysteresis
+import numpy as np
+
+from compaction_figures import ageing, bell, compaction, fluctuations, hysteresis, moves
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
-                          published_rules)
+                          published_rules, readings)
 from page_text import table, verdict_table
 from runs import Run
 from structure_figures import periodic_profiles, pore_sizes, void_probability, wall_profiles
@@ -50,6 +53,11 @@ FIGURES = {
              "The tail of large pores shrinks and is exponential, small pores hardly change; nu "
              "moves as Phi_c does, v0 follows nu; 9550 to 10 250 pores. Table I is Bernal's, from "
              "models built by hand."),
+    "pb-moves": (f"{PB}/moves", moves, [],
+                 f"{PB_SETUP}, d_max = R/5; strength and taps not printed",
+                 "theta_0 = pi/4 gives the greatest rate of compaction: a very small one decompacts, "
+                 "a large one is less efficient; a very small or large d_max nearly freezes the "
+                 "packing; of the law of the angle only the width matters."),
     "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
             "The lift of 0.25 densifies much faster than the held dilation by 1.025, which gives "
             "little or nothing."),
@@ -64,11 +72,13 @@ FIGURES = {
             "upwards from the floor."),
     "dr6-published": (f"{DR}/fig6-published", published_rules, [], f"{DR_SETUP}; 90 000 taps",
                       "rho = 0.567, 0.578, 0.597 and 0.654 after 0, 50, 250 and 90 000 taps."),
+    "dr6-readings": (f"{DR}/fig6-readings", readings, [], f"{DR_SETUP}; 90 000 taps",
+                     "rho = 0.578 and 0.597 after 50 and 250 taps."),
 }
 
 HEAD = """# What the papers' figures become here
 
-Made by `./dev physics [FIGURE ...]` from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
+Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
 
 **Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides. Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's."""
 
@@ -125,36 +135,52 @@ def summary(sections):
     return table(["figure", "agrees", "disagrees", "cannot decide"], rows)
 
 
-def figure_run(jostle, scene, folder):
-    return Run(jostle, scene, folder).make()
-
-
 def finished(jostle, scene, folder):
     """A run that is there already; it is not made for another figure's sake."""
     run = Run(jostle, scene, folder)
-    return run.make() if run.is_complete else None
+    if run.is_complete:
+        run.read()
+        return run
+    return None
 
 
-def main(jostle, folder, page, figures):
-    unknown = [figure for figure in figures if figure not in FIGURES]
-    if unknown:
-        sys.exit(f"{unknown[0]}: no such figure; there are {', '.join(FIGURES)}")
-    folder = pathlib.Path(folder)
+def main(jostle, folder, page, figures, deadline):
     folder.mkdir(parents=True, exist_ok=True)
-    page = pathlib.Path(page)
     text = page.read_text() if page.exists() else ""
     sections = {part.split("\n", 1)[0]: "## " + part
                 for part in re.split(r"^## ", text, flags=re.M)[1:]}
-    made = functools.cache(functools.partial(figure_run, jostle, folder=folder))
     for figure in figures or FIGURES:
         print(f"{figure} ...", flush=True)
         scene, _, others, _, _ = FIGURES[figure]
+        run = Run(jostle, scene, folder)
+        if not run.make(deadline):
+            print(f"{figure} is not reached; the next call goes on with {run.path}")
+            break
         others = [finished(jostle, other, folder) for other in others]
-        sections[figure] = section(figure, made(scene), others, text)
+        sections[figure] = section(figure, run, others, text)
         print(sections[figure], flush=True)
         ordered = [sections[name].strip() for name in FIGURES if name in sections]
         page.write_text("\n\n".join([HEAD, summary(sections)] + ordered) + "\n")
 
 
+def arguments():
+    parser = argparse.ArgumentParser(prog="./dev physics", allow_abbrev=False)
+    for path in ("jostle", "folder", "page"):
+        parser.add_argument(path, type=pathlib.Path, help=argparse.SUPPRESS)
+    parser.add_argument("--hours", type=float, default=np.inf, metavar="H",
+                        help="stop after so many hours; the next call goes on")
+    parser.add_argument("figures", nargs="*", metavar="FIGURE",
+                        help=f"all, or some of {', '.join(FIGURES)}")
+    found = parser.parse_args()
+    for figure in found.figures:
+        if figure not in FIGURES:
+            parser.error(f"{figure}: no such figure; there are {', '.join(FIGURES)}")
+    if not found.hours > 0:
+        parser.error("--hours is more than 0")
+    return found
+
+
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:])
+    asked = arguments()
+    main(asked.jostle, asked.folder, asked.page, asked.figures,
+         time.monotonic() + 3600 * asked.hours)

@@ -3,8 +3,8 @@ import numpy as np
 
 from compaction_figures import maximum_of
 from page_text import at, interval, parameters, steadiness, table, window
-from verdicts import (Estimate, are_positive, is_positive, is_within, is_zero, of_interval,
-                      undecided)
+from verdicts import (Estimate, are_positive, are_within, is_positive, is_within, is_zero,
+                      of_interval, undecided)
 
 # A mean of the paper is known to half a unit of its last digit, and its own error is at most 0.001
 # ("realizations were added until sigma <= 0.001").
@@ -113,11 +113,47 @@ def densities(curve, printed):
                       f"{at(curve, tap)}; from it ") for tap, value in printed.items()]
 
 
+def gain_of_two_hundred(curve):
+    gain = Estimate.of(curve[250] - curve[50])
+    return is_within("from tap 50 to 250 it gains 0.019",
+                     Estimate.of(curve[250] - curve[50] - 0.019), 2 * PRINTED,
+                     f"{gain.text()}; from it ")
+
+
 def published_rules(run):
-    curve, shown = run.curves("bulk_fraction")[0], (0, 1, 2, 5, 10, 20, 30, 40, 50)
-    statements = densities(curve, {0: 0.567, 50: 0.578})
+    curve, shown = run.curves("bulk_fraction")[0], (0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 250)
+    statements = densities(curve, {0: 0.567, 50: 0.578, 250: 0.597})
     return table(["tap"] + [str(tap) for tap in shown],
-                 [["Phi"] + [at(curve, tap) for tap in shown]]), statements
+                 [["Phi"] + [at(curve, tap) for tap in shown]]), \
+        statements + [gain_of_two_hundred(curve)]
+
+
+def reading(max_step, reset_each_tap, measure_start, of):
+    """What the published rules are taken to be, in words."""
+    return "; ".join([
+        f"first step {max_step:g}",
+        "reset at each tap" if reset_each_tap else "handed on",
+        "first compared: " + ("right after the tap" if measure_start else "after 1e6 trials"),
+        "half of " + ("all trials" if of == "all_trials" else "those that do not rise")])
+
+
+def readings(run):
+    """Each reading against the two densities that the paper prints."""
+    taps, printed = (0, 1, 10, 50, 100, 250), {50: 0.578, 250: 0.597}
+    rows, statements = [], []
+    settings = {pointer.rsplit("/", 1)[1]: values
+                for pointer, values in run.scene["sweep"]["zip"].items()}
+    for place, (curve, sweeps) in enumerate(zip(run.curves("bulk_fraction"),
+                                                run.curves("sweeps"))):
+        words = reading(**{name: values[place] for name, values in settings.items()})
+        rows.append([words] + [at(curve, tap) for tap in taps] +
+                    [f"{np.mean(sweeps[1:]):.0f}"])
+        statements.append(are_within(
+            f"rho = 0.578 and 0.597 after 50 and 250 taps; {words}",
+            [Estimate.of(curve[tap] - value) for tap, value in printed.items()], PRINTED,
+            " and ".join(at(curve, tap) for tap in printed)))
+    return table(["reading"] + [f"Phi, tap {tap}" for tap in taps] + ["sweeps a tap"],
+                 rows), statements
 
 
 def layers(run):
@@ -145,8 +181,7 @@ def layers(run):
             f"make {order['fcc'][-1]:.3f} and {order['hcp'][-1]:.3f} of the spheres of the region.",
             table(["fcc and hcp at height"] + [f"{height:g}" for height in heights], order_rows)]
     statements = densities(bulk, {0: 0.567, 50: 0.578, 250: 0.597}) + [
-        is_within("from tap 50 to 250 it gains 0.019", Estimate.of(bulk[250] - bulk[50] - 0.019),
-                  2 * PRINTED, f"{Estimate.of(bulk[250] - bulk[50]).text()}; from it "),
+        gain_of_two_hundred(bulk),
         is_positive("layers grow with taps", Estimate.of(each[:, -1] - each[:, 0]),
                     f"grown layers, tap {taps[-1]} less tap 0: ", digits=2, name="paired t-test"),
         is_positive("they grow upwards from the floor", Estimate.of(

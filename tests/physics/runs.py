@@ -3,12 +3,15 @@ import json
 import pathlib
 import re
 import subprocess
+import sys
+import time
 
 import h5py
 import numpy as np
 
 from verdicts import Estimate
 
+STOPPED = 75  # exit code of a run that a signal or its time limit has stopped
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -47,17 +50,29 @@ class Run:
         self.scene_path = ROOT / "config" / "scenes" / paper / "reduced" / (figure + ".json")
         self.scene = json.loads(self.scene_path.read_text())
 
-    def make(self):
-        """Runs what is not there yet, and reads the rest."""
-        subprocess.run([self.jostle, "run", self.scene_path, "-o", self.path, "--resume",
-                        "--no-progress"], check=True, stdout=subprocess.DEVNULL)
+    def make(self, deadline=np.inf):
+        """Runs what is not there yet, at low priority, and reads the rest. False: the deadline
+        (time.monotonic()) has passed first; what was run is kept."""
+        command = [self.jostle, "run", self.scene_path, "-o", self.path, "--resume",
+                   "--no-progress"]
+        if np.isfinite(deadline):
+            command += ["--time-limit", f"{max(1, int(deadline - time.monotonic()))}s"]
+        code = subprocess.run(["nice", "-n", "19", *map(str, command)],
+                              stdout=subprocess.DEVNULL).returncode
+        if code == STOPPED:
+            return False
+        if code != 0:
+            sys.exit(f"{self.name} was not run; if {self.path} is of another scene, move it away")
+        self.read()
+        return True
+
+    def read(self):
         with h5py.File(self.path) as file:
             self.labels = [label.decode() for label in file["sweep/label"][:]]
             self.observables = {point: {name: data[:] for name, data in group.items()}
                                 for point, group in sorted(file["observables"].items())}
             self.seconds = sum(float(point["seconds"][:].sum())
                                for point in file["timing"].values())
-        return self
 
     @property
     def is_complete(self):

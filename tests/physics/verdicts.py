@@ -159,6 +159,19 @@ def are_positive(paper, estimates, found, digits=4, scale=1.0, name="t-tests"):
                      lambda level: found_with(worst, level, digits, scale))
 
 
+def are_within(paper, estimates, margin, found, digits=4):
+    """All of the paper's numbers are 0, within the margin: shown where the test of each shows it,
+    refuted where one lies beyond (p times their number)."""
+    if not all(estimate.testable for estimate in estimates):
+        return Statement(paper, found, "no test")
+    near = max(p_within(estimate, margin) for estimate in estimates)
+    far = min(1.0, len(estimates) * min(p_beyond(estimate, margin) for estimate in estimates))
+    worst = max(estimates, key=lambda estimate: estimate.error)
+    return Statement(paper, found, f"all within {margin:.{digits}f} or one beyond: t-tests, "
+                     f"{degrees_of_freedom(worst.dof)} each", min(near, far), near < far,
+                     lambda level: found_beyond(worst, margin, level / len(estimates), digits, 1.0))
+
+
 def of_program(paper, found, test, p, favours, power=""):
     """A test that `jostle analyse` made."""
     return Statement(paper, found, test, float(p), bool(favours), lambda level: power)

@@ -4,7 +4,7 @@ import numpy as np
 from compaction_figures import falls_with_age
 from figures import remark_of
 from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
-                      detectable, holm, is_positive, is_within, judge, of_interval)
+                      are_within, detectable, holm, is_positive, is_within, judge, of_interval)
 
 ENSEMBLES = 600
 
@@ -71,6 +71,20 @@ def all_positive(random):
             check(found.count(DISAGREES) > 0.9 * ENSEMBLES, "a negative one is missed")
 
 
+def all_within(random):
+    """Of two numbers with margins of 1, M = 3 and 6: one on its margin, the other at 0; both on
+    theirs; one far away."""
+    for realizations in (3, 6):
+        for first, second, wrong in ((1, 0, {AGREES, DISAGREES}), (1, -1, {AGREES, DISAGREES}),
+                                     (20, 0, {AGREES, UNDECIDED})):
+            values = random.normal(0, 1, (ENSEMBLES, 2, realizations))
+            found = [judge([are_within("", [Estimate.of(a + first), Estimate.of(b + second)], 1,
+                                       "")])[0][2] for a, b in values]
+            for word in wrong:
+                at_most(found.count(word) / ENSEMBLES, LEVEL,
+                        f"{word}: two of M = {realizations} at {first} and {second}")
+
+
 def families(random):
     check(np.allclose(holm([0.01, 0.04, np.nan, 0.03])[[0, 1, 3]], [0.03, 0.06, 0.06]), "Holm")
     any_word = 0
@@ -119,6 +133,7 @@ if __name__ == "__main__":
     signs(generator)
     margins(generator)
     all_positive(generator)
+    all_within(generator)
     families(generator)
     ages(generator)
     intervals()
