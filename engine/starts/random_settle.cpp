@@ -9,7 +9,7 @@ namespace jostle::inline engine {
 
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           std::uint32_t n_spheres, RandomStream& random) {
-  constexpr int max_draws = 20'000;  // of one sphere
+  constexpr int max_draws = 2'000'000;  // of one sphere; at 0.36 the last take 70 000 each
   const Boundary boundary(container);
   if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= densest_dilution)) {
     throw StartError("random settle: dilute_fraction is " + std::to_string(settle.dilute_fraction) +

@@ -36,7 +36,7 @@ struct FittedPour {
 /// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap
 /// (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
-  double dilute_fraction = 0.1;  // at most 0.25
+  double dilute_fraction = 0.1;  // at most densest_dilution
   bool operator==(const RandomSettle&) const = default;
 };
 
@@ -76,8 +76,9 @@ struct GivenPacking {
 using Start =
     std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
 
-/// Solids fraction up to which random places that do not overlap are found one after another.
-inline constexpr double densest_dilution = 0.25;
+/// Solids fraction up to which random places that do not overlap are found one after another: such
+/// beds jam at 0.384 (random sequential addition; Zhang & Torquato 2013).
+inline constexpr double densest_dilution = 0.36;
 /// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
 inline constexpr double deepest_given_overlap = 0.1;
 /// Spheres that grow without order jam beyond this solids fraction.

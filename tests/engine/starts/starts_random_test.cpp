@@ -30,8 +30,16 @@ TEST_CASE("A random settle starts from random places without overlap at the aske
   }
 }
 
+TEST_CASE("A random settle starts from columns nearly as dense as random places can be") {
+  const Packing packing = scattered({0.36}, PeriodicBox{8, 8}, 1500);
+  CHECK(packing.centres.size() == 1500);
+  CHECK(deepest_overlap_brute_force(packing).depth == 0);
+  const double height = 1500 * sphere_volume / (64 * 0.36);
+  CHECK(top_height(packing) <= height + 0.5);
+}
+
 TEST_CASE("A random settle that cannot be is refused") {
-  CHECK_THROWS_WITH(scattered({0.3}, PeriodicBox{8, 8}, 100), Catch::Contains("0.25"));
+  CHECK_THROWS_WITH(scattered({0.37}, PeriodicBox{8, 8}, 100), Catch::Contains("0.36"));
   CHECK_THROWS_AS(scattered({0}, PeriodicBox{8, 8}, 100), StartError);
   CHECK_THROWS_WITH(scattered({0.1}, FullyPeriodicBox{}, 100), Catch::Contains("gravity"));
   CHECK_THROWS_WITH(scattered({0.25}, WalledBox{1.6, 1.6}, 500),

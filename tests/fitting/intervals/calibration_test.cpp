@@ -152,7 +152,7 @@ TEST_CASE("Where B and tau diverge together, their ratio has limits that hold th
 
 TEST_CASE("The calibration table: every law, 2 to 20 realizations, memories up to 0.99",
           "[nightly]") {
-  // Hours in all: -c NAME takes one law.
+  // A quarter of an hour in all: -c NAME takes one law.
   for (const Law& law : laws()) {
     DYNAMIC_SECTION(law.model) {
       for (const int n_realizations : {2, 3, 4, 10, 20}) {
