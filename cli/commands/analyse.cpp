@@ -274,7 +274,7 @@ void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
                    "value: mean of the last taps (default); or what is kept of an analysis or a "
                    "fit: steady/sigma, kww/rho_inf");
   kinds.add_option(kind, "--against", a.against,
-                   "JSON pointer into the scene (default: the first of the sweep)");
+                   "What is swept: its name, or JSON pointer into the scene (default: the first)");
   kinds.add_option(kind, "--reference", a.reference,
                    "Point on the axis that all others are compared with (default: neighbours)");
   kinds.add_last(kind, "Taps at the end (default: a quarter)");

@@ -92,8 +92,11 @@ bool is_loose(const Estimate& estimate) {
          estimate.identifiability == Identifiability::not_identifiable;
 }
 
-// Those that can make up for each other: loose, and tied to another free one.
-void remark_on_exchange(Fit& fit) {
+// Two parameters with a correlation of 0.98 have this one: below, what is loose is so by noise.
+constexpr double tied_condition = 100;
+
+// What is loose, and whether because parameters can make up for each other.
+void remark_on_loose(Fit& fit) {
   std::vector<std::string> names;
   for (const Estimate& estimate : fit.estimates) {
     if (is_loose(estimate)) names.push_back(estimate.parameter.name);
@@ -101,9 +104,15 @@ void remark_on_exchange(Fit& fit) {
   if (names.empty()) return;
   std::ostringstream text;
   text.precision(2);
-  text << "The parameters are not unique: ";
+  const bool is_tied = fit.condition >= tied_condition;
+  text << (is_tied ? "The parameters are not unique: " : "The data say little of ");
   for (std::size_t i = 0; i < names.size(); ++i) {
     text << (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") << names[i];
+  }
+  if (!is_tied) {
+    fit.remarks.push_back(text.str() +
+                          ": few or noisy points; quote intervals, not standard errors.");
+    return;
   }
   text << (names.size() > 1 ? " can make up for each other" : " can make up for the others")
        << " over the range of t fitted (condition number " << fit.condition
@@ -226,7 +235,7 @@ void judge(const Curve& curve, Fit& fit) {
     estimate.statement = statement(estimate);
   }
   remark_on_memory(fit);
-  remark_on_exchange(fit);
+  remark_on_loose(fit);
   remark_on_weights(fit);
   remark_on_chi2(fit);
   remark_on_residuals(fit);

@@ -78,7 +78,10 @@ def _opened(done: Any, path: Path, program: Path | None) -> Results:
         return results_files.open(path, program=program)
     error = refusal(done)
     kind = RunStopped if done.returncode == STOPPED else RealizationsFailed
-    unfinished = kind(str(error), error.exit_code, error.stderr, error.command)
+    said = str(error)
+    if kind is RunStopped:  # the program names its own options, and a dict's file is gone
+        said = f"{path}: {said.split('; resume with')[0]}; resume=True goes on"
+    unfinished = kind(said, error.exit_code, error.stderr, error.command)
     if os.path.exists(path):
         unfinished.results = results_files.open(path, program=program)
     raise unfinished

@@ -128,7 +128,10 @@ class Point:
 
     def units(self, name: str) -> str:
         """Of a column: "diameter", "1", ..."""
-        return attribute(self._group("observables")[name], "units")
+        group = self._group("observables")
+        if name not in group:
+            raise NotThere(f"sweep point {self.index} has no {name!r}; it has {', '.join(self.observables)}")
+        return attribute(group[name], "units")
 
     @property
     def series(self) -> Columns:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import pathlib
 import re
@@ -96,6 +97,18 @@ def faults_in(stderr: str) -> list[Fault]:
     return faults
 
 
+def _refusals_in(stdout: str) -> str:
+    """What a JSON report gives as reasons where nothing came of any table or fit, a line each."""
+    try:
+        report = json.loads(stdout)
+    except ValueError:
+        return ""
+    tables = [(table["name"], table["notes"]) for table in report.get("tables", [])]
+    fits = [(f"{curve['title']}, {fit['model']}", fit) for curve in report.get("curves", [])
+            for fit in curve["fits"]]
+    return "\n".join(f"{name}: {notes['refused']}" for name, notes in tables + fits if "refused" in notes)
+
+
 def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
     """The exception for an exit code."""
     about = {"exit_code": done.returncode, "stderr": done.stderr, "command": done.args}
@@ -103,7 +116,7 @@ def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
         faults = faults_in(done.stderr)
         if faults:
             return SceneError(faults, **about)
-    said = (done.stderr.strip() or done.stdout.strip()).removeprefix("jostle: ")
+    said = done.stderr.strip().removeprefix("jostle: ") or _refusals_in(done.stdout) or done.stdout.strip()
     if done.returncode < 0:
         said = f"jostle was killed by {signal.Signals(-done.returncode).name}. {said}"
     return ProgramError(said or f"jostle ended with exit code {done.returncode}", **about)

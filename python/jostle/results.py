@@ -42,8 +42,9 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
     require_seal(name, whole=verify)
     parts = pathlib.Path(os.path.realpath(name) + ".parts")
     if live and parts.is_dir():
-        with joined_with_parts(name, program) as joined:
-            return Results(name, _opened(joined, name), program)  # open, it outlives its name
+        with joined_with_parts(name, program) as joined, _opened(name, name) as stored:
+            state = text(stored["provenance"].attrs["state"])
+            return Results(name, _opened(joined, name), program, state)  # open, it outlives its name
     results = Results(name, _opened(name, name), program)
     if parts.is_dir() and not live:
         warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
@@ -90,8 +91,8 @@ class Results:
     """
 
     def __init__(self, path: str, file: h5py.File,
-                 program: str | os.PathLike[str] | None = None) -> None:
-        self.path, self.file, self._program = path, file, program
+                 program: str | os.PathLike[str] | None = None, state: str | None = None) -> None:
+        self.path, self._file, self._program, self._state = path, file, program, state
 
     def __enter__(self) -> Results:
         return self
@@ -100,9 +101,18 @@ class Results:
         self.close()
 
     def close(self) -> None:
-        self.file.close()
+        self._file.close()
+
+    @property
+    def file(self) -> h5py.File:
+        """The file; ResultsError after `close`."""
+        if not self._file:
+            raise ResultsError(f"{self.path}: closed; jostle.open reads it again")
+        return self._file
 
     def __repr__(self) -> str:
+        if not self._file:
+            return f"<jostle results {self.path}: closed>"
         return (f"<jostle results {self.path}: {self.scene['name']}, {self.state}, {len(self.points)} sweep "
                 f"point{'s' if len(self.points) != 1 else ''} x {self.n_realizations} realizations>")
 
@@ -197,7 +207,7 @@ class Results:
     @property
     def state(self) -> str:
         """"running" (also of a run that was killed), "interrupted" or "complete"."""
-        return text(self.file["provenance"].attrs["state"])
+        return self._state or text(self.file["provenance"].attrs["state"])
 
     @property
     def shard(self) -> tuple[int, int]:

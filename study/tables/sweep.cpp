@@ -57,10 +57,30 @@ std::optional<std::size_t> tap_line(std::string_view pointer) {
 }
 
 /// What is swept, and the values of the sweep that do not vary with it.
+/// The pointer of the sweep that ends with a name, as labels of points have it.
+std::string pointer_named(const std::string& name, const StudyPoint& swept) {
+  std::string found;
+  for (const auto& [pointer, value] : swept.sweep_values) {
+    if (!pointer.ends_with("/" + name)) continue;
+    if (!found.empty()) {
+      throw BadInput(
+          fmt::format("{} and {} are swept: name one of them by its JSON pointer", found, pointer));
+    }
+    found = pointer;
+  }
+  if (found.empty()) {
+    throw BadInput(fmt::format(
+        "{} is neither a name of what is swept nor a JSON pointer, which begins with /", name));
+  }
+  return found;
+}
+
 void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
            std::string against) {
   if (against.empty()) {
     against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
+  } else if (against.front() != '/') {
+    against = pointer_named(against, swept);
   }
   for (const auto& [pointer, value] : swept.sweep_values) {
     if (pointer == against || scenes.vary_together(pointer, against)) continue;

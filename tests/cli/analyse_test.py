@@ -263,6 +263,9 @@ class Analysed(Case):
                               "--against", "/protocol/0/tap/dilate")["tables"]
         self.assertEqual([table["notes"]["at"] for table in tables],
                          ["/spheres = 48", "/spheres = 40"])
+        by_name = self.analyse("crossed.h5", "sweep", "--observable", "bottom_fraction",
+                               "--against", "dilate")["tables"]
+        self.assertEqual(by_name, tables)
         self.assertEqual(tables[0]["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2])
         self.assertEqual(self.tables("crossed.h5"), ["analysis/sweep/bottom_fraction/value_0000",
                                                      "analysis/sweep/bottom_fraction/value_0001"])

@@ -162,6 +162,8 @@ class Once(Refused):
         self.refused("analyse", "tiny.h5", "./tiny.h5", *sweep, answer="given twice")
         self.refused("analyse", "tiny.h5", "./tiny.h5", *STEADY, answer="given twice")
         self.refused("analyse", "tiny.h5", "copy.h5", *sweep, answer="hold the same run")
+        self.refused("analyse", "tiny.h5", *sweep[:-1], "spheres",
+                     answer="spheres is neither a name of what is swept")
 
     def test_the_same_packing_given_twice_counts_once(self):
         self.results()

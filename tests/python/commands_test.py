@@ -106,6 +106,8 @@ class Run(Case):
         with self.assertRaises(jostle.RunStopped) as raised:
             jostle.run(ENDLESS, time_limit="1s")
         self.assertEqual(raised.exception.exit_code, 75)
+        self.assertEqual(str(raised.exception),
+                         "endless.h5: stopped by the time limit; resume=True goes on")
         results = raised.exception.results
         self.addCleanup(results.close)
         self.assertEqual(results.state, "interrupted")
@@ -154,6 +156,7 @@ class Live(Case):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 live = self.open("endless.h5", live=True)
+            self.assertEqual(live.state, "running")
             self.assertGreater(len(live.points[0].tap), 30)
             self.assertTrue(np.isfinite(live.points[0].mean["mean_height"][:30]).all())
             self.assertEqual(live.ensemble["mean_height_count"].values[:30].tolist(), [2] * 30)
@@ -204,6 +207,15 @@ class Derive(Case):
             f"{t},{0.62 - 0.05 * np.exp(-(t / 40) ** 0.5)!r}\n" for t in range(1, 200)))
         (curve,) = jostle.fit("curve.csv", model="kww")
         self.assertAlmostEqual(curve["kww"].parameters["tau"].value, 40, places=4)
+
+    def test_a_refusal_is_told_in_words(self):
+        with self.assertRaises(jostle.ProgramError) as raised:
+            jostle.fit(self.results, "mean_height", law="X0 + log(-t)", start={"X0": 1})
+        self.assertRegex(str(raised.exception), "^mean_height.*, own: the law is not finite where it starts")
+        with self.assertRaises(jostle.ProgramError) as raised:
+            jostle.analyse(self.results, "steady", "mean_height", last=5)
+        self.assertRegex(str(raised.exception), "steady.mean_height: asks for the last 5 taps; at least 32 are needed$")
+        self.assertNotIn("{", str(raised.exception))
 
     def test_a_law_of_ones_own_is_fitted_and_stored(self):
         (curve,) = jostle.fit(self.results, "mean_height", law="-a*log(t/tau)", start={"a": 0.1, "tau": 1e4},

@@ -87,9 +87,20 @@ class Read(Case):
         self.assertRegex(self.results.digest(), "^[0-9a-f]{64}$")
         self.results.verify()
 
+    def test_a_closed_file_says_so(self):
+        closed = jostle.open(self.results.path)
+        point = closed.points[0]
+        closed.close()
+        self.assertRegex(repr(closed), "^<jostle results .*: closed>$")
+        for use in (lambda: closed.state, lambda: point.tap, lambda: closed.ensemble):
+            with self.assertRaisesRegex(jostle.ResultsError, "closed; jostle.open reads it again"):
+                use()
+
     def test_what_is_not_there_is_answered_with_what_is(self):
         with self.assertRaisesRegex(jostle.NotThere, "no 'height'; it has mean_height, bottom_fraction"):
             self.results.points[0].series["height"]
+        with self.assertRaisesRegex(jostle.NotThere, "no 'height'; it has mean_height, bottom_fraction"):
+            self.results.points[0].units("height")
         with self.assertRaisesRegex(IndexError, "has 4 sweep points"):
             self.results.points[4]
         self.assertEqual(self.results.points[-1].index, 3)

@@ -268,3 +268,20 @@ TEST_CASE("What is wrong with an own law is said, all of it") {
   CHECK(both.find("no t") != std::string::npos);
   CHECK(fault({.formula = "a*t^2 + 1e-3*exp(-t/2.5E2)", .start = {{"a", 1}}}).empty());
 }
+
+TEST_CASE("A law whose parameter is lost in noise is not told that parameters are exchanged") {
+  const auto law = make_own_law({.formula = "X0 + a*t", .start = {{"X0", 1}, {"a", 1}}});
+  Curve curve{.t = {}, .x = {}, .sigma = {}};
+  for (int t = 1; t <= 12; ++t) {
+    curve.t.push_back(t);
+    curve.x.push_back(t + 2 * std::sin(7.0 * t * t));
+  }
+  const Fit fitted = std::get<Fit>(fit(*law, curve));
+  CHECK(fitted.condition < 100);
+  bool says_noise = false;
+  for (const std::string& remark : fitted.remarks) {
+    CHECK(remark.find("not unique") == std::string::npos);
+    says_noise |= remark.find("The data say little of X0") == 0;
+  }
+  CHECK(says_noise);
+}
