@@ -117,8 +117,9 @@ void require_finished(const std::vector<ResultsFile>& files) {
   for (std::size_t i = 1; i < std::min(unfinished.size(), most); ++i)
     others += (i > 1 ? ", " : "") + unfinished[i];
   if (unfinished.size() > most) others += fmt::format(" and {} more", unfinished.size() - most);
+  const std::string nor = unfinished.size() == 2 ? ", nor is " : ", nor are ";
   throw ResultsError(unfinished.front(), fmt::format("is not finished{}; resume {} to the end",
-                                                     others.empty() ? "" : ", nor are " + others,
+                                                     others.empty() ? "" : nor + others,
                                                      others.empty() ? "its run" : "their runs"));
 }
 

@@ -297,7 +297,7 @@ class Status(Case):
         for index in (1, 2):
             self.shard(index, 2, expect=STOPPED, environment={"JOSTLE_TIME_LIMIT": "0.1"})
         refused = self.jostle("merge", "shards", "-o", "a.h5", expect=BROKEN).stderr
-        self.assertRegex(refused, r"shards/1.h5: is not finished, nor are shards/2.h5")
+        self.assertRegex(refused, r"shards/1.h5: is not finished, nor is shards/2.h5")
 
 
 if __name__ == "__main__":

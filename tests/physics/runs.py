@@ -71,8 +71,8 @@ class Run:
             self.labels = [label.decode() for label in file["sweep/label"][:]]
             self.observables = {point: {name: data[:] for name, data in group.items()}
                                 for point, group in sorted(file["observables"].items())}
-            self.seconds = sum(float(point["seconds"][:].sum())
-                               for point in file["timing"].values())
+            self.seconds = sum(float(point[name][:].sum()) for point in file["timing"].values()
+                               for name in ("start_seconds", "seconds"))
 
     @property
     def is_complete(self):

@@ -1,0 +1,101 @@
+"""Figures 7 to 14 of Rosato et al.: discrete elements."""
+import numpy as np
+
+from lift_figures import PRINTED
+from page_text import at, table, window
+from verdicts import (Estimate, are_positive, is_positive, is_within, of_interval, undecided)
+
+POURED, RANGE = 0.6088, 0.0035  # at a friction of 0.1, "in the range"
+WINDOWS = ("bulk_fraction", "mid_heights", "low_heights")
+
+
+def neighbours(run, point):
+    """(least, greatest) of mean and width of the normal law, 95 %; the two numbers."""
+    found = run.ensemble_structure("coordination", point)
+    return [(found[f"normal_{name}_low_95"][0], found[f"normal_{name}_high_95"][0],
+             found[f"normal_{name}"][0]) for name in ("mean", "width")]
+
+
+def poured(run):
+    frictions = run.values()
+    phi, contacts = run.curves("bulk_fraction"), run.curves("contacts")
+    rows = []
+    for point, friction in enumerate(frictions):
+        mean, width = neighbours(run, point)
+        free = run.ensemble_structure("voronoi", point)
+        rows.append([f"{friction:g}", at(phi[point], 0), at(run.curves("mid_heights")[point], 0),
+                     at(contacts[point], 0, 3), f"{mean[2]:.3f}", f"{width[2]:.3f}",
+                     f"{free['mean_free_volume'][0]:.4f}", f"{free['sigma_free_volume'][0]:.4f}"])
+    tenth = frictions.index(0.1)
+    mean, width = neighbours(run, tenth)
+    statements = [
+        are_positive("Phi falls with friction", [Estimate.of(phi[i][0] - phi[i + 1][0])
+                                                 for i in range(len(phi) - 1)],
+                     f"its falls from each of {', '.join(f'{mu:g}' for mu in frictions)} to the "
+                     "next: ", name="paired t-tests"),
+        is_within("without friction 0.6366, as random packings have", Estimate.of(
+            phi[0][0] - 0.6366), PRINTED, f"{at(phi[0], 0)}; from it "),
+        is_within(f"{POURED} +- {RANGE} at a friction of 0.1", Estimate.of(
+            phi[tenth][0] - POURED), RANGE, f"{at(phi[tenth], 0)}; from it "),
+        of_interval("nearest neighbours at 0.1: mean 7.2713 +- 0.0558", *mean[:2],
+                    between=(7.2713 - 0.0558, 7.2713 + 0.0558), found="mean within 1.05 d"),
+        of_interval("nearest neighbours at 0.1: width 1.2550 +- 0.0262", *width[:2],
+                    between=(1.2550 - 0.0262, 1.2550 + 0.0262), found="width within 1.05 d")]
+    return table(["friction", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
+                  "contacts a sphere", "neighbours within 1.05 d: mean", "width",
+                  "free volume, sphere volumes: mean", "sigma"], rows), statements
+
+
+def columns(run):
+    zipped = run.scene["sweep"]["zip"]
+    stiffness, column = (next(values for pointer, values in zipped.items() if name in pointer)
+                         for name in ("stiffness", "dilute_fraction"))
+    curves = [run.curves(name) for name in WINDOWS]
+    rows, statements = [], []
+    for i, (k1, fraction) in enumerate(zip(stiffness, column)):
+        rows.append([f"{k1:g}", f"{fraction:g}"] + [at(curve[i], 0) for curve in curves])
+        statements.append(is_within(
+            f"{POURED} +- {RANGE} at a friction of 0.1; K1 = {k1:g} N/m, column {fraction:g}",
+            Estimate.of(curves[0][i][0] - POURED), RANGE, f"{at(curves[0][i], 0)}; from it "))
+    return table(["K1, N/m", "column", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
+                  "Phi, 0 to 15 d"], rows), statements
+
+
+def tapped(run):
+    strong, weak = run.curves("bulk_fraction")
+    last = len(strong) - 1
+    shown = [tap for tap in (0, 1, 10, 25, 50, 100, 150, 200) if tap <= last]
+    rows = [[f"Gamma = {gamma}"] + [at(curve, tap) for tap in shown]
+            for gamma, curve in (("2", strong), ("0.5", weak))]
+    rows += [[f"Gamma = 2, realization {m}"] + [f"{strong[tap, m]:.4f}" for tap in shown]
+             for m in range(strong.shape[1])]
+    end = max(last - 19, 0), last
+    gains = [window(curve, *end) - curve[0] for curve in (strong, weak)]
+    grown = [run.ensemble_structure("layers", point) for point in (0, 1)]
+    taps = [int(tap) for tap in grown[0]["tap"]]
+
+    def layers_at(point, k):
+        return Estimate(float(grown[point]["grown_layers"][k]),
+                        float(grown[point]["grown_layers_error"][k]), run.realizations - 1)
+    layer_rows = [[f"Gamma = {gamma}, tap {taps[k]}", layers_at(point, k).text(2)] +
+                  [f"{grown[point]['share'][k, layer]:.2f}" for layer in range(6)]
+                  for point, gamma in ((0, "2"), (1, "0.5")) for k in range(len(taps))]
+    statements = [
+        is_within("Phi = 0.609 at the start (0.0035)", Estimate.of(strong[0] - 0.609), RANGE,
+                  f"{at(strong, 0)}; from it "),
+        is_positive("Phi grows at Gamma = 2", Estimate.of(gains[0]),
+                    f"taps {end[0]} to {end[1]} less tap 0: "),
+        is_positive("almost nothing at Gamma = 0.5: less than a tenth of that",
+                    Estimate.of(0.1 * gains[0] - gains[1]),
+                    f"{Estimate.of(gains[1]).text()}; a tenth of the gain at 2 less it: ",
+                    name="paired t-test"),
+        undecided("Phi = 0.6997 +- 0.0058 at Gamma = 2 after 898 taps",
+                  f"{at(strong, last)} after {last}", "too few taps"),
+        is_positive("layers grow from the floor at Gamma = 2", layers_at(0, -1),
+                    f"grown layers at tap {taps[-1]}: ", digits=2),
+        is_within("no order at Gamma = 0.5 (less than half a layer)", layers_at(1, -1), 0.5,
+                  f"grown layers at tap {taps[-1]}: ", 2)]
+    return "\n\n".join([table(["Phi, tap"] + [str(tap) for tap in shown], rows),
+                        table(["", "grown layers"] + [f"share, layer {layer + 1}"
+                                                      for layer in range(6)], layer_rows)]), \
+        statements
