@@ -31,7 +31,7 @@ std::optional<Study> joined_study(std::span<const std::string> inputs) {
   for (const std::string& input : inputs) files.emplace_back(input);
   Json scene = stored_scene(files.front());
   ParsedScene joined;
-  for (const ResultsFile& file : files) {
+  for (const ResultsFile& file : std::span(files).subspan(1)) {
     joined = join_sweeps(scene, stored_scene(file));
     if (!joined.scene) {
       throw ResultsError(file.path(),

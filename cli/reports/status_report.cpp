@@ -177,8 +177,11 @@ std::vector<std::string> redo_commands(const ShardsStatus& study, const JobArray
       const std::uint32_t task = (shard.index - 1) / array.shards_a_task + 1;
       if (tasks.empty() || tasks.back() != task) tasks.push_back(task);
     } else if (known != study.shards.end()) {
-      const std::string output =
-          shard.path.empty() ? (folder / fmt::format("{}.h5", shard.index)).string() : shard.path;
+      std::string output = shard.path;
+      if (output.empty()) output = (folder / fmt::format("{}.h5", shard.index)).string();
+      if (shard.path.empty() && fs::exists(output)) {  // it holds another shard
+        output = (folder / fmt::format("{}-of-{}.h5", shard.index, study.shards.size())).string();
+      }
       commands.push_back(command_for(shard.command.empty() ? known->command : shard.command,
                                      shard.index, study.shards.size(), output));
     }

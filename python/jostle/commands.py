@@ -7,7 +7,7 @@ import json
 import math
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from . import results as results_files
@@ -54,7 +54,7 @@ def _options(**values: object) -> list[object]:
         if value is True:
             words.append(option)
         elif value is not None and value is not False:
-            several = isinstance(value, Sequence) and not isinstance(value, str)
+            several = isinstance(value, Iterable) and not isinstance(value, str)
             words += [option, ",".join(map(str, value)) if several else value]  # type: ignore[arg-type]
     return words
 

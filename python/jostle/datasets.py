@@ -86,8 +86,8 @@ def _longest(results: Results) -> tuple[int, np.ndarray]:
     """Taps of the point that has come farthest, and their numbers."""
     scales = [results.file.get(f"observables/point_{number:04}/tap")
               for number in range(len(results.points))]
-    longest = max((scale for scale in scales if scale is not None), key=len, default=np.zeros(0, np.uint64))
-    return len(longest), longest[()]
+    longest = max((scale for scale in scales if scale is not None), key=len, default=np.zeros(0, np.int64))
+    return len(longest), longest[()].astype(np.int64)
 
 
 class _Builder:
@@ -133,7 +133,7 @@ def ensemble(results: Results) -> xarray.Dataset:
         for fold in FOLDS:
             whole = fold == "count"
             builder.add(f"{name}_{fold}", f"ensemble/{{}}/{name}_{fold}", {"tap": n},
-                        np.uint32 if whole else float, 0 if whole else np.nan)
+                        np.int64 if whole else float, 0 if whole else np.nan)
     return builder.dataset(taps, {})
 
 

@@ -114,7 +114,7 @@ class Point:
     @cached_property
     def tap(self) -> np.ndarray:
         """[tap]: 0 is the start; as far as the farthest realization has come."""
-        return self._group("observables")["tap"][()] if self.begun else np.zeros(0, np.uint64)
+        return self._integers("tap", 0)
 
     @cached_property
     def observables(self) -> list[str]:
@@ -146,7 +146,8 @@ class Point:
         group = self._group("ensemble") if self.begun else None
 
         def read(name: str) -> np.ndarray:
-            return np.zeros(0) if group is None else group[f"{name}_{fold}"][()]
+            found = np.zeros(0) if group is None else group[f"{name}_{fold}"][()]
+            return found.astype(np.int64) if fold == "count" else found
         return Columns(self.observables, read, f"sweep point {self.index}")
 
     @property
@@ -179,9 +180,13 @@ class Point:
     @property
     def rows(self) -> np.ndarray:
         """[realization]: taps recorded, the start included."""
+        return self._integers("rows", self.n_realizations)
+
+    def _integers(self, name: str, n: int) -> np.ndarray:
+        """Signed, so that differences of them are."""
         if not self.begun:
-            return np.zeros(self.n_realizations, np.uint64)
-        return self._group("observables")["rows"][()]
+            return np.zeros(n, np.int64)
+        return self._group("observables")[name][()].astype(np.int64)
 
     @property
     def reasons(self) -> dict[int, str]:

@@ -16,6 +16,7 @@ from grain_figures import columns, poured, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
 from page_text import table, verdict_table
+from pictures import draw
 from runs import Run
 from structure_figures import periodic_profiles, pore_sizes, void_probability, wall_profiles
 
@@ -87,6 +88,19 @@ FIGURES = {
                 "layers grow from the floor; at Gamma = 0.5 almost nothing happens."),
 }
 
+# figure: what `jostle report --figures` calls its picture, and the points that the paper prints.
+PICTURES = {
+    "pb2": ("bottom-fraction", []),
+    "pb4-bell": ("corrected-fraction-against-strength-of-the-taps", []),
+    "dr2": ("bulk-fraction", []),
+    "dr4": ("bulk-fraction", []),
+    "dr5": ("bulk-fraction", []),
+    "dr6": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
+    "dr6-published": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
+    "dr6-readings": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
+    "dr10-14": ("bulk-fraction", [(0, 0.609)]),
+}
+
 HEAD = """# What the papers' figures become here
 
 Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
@@ -119,13 +133,23 @@ def setup(run):
             f"{scene['container']['sides']}, {taps} taps, {run.realizations} realizations{streams}")
 
 
-def section(figure, run, others, page):
+def picture(figure, run, page):
+    """Draws a figure's picture beside the page; the line that shows it."""
+    if figure not in PICTURES:
+        return ""
+    name, points = PICTURES[figure]
+    draw(run, name, points, page.parent / "figures" / f"{figure}.svg")
+    circles = "; circles: the paper's numbers" if points else ""
+    return f"![{name.replace('-', ' ')}{circles}](figures/{figure}.svg)"
+
+
+def section(figure, run, others, page, drawn=""):
     _, write, _, paper_setup, claim = FIGURES[figure]
     numbers, statements = write(run, *others)
     verdicts = verdict_table(statements)
     parts = [f"## {figure}", f"`./dev physics {figure}`, {run.seconds / 60:.0f} core-minutes. " +
              " ".join(run.scene["description"]), f"**Here**: {setup(run)}. **The paper**: "
-             f"{paper_setup}. {claim}", numbers, verdicts,
+             f"{paper_setup}. {claim}", drawn, numbers, verdicts,
              remark_of(page, figure, numbers + "\n\n" + verdicts)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -168,7 +192,7 @@ def main(jostle, folder, page, figures, deadline):
             print(f"{figure} is not reached; the next call goes on with {run.path}")
             break
         others = [finished(jostle, other, folder) for other in others]
-        sections[figure] = section(figure, run, others, text)
+        sections[figure] = section(figure, run, others, text, picture(figure, run, page))
         print(sections[figure], flush=True)
         ordered = [sections[name].strip() for name in FIGURES if name in sections]
         page.write_text("\n\n".join([HEAD, summary(sections)] + ordered) + "\n")

@@ -202,6 +202,14 @@ class Derive(Case):
         self.assertEqual(table.notes["observable"], "mean_height")
         self.assertEqual(table.made["version"], jostle.__version__)
 
+    def test_numbers_of_numpy_are_taken(self):
+        tables = jostle.analyse(self.results, "ageing", "mean_height", waiting_times=np.array([1, 4]),
+                                lags=np.arange(1, 12), store=False)
+        self.assertTrue(tables)
+        point = self.results.points[np.int64(0)]
+        self.assertEqual((point.tap[0] - 1, point.rows.dtype, point.count["mean_height"].dtype),
+                         (-1, np.int64, np.int64))
+
     def test_a_measured_curve_is_fitted(self):
         pathlib.Path("curve.csv").write_text("t,X\n" + "".join(
             f"{t},{0.62 - 0.05 * np.exp(-(t / 40) ** 0.5)!r}\n" for t in range(1, 200)))

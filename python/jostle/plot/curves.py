@@ -20,7 +20,12 @@ LAYER = (2 / 3) ** 0.5  # diameters from one close-packed layer to the next
 def _chosen(results: Results, points: Iterable[int] | int | None) -> list[Point]:
     if points is None:
         return [point for point in results.points if point.begun]
-    return [results.points[number] for number in ([points] if isinstance(points, int) else points)]
+    return [results.points[number] for number in _several(points)]
+
+
+def _several(numbers: Iterable[int] | int) -> list[int]:
+    """One number, or many, of Python's or numpy's."""
+    return np.atleast_1d(numbers if np.ndim(numbers) == 0 else list(numbers)).tolist()
 
 
 def compaction(results: Results, observable: str, *, points: Iterable[int] | int | None = None,
@@ -50,14 +55,14 @@ def compaction(results: Results, observable: str, *, points: Iterable[int] | int
     return ax
 
 
-def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | None = None, *,
+def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | int | None = None, *,
                      layers: bool = True, ax: Axes | None = None) -> Axes:
     """n(z): the fraction of all centres by height, mean over realizations, of some taps (default: the
     first and the last that are kept). layers: mark where close-packed layers on the floor lie."""
     ax = axes_or_current(ax)
     snapshots = results.points[point].snapshots
     height, kept = snapshots["height"], snapshots["tap"].tolist()
-    for tap in ([kept[0], kept[-1]] if taps is None else taps):
+    for tap in ([kept[0], kept[-1]] if taps is None else _several(taps)):
         if tap not in kept:
             raise NotThere(f"no histogram of tap {tap}; kept: {', '.join(map(str, kept))}")
         ax.plot(height, np.nanmean(snapshots["height_histogram"][kept.index(tap)], axis=0),
@@ -71,7 +76,7 @@ def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | Non
     return ax
 
 
-def profile(table: Table, quantity: str = "phi", *, taps: Iterable[int] | None = None,
+def profile(table: Table, quantity: str = "phi", *, taps: Iterable[int] | int | None = None,
             ax: Axes | None = None) -> Axes:
     """A quantity of a structure table by height, of some taps (default: the first and the last); the
     error is that of the mean over realizations."""
@@ -82,7 +87,7 @@ def profile(table: Table, quantity: str = "phi", *, taps: Iterable[int] | None =
                        "the tap and one more axis")
     kept = table["tap"].tolist()
     error = table.error(quantity)
-    for tap in ([kept[0], kept[-1]] if taps is None else taps):
+    for tap in ([kept[0], kept[-1]] if taps is None else _several(taps)):
         if tap not in kept:
             raise NotThere(f"{table.name} has no tap {tap}; it has {', '.join(map(str, kept))}")
         place = kept.index(tap)
