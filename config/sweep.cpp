@@ -61,6 +61,7 @@ class SweepCheck {
     for (const std::string& part : swept_parts) {
       if (resolved_.contains(part)) may_be_swept_[part] = resolved_.at(part);
     }
+    if (!resolved_.contains("engine")) may_be_swept_["engine"] = "monte_carlo";
   }
 
   void operator()() {
@@ -248,13 +249,32 @@ std::string point_label(const SweepPoint& point) {
   return joined(parts, ", ");
 }
 
+namespace {
+
+/// Whether a point has grains where the scene has trials, whose `relax` is not for them.
+bool has_grains(const SweepPoint& point) {
+  return std::ranges::any_of(point.values, [](const auto& set) {
+    const auto& [pointer, value] = set;
+    return pointer == "/engine" && (value.is_object() ? value.contains("discrete_element")
+                                                      : value == Json("discrete_element"));
+  });
+}
+
+}  // namespace
+
 Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults) {
+  const bool leave_trials = has_grains(point);
   Json changed = Json::object();  // without the sweep, which may be longer than all the rest
   for (const auto& [key, part] : resolved_scene.members()) {
-    if (key != "sweep") changed[key] = part;
+    const bool of_trials = key == "relax" || key == "relax_start";
+    if (key != "sweep" && !(of_trials && leave_trials)) changed[key] = part;
   }
   for (const auto& [pointer, value] : point.values) {
-    if (Json* place = changed.find_pointer(pointer)) *place = value;
+    if (pointer == "/engine") {
+      changed["engine"] = value;  // a resolved scene of Monte Carlo does not name it
+    } else if (Json* place = changed.find_pointer(pointer)) {
+      *place = value;
+    }
   }
   Scene scene = read_scene(Reader{changed, "", faults});
   check_consistency(scene, faults);

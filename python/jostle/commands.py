@@ -133,6 +133,11 @@ def _paths(results: Results | Path | Sequence[Path]) -> list[Path]:
     return [one.path if isinstance(one, Results) else one for one in results]
 
 
+def _live(results: Results | Path | Sequence[Path], live: bool) -> bool:
+    """With checkpoints where it is asked for, or where results were opened so."""
+    return live or isinstance(results, Results) and results.live
+
+
 def fit(results: Results | Path, observable: str | None = None, *, model: str | None = None,
         law: str | None = None, start: Mapping[str, float] | None = None,
         bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -159,7 +164,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
                  *_options(observable=observable, model=model, law_name=law_name,
                            sweep_point=sweep_point, range=range, realizations=realizations,
                            resample=resample, resamples=resamples, seed=seed, no_store=not store,
-                           live=live)], program)
+                           live=_live(results, live))], program)
     return fitted_curves(json.loads(done.stdout))
 
 
@@ -179,7 +184,7 @@ def analyse(results: Results | Path | Sequence[Path], what: str, observable: str
                  *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
                            quantity=quantity, against=against, reference=reference, segment=segment,
                            window=window, detrend=detrend, band=band, threads=threads,
-                           no_store=not store, live=live)], program)
+                           no_store=not store, live=_live(results, live))], program)
     return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
 
 
@@ -194,7 +199,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
     done = call(["structure", *_paths(results), "--json",
                  *_options(part=part, settings=None if settings is None else json.dumps(settings),
                            tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store,
-                           live=live)], program)
+                           live=_live(results, live))], program)
     return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
 
 
@@ -202,8 +207,8 @@ def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool
            force: bool = False, threads: int | None = None, program: Path | None = None) -> Path:
     """Writes one page for a browser that shows all that results hold; docs/report.md says what. Returns
     `output`."""
-    call(["report", *_paths(results), "-o", output, *_options(live=live, force=force, threads=threads)],
-         program)
+    call(["report", *_paths(results), "-o", output,
+          *_options(live=_live(results, live), force=force, threads=threads)], program)
     return output
 
 
@@ -213,5 +218,6 @@ def export(results: Results | Path, output: Path, *, format: str, point: int | N
     """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
     last, "all", or some. Returns `output`."""
     call(["export", *_paths(results), "--format", format, "-o", output,
-          *_options(sweep_point=point, realization=realization, tap=tap, live=live, force=force)], program)
+          *_options(sweep_point=point, realization=realization, tap=tap, live=_live(results, live),
+                    force=force)], program)
     return output

@@ -34,15 +34,17 @@ def program_path(program: Path | None = None) -> str:
 
 
 def call(arguments: Sequence[object], program: Path | None = None, folder: Path | None = None,
-         show: bool = False, accept: Sequence[int] = (OK,)) -> subprocess.CompletedProcess[str]:
+         show: bool = False, accept: Sequence[int] = (OK,), folded: bool = True) -> subprocess.CompletedProcess[str]:
     """Runs the program to its end; an exit code not in `accept` raises what `refusal` makes of it.
 
+    folded: texts fit a terminal; else a paragraph is a line.
     show: what it says on stderr (progress) is shown as it comes. A KeyboardInterrupt is handed on as
     SIGINT, once: the program stores what it has and ends, and the interrupt goes on from here.
     """
     command = [program_path(program), *map(os.fspath, map(_word, arguments))]
     # A group of its own: Ctrl-C reaches it through here alone, and so once.
-    process = subprocess.Popen(command, cwd=folder, text=True, errors="replace", stdin=subprocess.DEVNULL,
+    environment = None if folded else {**os.environ, "COLUMNS": "10000"}
+    process = subprocess.Popen(command, cwd=folder, env=environment, text=True, errors="replace", stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
     try:
         out, err = _output_of(process, show)
@@ -91,7 +93,7 @@ def faults_in(stderr: str) -> list[Fault]:
     """Lines `pointer: message` below the line that counts them."""
     faults = []
     for line in stderr.splitlines():
-        found = re.match(r"(\(scene\)|/\S*): (.*)", line)
+        found = re.match(r"(\(scene\)|/.*?): (.*)", line)
         if found:
             faults.append(Fault("" if found[1] == "(scene)" else found[1], found[2]))
     return faults

@@ -44,7 +44,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
     if live and parts.is_dir():
         with joined_with_parts(name, program) as joined, _opened(name, name) as stored:
             state = text(stored["provenance"].attrs["state"])
-            return Results(name, _opened(joined, name), program, state)  # open, it outlives its name
+            return Results(name, _opened(joined, name), program, state, live=True)  # open, it outlives its name
     results = Results(name, _opened(name, name), program)
     if parts.is_dir() and not live:
         warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
@@ -91,8 +91,9 @@ class Results:
     """
 
     def __init__(self, path: str, file: h5py.File,
-                 program: str | os.PathLike[str] | None = None, state: str | None = None) -> None:
+                 program: str | os.PathLike[str] | None = None, state: str | None = None, live: bool = False) -> None:
         self.path, self._file, self._program, self._state = path, file, program, state
+        self.live = live  # checkpoints are joined in
 
     def __enter__(self) -> Results:
         return self
@@ -229,7 +230,11 @@ class Results:
         return [{name: column[i] for name, column in columns.items()} for i in range(n)]
 
     def digest(self) -> str:
-        """SHA-256 of the data alone, the same for equal runs (jostle info --digest of the file)."""
+        """SHA-256 of the data alone, the same for equal runs (jostle info --digest of the file); of live
+        results, of what there is now."""
+        if self.live:
+            with joined_with_parts(self.path, self._program) as joined:
+                return digest_of(joined, self._program)
         return digest_of(self.path, self._program)
 
     def verify(self) -> None:

@@ -36,7 +36,7 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     try:
         with scene_file(scene) as file:
             done = call(["check", file, *([] if pilot else ["--no-pilot"]),
-                         *(["--threads", threads] if threads else [])], program)
+                         *(["--threads", threads] if threads else [])], program, folded=False)
     except ProgramMissing as missing:
         return _check_by_schema(scene, missing)
     resolved, end = json.JSONDecoder().raw_decode(done.stdout)

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -28,6 +30,22 @@ TEST_CASE("A plan holds what the scene says") {
   CHECK(plan.snapshots.taps == std::vector<std::uint64_t>{0, 1, 3, 10, 32, 100, 120});
   CHECK_FALSE(plan.snapshots.height_histogram);
   CHECK(plan.snapshots.bin_width == 0.05);
+}
+
+TEST_CASE("A sweep goes over both engines from a scene of either") {
+  for (const char* engine : {"", R"("engine": "monte_carlo", "relax": {"polar": {}},)",
+                             R"("engine": {"discrete_element": {}},)"}) {
+    const auto plans = make_plans(scene_of(fmt::format(R"({{"seed": 1, {}
+      "container": {{"sides": "periodic", "width": 3}}, "spheres": 20,
+      "protocol": [{{"tap": {{"lift": 0.1}}, "count": 2}}],
+      "sweep": {{"/engine": ["monte_carlo", {{"discrete_element": {{}}}}, "discrete_element"]}}}})",
+                                                       engine)),
+                                  {});
+    REQUIRE(plans.size() == 3);
+    CHECK(std::holds_alternative<MonteCarlo>(plans[0].engine));
+    CHECK(std::holds_alternative<DiscreteElement>(plans[1].engine));
+    CHECK(std::holds_alternative<DiscreteElement>(plans[2].engine));
+  }
 }
 
 TEST_CASE("Every sweep point keeps the seed and the kind of streams") {

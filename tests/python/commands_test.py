@@ -161,7 +161,8 @@ class Live(Case):
             self.assertTrue(np.isfinite(live.points[0].mean["mean_height"][:30]).all())
             self.assertEqual(live.ensemble["mean_height_count"].values[:30].tolist(), [2] * 30)
             self.assertEqual(live.positions(0, 1, 20).shape, (24, 3))
-            fitted = jostle.fit("endless.h5", "mean_height", model="kww", range="1:30", live=True)
+            self.assertNotEqual(live.digest(), bare.digest())
+            fitted = jostle.fit(live, "mean_height", model="kww", range="1:30")
             self.assertEqual(len(fitted), 1)
             process.kill()
             process.wait()
@@ -201,6 +202,13 @@ class Derive(Case):
                                        if np.isfinite(one.interval_95[0])])
         self.assertEqual(table.notes["observable"], "mean_height")
         self.assertEqual(table.made["version"], jostle.__version__)
+
+    def test_faults_and_warnings_are_whole(self):
+        with self.assertRaises(jostle.SceneError) as raised:
+            jostle.check({**SHORT, "my key": 1, "spheres": -1})
+        self.assertEqual(sorted(fault.pointer for fault in raised.exception.faults), ["/my key", "/spheres"])
+        warned = jostle.check(changed(SHORT, relax={"polar": {"theta0": 45}, "stop": {"sweeps": 5}})).warnings
+        self.assertEqual(len(warned), 1)
 
     def test_numbers_of_numpy_are_taken(self):
         tables = jostle.analyse(self.results, "ageing", "mean_height", waiting_times=np.array([1, 4]),
