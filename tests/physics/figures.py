@@ -161,7 +161,7 @@ def summary(sections):
         text = sections.get(figure, "")
         words = re.findall(r"^\| ([^|]*) \|.*\| \*\*(agrees|disagrees|cannot decide)\*\* \|$", text,
                            re.M)
-        row = [f"[{figure}](#{figure})"]
+        row = [f"[{figure}](#{figure})" if text else figure]
         for word in ("agrees", "disagrees", "cannot decide"):
             row.append("; ".join(statement for statement, said in words if said == word))
         if not words:
