@@ -16,7 +16,7 @@ from grain_figures import columns, poured, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
 from page_text import table, verdict_table
-from pictures import draw
+from pictures import Picture, draw
 from runs import Run
 from structure_figures import periodic_profiles, pore_sizes, void_probability, wall_profiles
 
@@ -88,24 +88,44 @@ FIGURES = {
                 "layers grow from the floor; at Gamma = 0.5 almost nothing happens."),
 }
 
-# figure: what `jostle report --figures` calls its picture, and the points that the paper prints.
+# figure: its pictures, of the tables of its section; points are those that the paper prints.
+TAPS, STRENGTH, PHI = "taps", "eps^(1/2)", "solids fraction"
+LAYERED = ((0, 0.567), (50, 0.578), (250, 0.597))
 PICTURES = {
-    "pb2": ("bottom-fraction", []),
-    "pb4-bell": ("corrected-fraction-against-strength-of-the-taps", []),
-    "dr2": ("bulk-fraction", []),
-    "dr4": ("bulk-fraction", []),
-    "dr5": ("bulk-fraction", []),
-    "dr6": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
-    "dr6-published": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
-    "dr6-readings": ("bulk-fraction", [(0, 0.567), (50, 0.578), (250, 0.597)]),
-    "dr10-14": ("bulk-fraction", [(0, 0.609)]),
+    "pb2": [Picture(TAPS, "bottom fraction", across=True, log="x")],
+    "pb3": [Picture(STRENGTH, "sigma_Z, diameters", columns="^sigma_Z")],
+    "pb4-bell": [Picture(STRENGTH, "corrected fraction", columns="to")],
+    "pb4-hysteresis": [Picture(STRENGTH, "corrected fraction")],
+    "pb5": [Picture("waiting time, taps", "10^4 A, square diameters", columns="lag", log="xy")],
+    "pb6-8": [Picture("height, diameters", PHI, across=True),
+              Picture("distance to a wall, diameters", PHI, across=True, table=1)],
+    "pb6-8-periodic": [Picture("height, diameters", PHI, across=True)],
+    "pb9": [Picture("sigma", "P0", columns="P0|Gotoh", log="y")],
+    "pb10": [Picture(TAPS, "sphere volumes", columns="^(nu|v0)$", log="x"),
+             Picture("volume of a pore, sphere volumes", "rho_v", across=True, table=1, log="y")],
+    "pb-moves": [Picture("longest step, diameters", "10^4 (Phi_c(30) - Phi_c(0))", across=True,
+                         log="x")],
+    "dr2": [Picture(TAPS, PHI, across=True, log="x")],
+    "dr3": [Picture("solids fraction of the region", "neighbours within 1.05 d",
+                    columns="N_c of the region", x_column=2)],
+    "dr4": [Picture(TAPS, PHI, across=True, log="x")],
+    "dr5": [Picture(TAPS, PHI, across=True, log="x")],
+    "dr6": [Picture(TAPS, PHI, columns="^Phi$", paper=LAYERED),
+            Picture("height, diameters", "share of fcc and hcp", across=True, table=1,
+                    rows="^(0|50|100|250|600)$")],
+    "dr6-published": [Picture(TAPS, PHI, across=True, paper=LAYERED)],
+    "dr6-readings": [Picture(TAPS, PHI, across=True, paper=LAYERED[1:])],
+    "dr7-9": [Picture("friction", PHI, columns="^Phi", paper=((0, 0.6366), (0.1, 0.6088)))],
+    "dr7-columns": [Picture("solids fraction of the column", PHI, columns="^Phi", x_column=1,
+                            rows="^100000$")],
+    "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609),))],
 }
 
 HEAD = """# What the papers' figures become here
 
 Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
 
-**Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides. Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's."""
+**Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides. Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's. Pictures show numbers of the tables below them."""
 
 REMARK = "**Remark**: "
 OUTDATED = "(Of earlier numbers.) "
@@ -133,23 +153,27 @@ def setup(run):
             f"{scene['container']['sides']}, {taps} taps, {run.realizations} realizations{streams}")
 
 
-def picture(figure, run, page):
-    """Draws a figure's picture beside the page; the line that shows it."""
-    if figure not in PICTURES:
-        return ""
-    name, points = PICTURES[figure]
-    draw(run, name, points, page.parent / "figures" / f"{figure}.svg")
-    circles = "; circles: the paper's numbers" if points else ""
-    return f"![{name.replace('-', ' ')}{circles}](figures/{figure}.svg)"
+def with_pictures(figure, text, page):
+    """A section with its pictures, drawn beside the page, below what is said of here and the paper."""
+    text = re.sub(r"^!\[.*\n\n", "", text, flags=re.M)
+    shown = []
+    for k, picture in enumerate(PICTURES.get(figure, [])):
+        name = figure + (f"-{k + 1}" if k else "")
+        if draw(text, picture, page.parent / "figures" / f"{name}.svg"):
+            circles = "; circles: the paper's numbers" if picture.paper else ""
+            shown.append(f"![{figure}: {picture.y} against {picture.x}{circles}]"
+                         f"(figures/{name}.svg)\n\n")
+    return re.sub(r"^(\*\*Here\*\*.*\n\n)", lambda found: found[1] + "".join(shown), text, count=1,
+                  flags=re.M)
 
 
-def section(figure, run, others, page, drawn=""):
+def section(figure, run, others, page):
     _, write, _, paper_setup, claim = FIGURES[figure]
     numbers, statements = write(run, *others)
     verdicts = verdict_table(statements)
     parts = [f"## {figure}", f"`./dev physics {figure}`, {run.seconds / 60:.0f} core-minutes. " +
              " ".join(run.scene["description"]), f"**Here**: {setup(run)}. **The paper**: "
-             f"{paper_setup}. {claim}", drawn, numbers, verdicts,
+             f"{paper_setup}. {claim}", numbers, verdicts,
              remark_of(page, figure, numbers + "\n\n" + verdicts)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -192,10 +216,16 @@ def main(jostle, folder, page, figures, deadline):
             print(f"{figure} is not reached; the next call goes on with {run.path}")
             break
         others = [finished(jostle, other, folder) for other in others]
-        sections[figure] = section(figure, run, others, text, picture(figure, run, page))
+        sections[figure] = section(figure, run, others, text)
         print(sections[figure], flush=True)
-        ordered = [sections[name].strip() for name in FIGURES if name in sections]
-        page.write_text("\n\n".join([HEAD, summary(sections)] + ordered) + "\n")
+        write_page(page, sections)
+
+
+def write_page(page, sections):
+    """The page, in the order of the figures, with a picture of every section."""
+    ordered = [with_pictures(name, sections[name], page).strip() for name in FIGURES
+               if name in sections]
+    page.write_text("\n\n".join([HEAD, summary(sections)] + ordered) + "\n")
 
 
 def arguments():
