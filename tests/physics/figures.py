@@ -64,6 +64,9 @@ FIGURES = {
     "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
             "The lift of 0.25 densifies much faster than the held dilation by 1.025, which gives "
             "little or nothing."),
+    "dr2-wide": (f"{DR}/fig2-wide", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
+                 "The lift of 0.25 densifies much faster than the held dilation by 1.025, which "
+                 "gives little or nothing."),
     "dr3": (f"{DR}/fig6", contacts, [], f"{DR_SETUP}", "N_c rises with Phi, along one line."),
     "dr4": (f"{DR}/fig4", best_lift, [], f"{DR_SETUP}; 10 000 to 90 000 taps",
             "Phi grows as KWW, and most at an intermediate lift, near 0.25 to 0.3."),
@@ -106,6 +109,7 @@ PICTURES = {
     "pb-moves": [Picture("longest step, diameters", "10^4 (Phi_c(30) - Phi_c(0))", across=True,
                          log="x")],
     "dr2": [Picture(TAPS, PHI, across=True, log="x")],
+    "dr2-wide": [Picture(TAPS, PHI, across=True, log="x")],
     "dr3": [Picture("solids fraction of the region", "neighbours within 1.05 d",
                     columns="N_c of the region", x_column=2)],
     "dr4": [Picture(TAPS, PHI, across=True, log="x")],
