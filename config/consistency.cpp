@@ -175,6 +175,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check.fits_have_curves();
   check_until(scene, faults);
   check_analyses(scene, faults);
+  check_motion(scene, faults);
   check_structure(scene, faults);
 }
 

@@ -20,4 +20,8 @@ std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol);
 /// The taps that are chosen, ascending, none twice.
 std::vector<std::uint64_t> chosen_taps(const TapChoice& choice);
 
+/// What is followed over so many taps. Grids that are not chosen begin alike for any number of
+/// them: a run that is resumed with more taps has missed nothing.
+MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps);
+
 }  // namespace jostle::inline config

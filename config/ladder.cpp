@@ -351,6 +351,7 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
   out.analyse = {};
   out.structure = {};
   out.snapshots = SnapshotChoice{};
+  out.motion.reset();
   out.protocol.clear();
   for (const Stage& stage : stages(scene.protocol)) {
     const std::uint64_t count = std::min(stage.count, taps);

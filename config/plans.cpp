@@ -88,6 +88,7 @@ std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
     plan.engine = engine_of(here);
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots);
+    if (here.motion) plan.motion = motion_settings(*here.motion, total_taps(plan));
     plans.push_back(std::move(plan));
   }
   return plans;

@@ -93,10 +93,11 @@ void read_simulation(const Reader& in, Scene& scene) {
 Scene read_scene(const Reader& in) {
   Scene scene;
   scene.observables = default_observables();
-  if (!in.is_object_of({"$schema", "name",      "description", "seed",    "realizations",
-                        "streams", "container", "spheres",     "start",   "protocol",
-                        "engine",  "relax",     "relax_start", "observe", "snapshots",
-                        "sweep",   "until",     "fits",        "analyse", "structure"})) {
+  if (!in.is_object_of({"$schema",  "name",      "description", "seed",    "realizations",
+                        "streams",  "container", "spheres",     "start",   "protocol",
+                        "engine",   "relax",     "relax_start", "observe", "snapshots",
+                        "motion",   "sweep",     "until",       "fits",    "analyse",
+                        "structure"})) {
     return scene;
   }
   read_identity(in, scene);
@@ -106,6 +107,7 @@ Scene read_scene(const Reader& in) {
   scene.snapshots = default_snapshots(grains);
   if (const auto snapshots = in.find("snapshots"))
     scene.snapshots = read_snapshots(*snapshots, grains);
+  if (const auto motion = in.find("motion")) scene.motion = read_motion(*motion);
   if (const auto sweep = in.find("sweep")) scene.sweep = read_sweep(*sweep);
   if (const auto until = in.find("until")) scene.until = read_until(*until);
   if (const auto fits = in.find("fits")) scene.fits = read_fits(*fits);

@@ -49,6 +49,7 @@ Json resolved(const Scene& scene) {
   out["observe"] = written(scene.observables);
   out["snapshots"] = written(scene.snapshots);
   if (sweeps_engine(scene) && keeps_default(scene)) out["snapshots"].erase("keep");
+  if (scene.motion) out["motion"] = written(*scene.motion);
   out["sweep"] = written(scene.sweep);
   if (!scene.until.targets.empty()) out["until"] = written(scene.until);
   out["fits"] = written(scene.fits);

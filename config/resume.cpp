@@ -74,23 +74,38 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
   return std::nullopt;
 }
 
-/// Snapshots may be added beyond the taps of the run.
-std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
-  const auto before = chosen_taps(was.snapshots.taps), after = chosen_taps(is.snapshots.taps);
-  const std::uint64_t last = total_taps(was.protocol);
+/// Taps may be chosen beyond those of the run. `what`: "snapshot of tap".
+std::optional<std::string> changed_choice(const char* what, std::uint64_t last,
+                                          const std::vector<std::uint64_t>& before,
+                                          const std::vector<std::uint64_t>& after) {
   for (const std::uint64_t tap : before) {
     if (!std::binary_search(after.begin(), after.end(), tap)) {
-      return fmt::format("the snapshot of tap {} was taken away", tap);
+      return fmt::format("the {} {} was taken away", what, tap);
     }
   }
   for (const std::uint64_t tap : after) {
     if (tap > last) break;
     if (!std::binary_search(before.begin(), before.end(), tap)) {
-      return fmt::format(
-          "a snapshot of tap {} was added: only those after the last tap, {}, can be", tap, last);
+      return fmt::format("a {} {} was added: only those after the last tap, {}, can be", what, tap,
+                         last);
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
+  return changed_choice("snapshot of tap", total_taps(was.protocol),
+                        chosen_taps(was.snapshots.taps), chosen_taps(is.snapshots.taps));
+}
+
+/// Where both follow the motion.
+std::optional<std::string> changed_motion(const Scene& was, const Scene& is) {
+  if (!was.motion || !is.motion) return std::nullopt;
+  const std::uint64_t last = total_taps(was.protocol);
+  const MotionSettings before = motion_settings(*was.motion, last),
+                       after = motion_settings(*is.motion, total_taps(is.protocol));
+  auto changed = changed_choice("motion origin at tap", last, before.origins, after.origins);
+  return changed ? changed : changed_choice("motion lag of", last, before.lags, after.lags);
 }
 
 /// Values may be added to a sweep: notes the points that are gone.
@@ -108,10 +123,10 @@ void compare_sweeps(const Scene& was, const Scene& is, std::vector<Fault>& fault
   }
 }
 
-/// Compares taps and snapshots of every sweep point, and notes the first that changed.
+/// Compares taps, snapshots and motion of every sweep point, and notes the first that changed.
 void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& faults) {
   const Json base_was = resolved(was), base_is = resolved(is);
-  bool same_taps = true, same_snapshots = true;
+  bool same_taps = true, same_snapshots = true, same_motion = true;
   for (const SweepPoint& point : sweep_points(was.sweep)) {
     std::vector<Fault> ignored;  // both scenes were checked
     const Scene before = scene_at(base_was, point, ignored),
@@ -122,9 +137,12 @@ void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& fault
     const auto snapshots = changed_snapshots(before, after);
     if (taps && same_taps) faults.push_back({"/protocol", *taps + where});
     if (snapshots && same_snapshots) faults.push_back({"/snapshots/taps", *snapshots + where});
+    const auto motion = changed_motion(before, after);
+    if (motion && same_motion && !taps) faults.push_back({"/motion", *motion + where});
+    same_motion = same_motion && !motion;
     same_taps = same_taps && !taps;
     same_snapshots = same_snapshots && !snapshots;
-    if (!same_taps && !same_snapshots) return;
+    if (!same_taps && !same_snapshots && !same_motion) return;
   }
 }
 
@@ -150,6 +168,8 @@ std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resol
       scene->erase(free);
     }
     (*scene)["snapshots"].erase("taps");
+    if (!scene->contains("motion")) continue;
+    for (const char* grid : {"origins", "lags"}) (*scene)["motion"].erase(grid);
   }
   compare(before, after, "", faults);
   const std::size_t before_sweeps = faults.size();

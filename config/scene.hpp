@@ -78,6 +78,15 @@ struct SnapshotChoice {
   bool operator==(const SnapshotChoice&) const = default;
 };
 
+/// How the motion of spheres is followed while they are tapped. docs/analysis.md.
+struct MotionChoice {
+  std::optional<TapChoice> origins;                  // absent: 0 and two a decade
+  std::optional<TapChoice> lags;                     // absent: ten a decade
+  std::vector<double> overlap_lengths = {0.1, 0.3};  // diameters, ascending
+  std::uint32_t layers = 5;
+  bool operator==(const MotionChoice&) const = default;
+};
+
 /// Values that vary together: one list of values a pointer, all of one length. An axis with one
 /// pointer is a plain axis, with several a zipped one. Axes are crossed, the first varies slowest.
 struct SweepAxis {
@@ -133,6 +142,7 @@ struct Scene {
 
   std::vector<Observable> observables;
   SnapshotChoice snapshots;
+  std::optional<MotionChoice> motion;
   std::vector<SweepAxis> sweep;
   TargetPrecision until;
   std::vector<FitRequest> fits;

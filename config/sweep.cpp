@@ -131,6 +131,10 @@ class SweepCheck {
     check("/sweep", "values", pointers, most_swept_values_in_all);
     check("/snapshots/taps", "taps with snapshots", chosen_taps(scene_.snapshots.taps).size(),
           most_snapshots_in_all);
+    if (!scene_.motion || !sound(faults_, "/protocol")) return;
+    const MotionSettings motion = motion_settings(*scene_.motion, total_taps(scene_.protocol));
+    check("/motion", "origins and lags", motion.origins.size() + motion.lags.size(),
+          most_snapshots_in_all);
   }
 
   void check_points(const std::vector<SweepPoint>& points) {

@@ -11,6 +11,7 @@
 #include "engine/engines.hpp"
 #include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
+#include "ensemble/motion/motion.hpp"
 #include "structure/observables.hpp"
 
 namespace jostle::inline ensemble {
@@ -70,6 +71,7 @@ struct Plan {
 
   std::vector<Observable> observables;
   Snapshots snapshots;
+  std::optional<MotionSettings> motion;
 };
 
 /// Taps of the whole protocol.

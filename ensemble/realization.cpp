@@ -80,6 +80,10 @@ void Realization::record(Slice& slice) {
     observer_.emplace(plan_.observables, packing_);
     state_.observable_windows = observer_->windows();
   }
+  if (plan_.motion) {
+    if (!state_.motion) state_.motion.emplace();
+    follow_motion(*plan_.motion, packing_, state_.rows, *state_.motion);
+  }
   slice.row = TapRow{state_.rows, (*observer_)(packing_), dynamics_->diagnostics()};
   if (std::ranges::binary_search(plan_.snapshots.taps, state_.rows)) {
     slice.snapshot = snapshot_of_row();

@@ -10,6 +10,7 @@
 #include "engine/bed/window.hpp"
 #include "engine/dynamics.hpp"
 #include "ensemble/fitting_report.hpp"
+#include "ensemble/motion/motion.hpp"
 #include "structure/forces.hpp"
 
 // Where an ensemble's numbers go. Nothing here says how they are stored.
@@ -54,6 +55,7 @@ struct RealizationState {
   std::vector<HeightWindow> observable_windows;
   std::optional<FittingReport> fitting;  // of a fitted pour
   std::vector<Vec3> centres;
+  std::optional<MotionState> motion{};  // where the plan asks for it, from tap 0 on
 };
 
 enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 2, failed = 3 };

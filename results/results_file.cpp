@@ -13,6 +13,7 @@
 #include "results/checkpoints/seal.hpp"
 #include "results/file/axes.hpp"
 #include "results/file/layout.hpp"
+#include "results/file/motion_group.hpp"
 #include "results/file/results_file_impl.hpp"
 #include "results/file/snapshot_statistics.hpp"
 #include "results/file/validate.hpp"
@@ -264,6 +265,17 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
       all.push_back({{column.name, column.units, column.long_name, "jostle"},
                      read_numbers<double>(group, column.name, &each)});
     return all;
+  });
+}
+
+std::optional<MotionRecords> ResultsFile::motion(std::uint32_t point) const {
+  return naming_file(impl_->path, [&]() -> std::optional<MotionRecords> {
+    const StudyPoint& at = study().points.at(point);
+    const std::string folder = std::string(motion_folder) + "/" + point_name(point);
+    if (!at.motion || !exists(impl_->file(), folder)) return std::nullopt;
+    MotionRecords records(*at.motion, at.n_spheres, study().realizations);
+    read_motion_records(open_group(impl_->file(), folder), records);
+    return records;
   });
 }
 

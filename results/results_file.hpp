@@ -8,6 +8,7 @@
 
 #include "engine/bed/packing.hpp"
 #include "ensemble/analysis/table.hpp"
+#include "ensemble/motion/motion_records.hpp"
 #include "results/record.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
@@ -104,6 +105,8 @@ class ResultsFile {
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
   /// What fitting did to each pour between walls (fitting_columns); nothing of another start.
   std::vector<RealizationValues> fittings(std::uint32_t point) const;
+  /// How far spheres moved; nothing where it was not followed, or nothing has been found yet.
+  std::optional<MotionRecords> motion(std::uint32_t point) const;
   /// How many taps its series hold: to the last that any realization has come to.
   std::uint64_t n_stored_rows(std::uint32_t point) const;
   /// A realization, to be read piece by piece while this file is there; or that without its

@@ -35,6 +35,7 @@ StudyPoint make_point(const Plan& plan) {
                    .diagnostics = columns(plan.engine),
                    .unit = unit_name(plan.engine),
                    .snapshots = plan.snapshots,
+                   .motion = plan.motion,
                    .start_sum = sum_of_given(plan.start)};
   for (const Observable& observable : plan.observables)
     point.observables.push_back(label(observable));
@@ -62,7 +63,8 @@ std::uint64_t bytes_of_realization(const StudyPoint& point) {
       (kept.contacts ? contacts_a_sphere * point.n_spheres * sizeof(Contact) : 0) +
       (profiles > 0 ? profiles * histogram_bins(point) * sizeof(double) : 0) + 512;
   return (point.taps + 1) * point.n_columns() * sizeof(double) +
-         point.snapshots.taps.size() * a_snapshot + positions + 4096;
+         point.snapshots.taps.size() * a_snapshot + positions + 4096 +
+         (point.motion ? 2 * motion_bytes(*point.motion, point.n_spheres) : 0);
 }
 
 std::string processor_model() {

@@ -28,6 +28,7 @@ struct StudyPoint {
   std::vector<Column> diagnostics;  // the engine's
   std::string unit = "trials";      // what a unit of its work is called
   Snapshots snapshots;
+  std::optional<MotionSettings> motion{};
   std::string start_sum{};  // SHA-256 of the centres of a start from a file; else empty
 
   /// All columns of the series: the observables, then the diagnostics.

@@ -17,6 +17,7 @@
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
 #include "study/tables/analyse.hpp"
+#include "study/tables/motion.hpp"
 #include "study/tables/sweep.hpp"
 
 namespace jostle::inline cli {
@@ -78,23 +79,32 @@ void require_files(const AnalyseArguments& arguments) {
   require_different(arguments.inputs);
 }
 
+using TablesOf =
+    std::function<std::vector<Table>(const ResultsFile&, std::span<const std::uint32_t>)>;
+
 /// All files, each with its tables stored in itself.
-int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
+int run_each(const AnalyseArguments& arguments, const TablesOf& tables_of) {
   require_files(arguments);
   const Provenance by = provenance_of_this_run("");
-  const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   ShownTables shown(arguments.output);
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
     {
       const ResultsFile file = open_to_read(input, arguments.output.live);
-      tables = analyse(file, chosen_points(file.study(), arguments.point), analyses, threads);
+      tables = tables_of(file, chosen_points(file.study(), arguments.point));
     }
     if (arguments.inputs.size() > 1) shown.heading(input);
     shown.show(tables, input);
     if (arguments.output.stored()) keep_tables(input, "analysis", tables, by);
   }
   return shown.end(by);
+}
+
+int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
+  const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
+  return run_each(arguments, [&](const ResultsFile& file, std::span<const std::uint32_t> points) {
+    return analyse(file, points, analyses, threads);
+  });
 }
 
 /// All files together; stored where they are one.
@@ -140,7 +150,8 @@ std::string file_or_kind_fault(const std::string& text) {
   std::error_code unreadable;
   if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
     return {};
-  const std::vector<std::string> kinds{"steady", "spectrum", "ageing", "hysteresis", "sweep"};
+  const std::vector<std::string> kinds{"steady",     "spectrum", "ageing",
+                                       "hysteresis", "motion",   "sweep"};
   if (std::ranges::find(kinds, text) != kinds.end())
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
   return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
@@ -157,14 +168,23 @@ class Kinds {
   /// `run` is called once the whole command line has been read.
   Command add(const char* name, const char* description,
               std::function<void(AnalyseArguments&)> run) {
-    Command kind = command_.add_command(name, description);
-    kind.fall_through();
-    add_option(kind, "--observable", arguments_->observables, "Which columns of the results");
-    kind.run([command = command_, arguments = arguments_, kind, run = std::move(run)] {
-      require_options_of(command, kind);
-      if (arguments->observables.empty()) {
+    Command kind = add_of_bed(name, description, [run = std::move(run)](AnalyseArguments& given) {
+      if (given.observables.empty()) {
         throw BadInput("--observable is required: the columns of the results to analyse");
       }
+      run(given);
+    });
+    add_option(kind, "--observable", arguments_->observables, "Which columns of the results");
+    return kind;
+  }
+
+  /// One that is not of an observable.
+  Command add_of_bed(const char* name, const char* description,
+                     std::function<void(AnalyseArguments&)> run) {
+    Command kind = command_.add_command(name, description);
+    kind.fall_through();
+    kind.run([command = command_, arguments = arguments_, kind, run = std::move(run)] {
+      require_options_of(command, kind);
       run(*arguments);
     });
     return kind;
@@ -266,6 +286,11 @@ void add_hysteresis(Kinds& kinds, int& code) {
   kinds.add_last(kind, "Taps at the end of each step (default: a quarter of the shortest)");
 }
 
+void add_motion(Kinds& kinds, int& code) {
+  kinds.add_of_bed("motion", "How far spheres moved: displacements, overlaps and chi_4, layers",
+                   [&code](AnalyseArguments& arguments) { code = run_each(arguments, motion_of); });
+}
+
 void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "sweep", "A quantity against the swept value, its maximum, differences; all files together",
@@ -284,7 +309,7 @@ void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
 
 void add_analyse(Command& app, int& code) {
   Command command = app.add_command(
-      "analyse", "Steady states, spectra, ageing, hysteresis and sweeps of results");
+      "analyse", "Steady states, spectra, ageing, hysteresis, motion and sweeps of results");
   auto arguments = std::make_shared<AnalyseArguments>();
   AnalyseArguments& a = *arguments;
   command.add_option("input", a.inputs, "Results, one file or several")
@@ -301,6 +326,7 @@ void add_analyse(Command& app, int& code) {
   add_spectrum(kinds, a, code);
   add_ageing(kinds, a, code);
   add_hysteresis(kinds, code);
+  add_motion(kinds, code);
   add_sweep(kinds, a, code);
   command.footer(
       "Examples:\n"
@@ -308,6 +334,7 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse *.h5 spectrum --observable mean_height --band 0.001:0.1 --json\n"
       "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99\n"
       "  jostle analyse fig4.h5 hysteresis --observable bulk_fraction\n"
+      "  jostle analyse motion.h5 motion\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"

@@ -54,8 +54,9 @@ bool is_on(const std::string& part, const Json& value) {
 
 std::string effects_text(const Json& resolved) {
   std::string on = "effects\n", off;
-  for (const char* part : {"container", "start", "protocol", "engine", "relax", "observe",
-                           "snapshots", "sweep", "until", "fits", "analyse", "structure"}) {
+  for (const char* part :
+       {"container", "start", "protocol", "engine", "relax", "observe", "snapshots", "motion",
+        "sweep", "until", "fits", "analyse", "structure"}) {
     const Json value =
         without_empty_lists(resolved.contains(part) ? resolved.at(part) : Json::object());
     // One of the two is there: Monte Carlo's settings are "relax".

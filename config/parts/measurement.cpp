@@ -175,14 +175,6 @@ void read_keep(const Reader& in, SnapshotChoice& snapshots) {
   for (const KeptPart& part : kept_parts) snapshots.*part.kept = kept.contains(part.name);
 }
 
-Json written_taps(const TapChoice& choice) {
-  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice)) {
-    return {{"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
-            {"also", grid->also}};
-  }
-  return std::get<std::vector<std::uint64_t>>(choice);
-}
-
 }  // namespace
 
 HeightWindow read_heights(const Reader& in) {
@@ -261,6 +253,14 @@ Json written(const std::vector<Observable>& observables) {
   Json list = Json::array();
   for (const Observable& observable : observables) list.push_back(written(observable));
   return list;
+}
+
+Json written_taps(const TapChoice& choice) {
+  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice)) {
+    return {{"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
+            {"also", grid->also}};
+  }
+  return std::get<std::vector<std::uint64_t>>(choice);
 }
 
 Json written(const SnapshotChoice& snapshots) {

@@ -25,6 +25,7 @@ SnapshotChoice read_snapshots(const Reader& in, bool grains);
 /// The kept parts that only discrete elements have, and those that stand beside positions, where
 /// they cannot be kept: why.
 std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains);
+MotionChoice read_motion(const Reader& in);
 std::vector<SweepAxis> read_sweep(const Reader& in);
 std::vector<FitRequest> read_fits(const Reader& in);
 TargetPrecision read_until(const Reader& in);
@@ -43,6 +44,8 @@ Json written_engine(const DiscreteElement& engine);
 Json written(const Window& window);
 Json written(const std::vector<Observable>& observables);
 Json written(const SnapshotChoice& snapshots);
+Json written_taps(const TapChoice& choice);
+Json written(const MotionChoice& motion);
 Json written(const std::vector<SweepAxis>& sweep);
 Json written(const std::vector<FitRequest>& fits);
 Json written(const TargetPrecision& wanted);
@@ -65,6 +68,8 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the motion of spheres.
+void check_motion(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns the structure of its packings.
 void check_structure(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns the number of realizations.

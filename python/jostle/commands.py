@@ -168,19 +168,20 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     return fitted_curves(json.loads(done.stdout))
 
 
-def analyse(results: Results | Path | Sequence[Path], what: str, observable: str | Sequence[str], *,
-            sweep_point: int | str | None = None, last: int | None = None,
+def analyse(results: Results | Path | Sequence[Path], what: str,
+            observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None = None,
             waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
             quantity: str | None = None, against: str | None = None, reference: float | None = None,
             segment: int | None = None, window: str | None = None, detrend: str | None = None,
             band: str | None = None, threads: int | None = None, store: bool = True, live: bool = False,
             program: Path | None = None) -> list[Table]:
-    """what: "steady", "spectrum", "ageing", "hysteresis" or "sweep"; docs/analysis.md has the equations.
+    """what: "steady", "spectrum", "ageing", "hysteresis" or "sweep" of observables, or "motion", which is of
+    none; docs/analysis.md has the equations.
 
     Kept in the files under /analysis unless store=False.
     """
-    names = [observable] if isinstance(observable, str) else list(observable)
-    done = call(["analyse", *_paths(results), what, "--json", "--observable", *names,
+    names = [observable] if isinstance(observable, str) else list(observable or [])
+    done = call(["analyse", *_paths(results), what, "--json", *(["--observable", *names] if names else []),
                  *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
                            quantity=quantity, against=against, reference=reference, segment=segment,
                            window=window, detrend=detrend, band=band, threads=threads,

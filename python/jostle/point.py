@@ -211,6 +211,14 @@ class Point:
         return Columns([name for name in group if name != "realization"],
                        lambda name: group[name][()], f"fitting of sweep point {self.index}")
 
+    @property
+    def motion(self) -> Columns:
+        """What was found of the motion of spheres, and its axes, by name: overlap, [waiting_time, lag,
+        overlap_length, realization]; the others are in docs/format.md. Empty where it was not followed."""
+        group = self._file.get(f"motion/{self._name}", {})
+        return Columns([name for name in group if name not in ("realization", "direction")],
+                       lambda name: group[name][()], f"motion of sweep point {self.index}")
+
     # Snapshots.
 
     @property

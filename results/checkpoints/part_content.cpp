@@ -1,6 +1,7 @@
 #include "results/checkpoints/part_content.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace jostle::inline results {
 
@@ -8,7 +9,7 @@ namespace {
 
 // Leads the bytes of a state; counts up when they change, from a number that no older state, which
 // began with its rows, can begin with.
-constexpr std::uint32_t state_format = 0xf0000004;
+constexpr std::uint32_t state_format = 0xf0000004, state_format_with_motion = 0xf0000005;
 
 }  // namespace
 
@@ -23,8 +24,38 @@ std::size_t SeriesPiece::bytes() const {
   return n;
 }
 
+namespace {
+
+void put(ByteWriter& writer, const MotionState& motion) {
+  writer.put(motion.unwrapped);
+  writer.put(motion.largest_step);
+  writer.put<std::uint64_t>(motion.origins.size());
+  for (const MotionOrigin& origin : motion.origins) {
+    writer.put(origin.tap);
+    writer.put(origin.centres);
+    writer.put(origin.values);
+  }
+}
+
+MotionState get_motion(ByteReader& reader) {
+  MotionState motion;
+  motion.unwrapped = reader.get_vector<Vec3>();
+  motion.largest_step = reader.get<double>();
+  const auto n_origins = reader.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < n_origins; ++i) {
+    MotionOrigin origin;
+    origin.tap = reader.get<std::uint64_t>();
+    origin.centres = reader.get_vector<Vec3>();
+    origin.values = reader.get_vector<double>();
+    motion.origins.push_back(std::move(origin));
+  }
+  return motion;
+}
+
+}  // namespace
+
 void put(ByteWriter& writer, const RealizationState& state) {
-  writer.put(state_format);
+  writer.put(state.motion ? state_format_with_motion : state_format);
   writer.put(state.rows);
   writer.put(state.relaxing);
   writer.put(state.engine);
@@ -35,10 +66,12 @@ void put(ByteWriter& writer, const RealizationState& state) {
     if (state.fitting) writer.put((*state.fitting).*column.field);
   }
   writer.put(state.centres);
+  if (state.motion) put(writer, *state.motion);
 }
 
 RealizationState get_realization_state(ByteReader& reader) {
-  if (reader.get<std::uint32_t>() != state_format)
+  const auto format = reader.get<std::uint32_t>();
+  if (format != state_format && format != state_format_with_motion)
     throw std::out_of_range("a state of another version of the program");
   RealizationState state;
   state.rows = reader.get<std::uint64_t>();
@@ -52,6 +85,7 @@ RealizationState get_realization_state(ByteReader& reader) {
       (*state.fitting).*column.field = reader.get<double>();
   }
   state.centres = reader.get_vector<Vec3>();
+  if (format == state_format_with_motion) state.motion = get_motion(reader);
   return state;
 }
 

@@ -49,6 +49,11 @@ inline constexpr bool Snapshots::*kept_fields[] = {
     &Snapshots::forces};
 inline constexpr std::size_t n_kept_by_all = 3;
 
+/// Attributes of /sweep/P where the motion is followed, and the group of what was found.
+inline constexpr const char *motion_origins = "motion_origins", *motion_lags = "motion_lags",
+                            *motion_lengths = "motion_overlap_lengths",
+                            *motion_layers = "motion_layers", *motion_folder = "motion";
+
 /// What fitting did to the pours of points that start from one.
 inline constexpr const char* fitting_folder = "fitting";
 

@@ -10,6 +10,7 @@
 #include "results/checkpoints/part.hpp"
 #include "results/file/axes.hpp"
 #include "results/file/layout.hpp"
+#include "results/file/motion_group.hpp"
 #include "results/file/particles.hpp"
 #include "results/hdf5/read.hpp"
 
@@ -75,6 +76,11 @@ RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realizatio
   work_.push_back(head.work);
   fittings_.push_back(head.state ? head.state->fitting : std::nullopt);
   take_snapshots(*realization);
+  if (point_.motion && head.state && head.state->motion) {
+    if (!motion_) motion_.emplace(*point_.motion, point_.n_spheres, n_realizations_);
+    motion_->add(static_cast<std::uint32_t>(realizations_.size()), *head.state->motion,
+                 point_.container);
+  }
   if (head.state) write_restart(*head.state);
   realizations_.push_back(std::move(realization));
   return head.status;
@@ -112,6 +118,7 @@ void PointWriter::finish() {
   write_observables();
   write_snapshots();
   write_fittings();
+  write_motion();
   write_timing();
 }
 
@@ -200,6 +207,13 @@ void PointWriter::write_fittings() {
     write_label(written, {column.name, column.units, column.long_name, "jostle"});
     attach_axes(written, axes);
   }
+}
+
+void PointWriter::write_motion() {
+  if (!motion_) return;
+  if (!exists(file_, motion_folder)) create_group(file_, motion_folder);
+  create_group(file_, std::string(motion_folder) + "/" + point_name(number_));
+  write_motion_records(group_under(motion_folder), *motion_);
 }
 
 void PointWriter::write_timing() {

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ensemble/motion/motion_records.hpp"
 #include "results/file/snapshot_statistics.hpp"
 #include "results/hdf5/write.hpp"
 #include "results/stored_realization.hpp"
@@ -36,6 +38,7 @@ class PointWriter {
   void write_series(hid_t group, const Hdf5Handle& taps, const Hdf5Handle& realizations);
   void write_snapshots();
   void write_fittings();
+  void write_motion();
   void write_timing();
   Hdf5Handle group_under(const char* folder) const;
 
@@ -51,6 +54,7 @@ class PointWriter {
   std::vector<std::string> reasons_;
   std::vector<Work> work_;
   std::vector<std::optional<FittingReport>> fittings_;  // [n_realizations]
+  std::optional<MotionRecords> motion_;                 // where it is followed
   SnapshotStatistics statistics_;                       // of snapshots
 };
 

@@ -81,6 +81,14 @@ Snapshots read_snapshot_settings(hid_t group) {
   return snapshots;
 }
 
+std::optional<MotionSettings> read_motion_settings(hid_t group) {
+  if (checked(H5Aexists(group, motion_origins)) == 0) return std::nullopt;
+  return MotionSettings{.origins = read_numbers_attribute<std::uint64_t>(group, motion_origins),
+                        .lags = read_numbers_attribute<std::uint64_t>(group, motion_lags),
+                        .overlap_lengths = read_numbers_attribute<double>(group, motion_lengths),
+                        .layers = read_number_attribute<std::uint32_t>(group, motion_layers)};
+}
+
 /// /sweep/value, [n_points, n_pointers].
 struct SweptValues {
   std::vector<std::string> pointers, values;
@@ -117,13 +125,15 @@ class KeptInAll {
     diagnostics_ += point.diagnostics.size();
     values_ += point.sweep_values.size();
     taps_ += point.snapshots.taps.size();
+    if (point.motion) moments_ += point.motion->origins.size() + point.motion->lags.size();
     if (observables_ > most_observables_in_all || diagnostics_ > most_observables_in_all ||
-        values_ > most_swept_values_in_all || taps_ > most_snapshots_in_all)
+        values_ > most_swept_values_in_all || taps_ > most_snapshots_in_all ||
+        moments_ > most_snapshots_in_all)
       throw Hdf5Error("the sweep points keep more columns or snapshots than jostle writes");
   }
 
  private:
-  std::uint64_t observables_ = 0, diagnostics_ = 0, values_ = 0, taps_ = 0;
+  std::uint64_t observables_ = 0, diagnostics_ = 0, values_ = 0, taps_ = 0, moments_ = 0;
 };
 
 /// `earlier`: the points before this one.
@@ -145,6 +155,7 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
     point.diagnostics = earlier[as].diagnostics;
     point.unit = earlier[as].unit;
     point.snapshots = earlier[as].snapshots;
+    point.motion = earlier[as].motion;
   } else {
     const auto pointers = read_texts(group, "pointers"), values = read_texts(group, "values");
     for (std::size_t i = 0; i < pointers.size(); ++i)
@@ -154,6 +165,7 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
     if (checked(H5Aexists(group, diagnostics_unit)) > 0)
       point.unit = read_text_attribute(group, diagnostics_unit);
     point.snapshots = read_snapshot_settings(group);
+    point.motion = read_motion_settings(group);
   }
   if (checked(H5Aexists(group, "start_sha256")) > 0)
     point.start_sum = read_text_attribute(group, "start_sha256");

@@ -81,7 +81,7 @@ Texts pointers_of(const StudyPoint& point) {
 
 bool keeps_the_same(const StudyPoint& a, const StudyPoint& b) {
   return a.observables == b.observables && a.diagnostics == b.diagnostics &&
-         a.snapshots == b.snapshots && pointers_of(a) == pointers_of(b);
+         a.snapshots == b.snapshots && a.motion == b.motion && pointers_of(a) == pointers_of(b);
 }
 
 /// What is kept of a point.
@@ -98,6 +98,11 @@ void write_kept(hid_t group, const StudyPoint& point) {
   write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
   write_attribute(group, "contact_cut", point.snapshots.contact_cut);
   write_attribute(group, "bin_width", point.snapshots.bin_width);
+  if (!point.motion) return;
+  write_attribute<std::uint64_t>(group, motion_origins, point.motion->origins);
+  write_attribute<std::uint64_t>(group, motion_lags, point.motion->lags);
+  write_attribute<double>(group, motion_lengths, point.motion->overlap_lengths);
+  write_attribute(group, motion_layers, point.motion->layers);
 }
 
 /// `as`: the number of an earlier point that keeps the same, or its own.

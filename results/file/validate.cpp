@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string>
 
 #include "results/export/container_text.hpp"
@@ -61,6 +62,27 @@ void validate_snapshots(const Snapshots& snapshots, std::uint64_t taps, const st
           name + " has a contact_cut or a bin_width that is no length");
 }
 
+bool ascends(std::span<const std::uint64_t> taps) {
+  return std::ranges::adjacent_find(taps, std::ranges::greater_equal{}) == taps.end();
+}
+
+void validate_motion(const MotionSettings& motion, const StudyPoint& point,
+                     const std::string& name) {
+  require(
+      ascends(motion.origins) && ascends(motion.lags) && !motion.origins.empty() &&
+          motion.origins.back() <= point.taps && motion.origins.size() <= most_motion_taps &&
+          motion.lags.size() <= most_motion_taps &&
+          (motion.lags.empty() || (motion.lags.front() > 0 && motion.lags.back() <= point.taps)),
+      name + " follows motion from taps or over lags that do not ascend up to its last");
+  require(std::ranges::all_of(motion.overlap_lengths,
+                              [](double a) { return a > 0 && std::isfinite(a); }) &&
+              motion.overlap_lengths.size() <= most_overlap_lengths && motion.layers >= 1 &&
+              motion.layers <= std::min(most_motion_layers, point.n_spheres),
+          name + " follows motion within lengths or in layers that are none");
+  require(motion_bytes(motion, point.n_spheres) <= most_motion_bytes,
+          name + " follows motion from more origins than jostle does");
+}
+
 void validate_point(const StudyPoint& point, const std::string& name) {
   require(point.n_spheres >= 1 && point.n_spheres <= most_spheres,
           fmt::format("{} has {} spheres", name, point.n_spheres));
@@ -74,6 +96,7 @@ void validate_point(const StudyPoint& point, const std::string& name) {
   validate_container(point.container, name);
   validate_labels(point, name);
   validate_snapshots(point.snapshots, point.taps, name);
+  if (point.motion) validate_motion(*point.motion, point, name);
 }
 
 }  // namespace
@@ -98,7 +121,34 @@ void validate(const Study& study, const FileProvenance& provenance) {
           "the scene (/scene/resolved) is nested too deep");
   for (std::size_t p = 0; p < study.points.size(); ++p)
     validate_point(study.points[p], fmt::format("sweep point {}", p));
+  for (const StudyPoint& point : study.points)
+    require(
+        !point.motion || motion_numbers(*point.motion, study.realizations) <= most_motion_numbers,
+        "more numbers of motion than jostle writes");
 }
+
+namespace {
+
+/// As far as its realization has come.
+bool is_followed(const MotionState& motion, const MotionSettings& settings, std::uint64_t rows,
+                 std::uint32_t n_spheres) {
+  const auto are_there = [&](const std::vector<Vec3>& centres) {
+    return centres.size() == n_spheres && std::ranges::all_of(centres, is_position);
+  };
+  const auto passed = static_cast<std::size_t>(std::ranges::lower_bound(settings.origins, rows) -
+                                               settings.origins.begin());
+  if (!are_there(motion.unwrapped) || motion.origins.size() != passed) return false;
+  for (std::size_t i = 0; i < passed; ++i) {
+    const MotionOrigin& origin = motion.origins[i];
+    if (origin.tap != settings.origins[i] || !are_there(origin.centres) ||
+        origin.values.size() !=
+            lags_reached(settings, origin.tap, rows) * n_motion_values(settings))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 void validate(const RealizationState& state, const StudyPoint& point) {
   require(state.rows <= point.taps + 1, "a restart state beyond the last tap");
@@ -113,6 +163,10 @@ void validate(const RealizationState& state, const StudyPoint& point) {
   require(state.observable_windows.size() == n_windows, "a restart state of other observables");
   require(std::ranges::all_of(state.observable_windows, is_window),
           "a restart state with a window that is none");
+  const bool follows = point.motion && state.rows > 0;
+  require(state.motion.has_value() == follows &&
+              (!follows || is_followed(*state.motion, *point.motion, state.rows, point.n_spheres)),
+          "a restart state of another motion");
 }
 
 std::size_t nesting_of(std::string_view json) {

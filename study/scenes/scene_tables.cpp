@@ -9,6 +9,7 @@
 #include "study/bad_input.hpp"
 #include "study/provenance.hpp"
 #include "study/tables/analyse.hpp"
+#include "study/tables/motion.hpp"
 #include "study/tables/structure.hpp"
 #include "study/tables/sweep.hpp"
 #include "study/tables/target_precision.hpp"
@@ -57,6 +58,10 @@ void make_tables(const ResultsFile& file, const Scene& scene, int threads, Table
   }
   if (!scene.analyse.empty()) {  // sweeps are drawn of fits too
     groups.push_back({"analysis", analyses_of(file, scene, threads, std::move(fits))});
+    for (const Table& table : groups.back().tables) observer.analysed(table);
+  }
+  if (scene.motion) {
+    groups.push_back({"analysis", motion_of(file, all_points(file))});
     for (const Table& table : groups.back().tables) observer.analysed(table);
   }
   if (scene.structure.empty()) return;

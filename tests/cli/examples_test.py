@@ -97,7 +97,7 @@ class Examples(Case):
         self.jostle("run", "small.json", "--quiet")
         runs = {"fig5": LONG, "fig9": QUICK, "fig10": LONG, "bell": changed(LONG, sweep=HIGH),
                 "low": changed(QUICK, sweep=LOW), "high": changed(QUICK, sweep=HIGH),
-                "fig4": changed(LONG, protocol=UP_AND_DOWN)}
+                "fig4": changed(LONG, protocol=UP_AND_DOWN), "motion": changed(QUICK, motion={})}
         for name, scene in runs.items():
             self.write(scene, "of.json")
             self.jostle("run", "of.json", "--quiet", "-o", f"{name}.h5")

@@ -41,6 +41,33 @@ TEST_CASE("A resume takes the same scene, more taps, more realizations and anoth
         }).empty());
 }
 
+TEST_CASE("A resume follows the same motion, from further origins and over further lags") {
+  const auto faults = [](const char* was, const char* is, std::uint64_t taps) {
+    EditedScene before = EditedScene::parse(run), after = before;
+    if (was != nullptr) before["motion"] = EditedScene::parse(was);
+    if (is != nullptr) after["motion"] = EditedScene::parse(is);
+    after["protocol"][1]["count"] = 10;
+    if (taps > 0) after["protocol"].push_back({{"tap", {{"lift", 0.3}}}, {"count", taps}});
+    return lines(
+        resume_faults(resolved(scene_of(before.dump())), resolved(scene_of(after.dump()))));
+  };
+  CHECK(faults("{}", "{}", 0).empty());
+  CHECK(faults("{}", "{}", 3000).empty());
+  CHECK(faults(R"({"origins": [0, 9]})",
+               R"({"origins": [0, 9, 131], "lags": {"log": {"to": 140, "per_decade": 10}}})", 20)
+            .empty());
+  CHECK(faults(R"({"origins": [0, 9]})", R"({"origins": [0, 8, 9]})", 0) ==
+        "/motion: a motion origin at tap 8 was added: only those after the last tap, 130, can be "
+        "(at the sweep point dilate = 0.01)\n");
+  CHECK(faults("{}", R"({"lags": [1, 2]})", 0) ==
+        "/motion: the motion lag of 3 was taken away (at the sweep point dilate = 0.01)\n");
+  CHECK(faults("{}", R"({"layers": 6})", 0) ==
+        "/motion/layers: was 5, is 6: a resumed run keeps it\n");
+  CHECK(faults(nullptr, R"({"layers": 6})", 0) ==
+        "/motion: was null, is {\"overlap_lengths\":[0.1,0.3],\"layers\":6}: a resumed run keeps "
+        "it\n");
+}
+
 TEST_CASE("A resume compares what taps do, not how they are written") {
   CHECK(faults_of([](EditedScene& scene) {
           scene["protocol"] = EditedScene::parse(R"([

@@ -105,6 +105,11 @@ const std::vector<std::string> cross_field_messages{
     "and no part to measure in it",
     "structure is measured in kept packings",
     "first must not be above last",
+    "expected at least one tap",
+    "layers of",
+    "MB a realization, more than",
+    "numbers a sweep point",
+    "taps are more than",
 };
 
 bool is_beyond_schema(const Fault& fault) {

@@ -139,6 +139,15 @@ class OtherFiles(Case):
         self.assertEqual(sorted(point.reasons), [0, 1, 2])
         self.assertTrue(all(point.reasons.values()))
 
+    def test_what_was_followed_of_the_motion(self):
+        scene = changed(TINY, sweep=None, motion={"origins": [0], "lags": [1, 2], "layers": 2})
+        results = self.open(made(scene))
+        motion = results.points[0].motion
+        self.assertEqual(motion["lateral_overlap"].shape, (1, 2, 2, 3))
+        self.assertEqual(motion["lag"].tolist(), [1, 2])
+        tables = jostle.analyse(results, "motion", store=False)
+        np.testing.assert_allclose(tables[1]["lateral_overlap"], motion["lateral_overlap"].mean(axis=-1))
+
     def test_what_fitting_did_to_a_pour(self):
         scene = changed(TINY, sweep=None, container={"sides": "walls", "width": 4},
                         start={"pour": "fitted"}, protocol=[], snapshots={"taps": [0]})

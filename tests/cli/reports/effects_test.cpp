@@ -20,6 +20,7 @@ TEST_CASE("Every part of a scene is among its effects, on or off") {
     for (const char* part : {"container", "start", "observe"}) lists(part, true);
     lists("protocol", !scene.protocol.empty());
     lists(scene.grains ? "engine" : "relax", true);
+    lists("motion", scene.motion.has_value());
     lists("sweep", !scene.sweep.empty());
     lists("until", !scene.until.targets.empty());
     lists("fits", !scene.fits.empty());
@@ -33,7 +34,7 @@ TEST_CASE("Effects are named with their settings") {
   const std::string text = effects_text(resolved(scene));
   CHECK_THAT(text, Contains("sides periodic, width 8") &&
                        Contains("tap (dilate 0.02), count 100") && Contains("sampler exhaustive") &&
-                       Contains("off        sweep, until, fits, "
+                       Contains("off        motion, sweep, until, fits, "
                                 "analyse, structure\n"));
 }
 

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/grids.hpp"
+#include "config/parts/parts.hpp"
+#include "ensemble/statistics/counted.hpp"
+
+namespace jostle::inline config {
+
+namespace {
+
+constexpr double longest_overlap = 100;  // diameters
+constexpr std::uint32_t origins_a_decade = 2, lags_a_decade = 10;
+
+std::vector<std::uint64_t> taps_or(const std::optional<TapChoice>& choice,
+                                   const LogarithmicTaps& otherwise) {
+  return chosen_taps(choice ? *choice : TapChoice(otherwise));
+}
+
+void read_lengths(const Reader& in, std::vector<double>& lengths) {
+  if (!in.is_list(1, most_overlap_lengths, "lengths in diameters")) return;
+  lengths.clear();
+  for (std::size_t i = 0; i < in.value().size(); ++i) {
+    const Reader element = in.element(i);
+    const auto length = element.number(above(0, longest_overlap));
+    if (!length) continue;
+    if (std::ranges::find(lengths, *length) != lengths.end())
+      element.fault(fmt::format("{} is listed twice", *length));
+    lengths.push_back(*length);
+  }
+  std::ranges::sort(lengths);
+}
+
+/// Notes what is wrong with a list of taps.
+class TapCheck {
+ public:
+  TapCheck(const char* pointer, std::uint64_t taps, std::vector<Fault>& faults)
+      : pointer_(pointer), taps_(taps), faults_(faults) {}
+
+  void operator()(std::span<const std::uint64_t> chosen, std::uint64_t first) const {
+    if (chosen.empty()) return note("expected at least one tap");
+    if (chosen.size() > most_motion_taps)
+      note(fmt::format("{} are more than {}", counted(chosen.size(), "tap"), most_motion_taps));
+    if (chosen.front() < first) note("a lag is at least 1 tap");
+    if (chosen.back() > taps_)
+      note(fmt::format("tap {} is beyond the last tap of the protocol, {}", chosen.back(), taps_));
+  }
+
+ private:
+  void note(std::string message) const { faults_.push_back({pointer_, std::move(message)}); }
+
+  const char* pointer_;
+  std::uint64_t taps_;
+  std::vector<Fault>& faults_;
+};
+
+void check_amounts(const MotionSettings& settings, const Scene& scene, std::vector<Fault>& faults) {
+  if (const auto bytes = motion_bytes(settings, scene.n_spheres); bytes > most_motion_bytes) {
+    faults.push_back(
+        {"/motion",
+         fmt::format("{} of {} take {} MB a realization, more than {} MB: choose fewer "
+                     "origins (each keeps the centres of all spheres) or lags",
+                     counted(settings.origins.size(), "origin"), counted(scene.n_spheres, "sphere"),
+                     bytes >> 20, most_motion_bytes >> 20)});
+  }
+  const bool grows = !scene.until.targets.empty();
+  const std::uint64_t realizations =
+      std::max<std::uint64_t>(scene.realizations, grows ? scene.until.at_most : 0);
+  if (motion_numbers(settings, realizations) > most_motion_numbers) {
+    faults.push_back({"/motion", fmt::format("{} realizations make more than {} numbers a sweep "
+                                             "point: choose fewer origins, lags, lengths or layers",
+                                             realizations, most_motion_numbers)});
+  }
+}
+
+}  // namespace
+
+MotionChoice read_motion(const Reader& in) {
+  MotionChoice motion;
+  if (!in.is_object_of({"origins", "lags", "overlap_lengths", "layers"})) return motion;
+  if (const auto origins = in.find("origins")) motion.origins = read_taps(*origins);
+  if (const auto lags = in.find("lags")) motion.lags = read_taps(*lags);
+  if (const auto lengths = in.find("overlap_lengths"))
+    read_lengths(*lengths, motion.overlap_lengths);
+  in.read_whole("layers", motion.layers, 1, most_motion_layers);
+  return motion;
+}
+
+Json written(const MotionChoice& motion) {
+  Json lengths = Json::array();
+  for (const double length : motion.overlap_lengths) lengths.push_back(plain_number(length));
+  Json out = Json::object();
+  if (motion.origins) out["origins"] = written_taps(*motion.origins);
+  if (motion.lags) out["lags"] = written_taps(*motion.lags);
+  out["overlap_lengths"] = lengths;
+  out["layers"] = motion.layers;
+  return out;
+}
+
+MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps) {
+  MotionSettings settings{.origins = {},
+                          .lags = {},
+                          .overlap_lengths = choice.overlap_lengths,
+                          .layers = choice.layers};
+  if (taps == 0) return settings;
+  settings.origins = taps_or(
+      choice.origins, {.from = 1, .to = taps - 1, .per_decade = origins_a_decade, .also = {0}});
+  settings.lags = taps_or(choice.lags, {.from = 1, .to = taps, .per_decade = lags_a_decade});
+  return settings;
+}
+
+void check_motion(const Scene& scene, std::vector<Fault>& faults) {
+  if (!scene.motion || !sound(faults, "/motion") || !sound(faults, "/protocol")) return;
+  const std::uint64_t taps = total_taps(scene.protocol);
+  if (taps == 0) {
+    faults.push_back({"/motion", "needs a tap, but the protocol has none"});
+    return;
+  }
+  const MotionSettings settings = motion_settings(*scene.motion, taps);
+  TapCheck("/motion/origins", taps, faults)(settings.origins, 0);
+  TapCheck("/motion/lags", taps, faults)(settings.lags, 1);
+  if (!sound(faults, "/spheres")) return;
+  if (settings.layers > scene.n_spheres)
+    faults.push_back({"/motion/layers", fmt::format("{} layers of {}", settings.layers,
+                                                    counted(scene.n_spheres, "sphere"))});
+  check_amounts(settings, scene, faults);
+}
+
+}  // namespace jostle::inline config

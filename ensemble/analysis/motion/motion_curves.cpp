@@ -1,0 +1,154 @@
+#include "ensemble/analysis/motion/motion_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/jackknife.hpp"
+#include "ensemble/statistics/variance_estimate.hpp"
+
+namespace jostle::inline ensemble {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr MeanEstimate no_mean{nan, nan, 0};
+constexpr std::size_t n_directions = 3, x = 0, y = 1, z = 2;
+
+template <class Value>
+std::vector<double> each(std::size_t n, const Value& value) {
+  std::vector<double> row;
+  for (std::size_t r = 0; r < n; ++r) row.push_back(value(r));
+  return row;
+}
+
+/// fourth / (factor second^2) - 1; no number where nothing moved.
+std::vector<double> non_gaussian(std::span<const double> fourth, std::span<const double> second,
+                                 double factor) {
+  return each(fourth.size(), [&](std::size_t r) {
+    return second[r] > 0 ? fourth[r] / (factor * second[r] * second[r]) - 1 : nan;
+  });
+}
+
+/// Values of two rows where both have one.
+struct Pairs {
+  std::vector<double> first, second;
+};
+Pairs pairs(std::span<const double> first, std::span<const double> second) {
+  Pairs found;
+  for (std::size_t r = 0; r < first.size(); ++r) {
+    if (std::isnan(first[r]) || std::isnan(second[r])) continue;
+    found.first.push_back(first[r]);
+    found.second.push_back(second[r]);
+  }
+  return found;
+}
+
+}  // namespace
+
+MeanEstimate mean_estimate(std::span<const double> row) {
+  Moments moments;
+  for (const double value : row) moments.add(value);
+  return {moments.mean(), moments.standard_error(),
+          std::max(0.0, static_cast<double>(moments.count()) - 1)};
+}
+
+std::vector<double> lateral_squares(const MotionRecords& records, std::size_t origin,
+                                    std::size_t lag) {
+  const auto along_x = records.row("square_displacement", origin, lag, x),
+             along_y = records.row("square_displacement", origin, lag, y);
+  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+}
+
+std::vector<double> vertical_squares(const MotionRecords& records, std::size_t origin,
+                                     std::size_t lag) {
+  const auto mean = records.row("mean_displacement", origin, lag, z),
+             square = records.row("square_displacement", origin, lag, z);
+  return each(mean.size(),
+              [&](std::size_t r) { return std::max(0.0, square[r] - mean[r] * mean[r]); });
+}
+
+std::vector<double> layer_lateral_squares(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag, std::size_t layer) {
+  const auto row = [&](std::size_t direction) {
+    return records.row("layer_square_displacement", origin, lag, n_directions * layer + direction);
+  };
+  const auto along_x = row(x), along_y = row(y);
+  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+}
+
+std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
+                                           std::size_t lag, std::size_t layer) {
+  const auto mean = records.row("layer_settling", origin, lag, layer),
+             square =
+                 records.row("layer_square_displacement", origin, lag, n_directions * layer + z);
+  return each(mean.size(),
+              [&](std::size_t r) { return std::max(0.0, square[r] - mean[r] * mean[r]); });
+}
+
+std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag) {
+  return non_gaussian(records.row("lateral_quartic", origin, lag),
+                      lateral_squares(records, origin, lag), 2);
+}
+
+std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag) {
+  return non_gaussian(records.row("vertical_quartic", origin, lag),
+                      vertical_squares(records, origin, lag), 3);
+}
+
+LogEstimate four_point_susceptibility(std::span<const double> overlaps, std::uint32_t n_spheres) {
+  LogEstimate found = variance_estimate(overlaps);
+  const double n = n_spheres, q = mean_estimate(overlaps).value;
+  const double least = n * std::min(q, 1 - q), group = n * found.value / (q * (1 - q));
+  if (!(least >= fewest_spheres && least >= 0.5 * group)) {
+    const double value = found.value;
+    found = no_estimate();
+    found.value = value;
+  }
+  for (double LogEstimate::*field :
+       {&LogEstimate::value, &LogEstimate::error, &LogEstimate::low_68, &LogEstimate::high_68,
+        &LogEstimate::low_95, &LogEstimate::high_95})
+    found.*field *= n;
+  return found;
+}
+
+MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag) {
+  const auto& lags = records.settings.lags;
+  const auto later = std::ranges::lower_bound(lags, 2 * lags[lag]);
+  const auto earlier = std::ranges::upper_bound(lags, lags[lag] / 2);
+  if (later == lags.end() || earlier == lags.begin()) return no_mean;
+  const auto early = static_cast<std::size_t>(earlier - lags.begin()) - 1,
+             late = static_cast<std::size_t>(later - lags.begin());
+  const Pairs squares =
+      pairs(lateral_squares(records, origin, early), lateral_squares(records, origin, late));
+  const double decades =
+      std::log(static_cast<double>(lags[late]) / static_cast<double>(lags[early]));
+  const auto sum = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+  };
+  const double slope = std::log(sum(squares.second) / sum(squares.first)) / decades;
+  if (!std::isfinite(slope)) return no_mean;
+  const auto first = ln_means_without_one(squares.first),
+             second = ln_means_without_one(squares.second);
+  const std::vector<double> left_out =
+      each(first.size(), [&](std::size_t r) { return (second[r] - first[r]) / decades; });
+  return {slope, jackknife_error(left_out),
+          std::max(0.0, static_cast<double>(left_out.size()) - 1)};
+}
+
+LogEstimate lateral_ratio(const MotionRecords& records, std::size_t origin, std::size_t lag) {
+  if (origin == 0) return no_estimate();
+  const Pairs squares =
+      pairs(lateral_squares(records, origin, lag), lateral_squares(records, 0, lag));
+  const MeanEstimate logarithm = mean_estimate(each(squares.first.size(), [&](std::size_t r) {
+    const double ratio = std::log(squares.first[r] / squares.second[r]);
+    return std::isfinite(ratio) ? ratio : nan;
+  }));
+  return log_estimate(std::exp(logarithm.value), {logarithm.error, logarithm.dof});
+}
+
+}  // namespace jostle::inline ensemble

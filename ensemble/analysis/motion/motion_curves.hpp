@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ensemble/motion/motion_records.hpp"
+#include "ensemble/statistics/log_estimate.hpp"
+
+// What realizations say together of the motion of spheres. A row holds a value a realization, NaN
+// where it has none, which is left out.
+namespace jostle::inline ensemble {
+
+/// Of a row, with its standard error (NaN below two realizations).
+struct MeanEstimate {
+  double value, error, dof;
+};
+MeanEstimate mean_estimate(std::span<const double> row);
+
+/// <dx^2 + dy^2> of each realization, diameters^2.
+std::vector<double> lateral_squares(const MotionRecords& records, std::size_t origin,
+                                    std::size_t lag);
+/// <(dz - <dz>)^2> of each: what is left of <dz^2> once the bed has settled as a whole.
+std::vector<double> vertical_squares(const MotionRecords& records, std::size_t origin,
+                                     std::size_t lag);
+/// The same of a layer, about its own mean.
+std::vector<double> layer_lateral_squares(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag, std::size_t layer);
+std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
+                                           std::size_t lag, std::size_t layer);
+
+/// <r^4> / (2 <r^2>^2) - 1 of lateral displacements r in two dimensions: 0 for Gaussian ones.
+/// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is of three.
+std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag);
+/// <z^4> / (3 <z^2>^2) - 1 of vertical displacements z about their mean.
+std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag);
+
+/// chi_4 = N Var(Q), the variance over realizations (of M - 1) of the fraction Q of N spheres that
+/// have moved less than a: Q (1 - Q) for spheres that move independently of each other. Intervals
+/// of chi2, exact where Q is normal over realizations: so none where fewer spheres than
+/// `fewest_spheres` have moved, or stayed, in the mean, or fewer than one group in two
+/// realizations; a group has chi_4 / (Q (1 - Q)) spheres. After Dauchot et al. 2005,
+/// doi:10.1103/PhysRevLett.95.265701; Keys et al. 2007, doi:10.1038/nphys572.
+inline constexpr double fewest_spheres = 30;
+LogEstimate four_point_susceptibility(std::span<const double> overlaps, std::uint32_t n_spheres);
+
+/// d ln <r^2> / d ln t between the nearest lags that are at most half and at least twice this one,
+/// over the mean of realizations, with the jackknife's error over them; NaN without such lags.
+MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag);
+
+/// <r^2>(t_W, t) over that of the first waiting time at the same lag: the geometric mean over
+/// realizations of the ratio of each, with the interval by Student's t of its logarithm. None of
+/// the first.
+LogEstimate lateral_ratio(const MotionRecords& records, std::size_t origin, std::size_t lag);
+
+}  // namespace jostle::inline ensemble

@@ -1,0 +1,170 @@
+#include "ensemble/motion/motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "engine/bed/boundary.hpp"
+
+namespace jostle::inline ensemble {
+
+namespace {
+
+constexpr std::size_t n_directions = 3;
+
+std::array<double, n_directions> along(Vec3 d) {
+  return {d.x, d.y, d.z};
+}
+
+/// Sums over the spheres of a layer.
+struct LayerSums {
+  double n = 0, settling = 0;
+  std::array<double, n_directions> squares{};
+};
+
+/// The image of a wrapped coordinate that is nearest to where the sphere was.
+double unwrapped_coordinate(double wrapped, double was, double period, double& largest_step) {
+  if (period == 0) return wrapped;
+  const double now = wrapped + period * std::nearbyint((was - wrapped) / period);
+  largest_step = std::max(largest_step, std::abs(now - was) / period);
+  return now;
+}
+
+void unwrap(const Packing& bed, MotionState& state) {
+  const Vec3 periods = Boundary(bed.container).periods();
+  for (std::size_t i = 0; i < bed.centres.size(); ++i) {
+    const Vec3 wrapped = bed.centres[i];
+    Vec3& r = state.unwrapped[i];
+    r = {unwrapped_coordinate(wrapped.x, r.x, periods.x, state.largest_step),
+         unwrapped_coordinate(wrapped.y, r.y, periods.y, state.largest_step),
+         unwrapped_coordinate(wrapped.z, r.z, periods.z, state.largest_step)};
+  }
+}
+
+void append(std::vector<double>& values, std::span<const double> sums, double n) {
+  for (const double sum : sums) values.push_back(sum / n);
+}
+
+}  // namespace
+
+std::size_t n_places(MotionPlaces places, const MotionSettings& settings) {
+  switch (places) {
+    case MotionPlaces::none:
+      return 1;
+    case MotionPlaces::directions:
+      return n_directions;
+    case MotionPlaces::overlap_lengths:
+      return settings.overlap_lengths.size();
+    case MotionPlaces::layers:
+      return settings.layers;
+    case MotionPlaces::layer_directions:
+      return n_directions * settings.layers;
+  }
+  return 0;
+}
+
+std::size_t n_motion_values(const MotionSettings& settings) {
+  std::size_t n = 0;
+  for (const MotionQuantity& one : motion_quantities) n += n_places(one.places, settings);
+  return n;
+}
+
+std::size_t lags_reached(const MotionSettings& settings, std::uint64_t origin, std::uint64_t rows) {
+  const auto beyond = std::ranges::find_if(
+      settings.lags, [&](std::uint64_t lag) { return origin >= rows || lag >= rows - origin; });
+  return static_cast<std::size_t>(beyond - settings.lags.begin());
+}
+
+std::uint64_t motion_bytes(const MotionSettings& settings, std::uint64_t n_spheres) {
+  const std::uint64_t n_origins = settings.origins.size();
+  return (n_origins + 1) * n_spheres * sizeof(Vec3) +
+         n_origins * settings.lags.size() * n_motion_values(settings) * sizeof(double);
+}
+
+std::uint64_t motion_numbers(const MotionSettings& settings, std::uint64_t realizations) {
+  return settings.origins.size() * settings.lags.size() * n_motion_values(settings) * realizations;
+}
+
+std::vector<double> heights_of(std::span<const Vec3> centres, const Container& container) {
+  const double period = Boundary(container).periods().z;
+  std::vector<double> heights;
+  for (const Vec3& r : centres)
+    heights.push_back(period > 0 ? r.z - period * std::floor(r.z / period) : r.z);
+  return heights;
+}
+
+std::vector<std::uint32_t> layers_of(std::span<const double> heights, std::uint32_t n_layers) {
+  const std::size_t n = heights.size();
+  std::vector<std::size_t> by_height(n);
+  std::iota(by_height.begin(), by_height.end(), std::size_t{0});
+  std::ranges::stable_sort(by_height, {}, [&](std::size_t i) { return heights[i]; });
+  std::vector<std::uint32_t> layers(n);
+  for (std::size_t rank = 0; rank < n; ++rank)
+    layers[by_height[rank]] = static_cast<std::uint32_t>(rank * n_layers / n);
+  return layers;
+}
+
+std::vector<double> motion_values(const MotionSettings& settings, std::span<const Vec3> reference,
+                                  std::span<const Vec3> now,
+                                  std::span<const std::uint32_t> layers) {
+  assert(reference.size() == now.size() && layers.size() == now.size());
+  const auto n = static_cast<double>(now.size());
+  std::array<double, n_directions> sums{}, squares{};
+  double lateral_quartic = 0, vertical_quartic = 0;
+  std::vector<double> lateral_overlap(settings.overlap_lengths.size()),
+      overlap(settings.overlap_lengths.size());
+  std::vector<LayerSums> of_layers(settings.layers);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const auto d = along(now[i] - reference[i]);
+    LayerSums& layer = of_layers[layers[i]];
+    for (std::size_t k = 0; k < n_directions; ++k) {
+      sums[k] += d[k];
+      squares[k] += d[k] * d[k];
+      layer.squares[k] += d[k] * d[k];
+    }
+    layer.n += 1;
+    layer.settling += d[2];
+    const double lateral = d[0] * d[0] + d[1] * d[1];
+    lateral_quartic += lateral * lateral;
+    for (std::size_t a = 0; a < overlap.size(); ++a) {
+      const double within = settings.overlap_lengths[a] * settings.overlap_lengths[a];
+      lateral_overlap[a] += lateral < within ? 1 : 0;
+      overlap[a] += lateral + d[2] * d[2] < within ? 1 : 0;
+    }
+  }
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double about_mean = now[i].z - reference[i].z - sums[2] / n;
+    vertical_quartic += about_mean * about_mean * about_mean * about_mean;
+  }
+  std::vector<double> values;  // in the order of motion_quantities
+  append(values, sums, n);
+  append(values, squares, n);
+  append(values, {{lateral_quartic, vertical_quartic}}, n);
+  append(values, lateral_overlap, n);
+  append(values, overlap, n);
+  for (const LayerSums& layer : of_layers) values.push_back(layer.settling / layer.n);
+  for (const LayerSums& layer : of_layers) append(values, layer.squares, layer.n);
+  return values;
+}
+
+void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint64_t tap,
+                   MotionState& state) {
+  if (tap == 0) {
+    state = {};
+    state.unwrapped = bed.centres;
+  }
+  unwrap(bed, state);
+  for (MotionOrigin& origin : state.origins) {
+    if (!std::ranges::binary_search(settings.lags, tap - origin.tap)) continue;
+    const std::vector<double> values =
+        motion_values(settings, origin.centres, state.unwrapped,
+                      layers_of(heights_of(origin.centres, bed.container), settings.layers));
+    origin.values.insert(origin.values.end(), values.begin(), values.end());
+  }
+  if (std::ranges::binary_search(settings.origins, tap))
+    state.origins.push_back({tap, state.unwrapped, {}});
+}
+
+}  // namespace jostle::inline ensemble

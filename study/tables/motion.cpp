@@ -1,0 +1,36 @@
+#include "study/tables/motion.hpp"
+
+#include <algorithm>
+
+#include "ensemble/analysis/motion/motion_tables.hpp"
+#include "results/file/layout.hpp"
+#include "study/bad_input.hpp"
+
+namespace jostle::inline study {
+
+std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint32_t> points) {
+  if (!follows_motion(file)) {
+    throw BadInput(
+        file.path() +
+        ": its scene does not follow the motion of spheres, and what was not followed cannot be "
+        "found afterwards; give a new run's scene the key \"motion\" (docs/analysis.md)");
+  }
+  std::vector<Table> tables;
+  for (const std::uint32_t point : points) {
+    const auto records = file.motion(point);
+    if (!records) continue;
+    const std::string& label = file.study().points[point].label;
+    for (Table& table : motion_tables(point_name(point) + "/motion/", *records)) {
+      if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
+      tables.push_back(std::move(table));
+    }
+  }
+  return tables;
+}
+
+bool follows_motion(const ResultsFile& file) {
+  return std::ranges::any_of(file.study().points,
+                             [](const StudyPoint& point) { return point.motion.has_value(); });
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+
+#include "ensemble/analysis/motion/motion_curves.hpp"
+#include "ensemble/analysis/motion/motion_tables.hpp"
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/variance_estimate.hpp"
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
+#include "tests/ensemble/noise.hpp"
+
+// How often what is printed of the motion holds the truth, over ensembles of 3 to 20 realizations
+// of spheres that move alone or in groups.
+
+using namespace jostle;
+
+namespace {
+
+constexpr std::uint32_t n_spheres = 512;
+constexpr std::size_t sizes[] = {3, 4, 10, 20};
+constexpr int ensembles = 1500;
+
+struct Coverage {
+  int n = 0, in_68 = 0, in_95 = 0;
+
+  void add(double truth, double low_68, double high_68, double low_95, double high_95) {
+    if (std::isnan(low_95)) return;
+    ++n;
+    in_68 += low_68 <= truth && truth <= high_68;
+    in_95 += low_95 <= truth && truth <= high_95;
+  }
+  void add(double truth, const LogEstimate& one) {
+    add(truth, one.low_68, one.high_68, one.low_95, one.high_95);
+  }
+  void add(double truth, const MeanEstimate& one) {
+    const double by_68 = one.error * student_two_sided(interval_levels[0], one.dof),
+                 by_95 = one.error * student_two_sided(interval_levels[1], one.dof);
+    add(truth, one.value - by_68, one.value + by_68, one.value - by_95, one.value + by_95);
+  }
+  double share_68() const { return static_cast<double>(in_68) / n; }
+  double share_95() const { return static_cast<double>(in_95) / n; }
+};
+
+void require(const Coverage& found, bool not_too_wide = true) {
+  CHECK(found.share_68() >= 0.60);
+  CHECK(found.share_95() >= 0.90);
+  if (!not_too_wide) return;
+  CHECK(found.share_68() <= 0.78);
+  CHECK(found.share_95() <= 0.99);
+}
+
+/// Walks of groups of `group` spheres, each with its own rate: of groups that are all alike, or one
+/// in ten of which moves three times as far. Two waiting times, the second slower by `slowing`.
+MotionRecords walks(std::size_t realizations, std::size_t group, bool mobile, double slowing,
+                    RandomStream& random) {
+  const MotionSettings settings{
+      .origins = {0, 10}, .lags = {1, 2, 4}, .overlap_lengths = {0.1}, .layers = 2};
+  MotionRecords records(settings, n_spheres, static_cast<std::uint32_t>(realizations));
+  for (std::uint32_t r = 0; r < realizations; ++r) {
+    MotionState state;
+    for (std::size_t o = 0; o < 2; ++o) {
+      MotionOrigin origin;
+      origin.tap = settings.origins[o];
+      origin.centres.resize(n_spheres);
+      std::vector<Vec3> now(n_spheres);
+      std::uint64_t at = 0;
+      for (const std::uint64_t lag : settings.lags) {
+        const double step = std::sqrt(static_cast<double>(lag - at) * (o == 1 ? slowing : 1.0));
+        at = lag;
+        Vec3 common;
+        for (std::size_t i = 0; i < n_spheres; ++i) {
+          const double scale = (mobile && (i / group) % 10 == 0 ? 0.09 : 0.03) * step;
+          if (i % group == 0)
+            common = {scale * noise(random), scale * noise(random), scale * noise(random)};
+          now[i] = now[i] + common;
+        }
+        const auto values =
+            motion_values(settings, origin.centres, now,
+                          layers_of(std::vector<double>(n_spheres), settings.layers));
+        origin.values.insert(origin.values.end(), values.begin(), values.end());
+      }
+      state.origins.push_back(std::move(origin));
+    }
+    records.add(r, state, PeriodicBox{8, 8});
+  }
+  return records;
+}
+
+/// Of a share p of groups of `group` spheres that stay, the others moving: chi_4 = group p (1 - p).
+std::vector<double> overlaps(std::size_t realizations, std::size_t group, double p,
+                             RandomStream& random) {
+  std::vector<double> row;
+  for (std::size_t r = 0; r < realizations; ++r) {
+    double stay = 0;
+    for (std::size_t i = 0; i < n_spheres; i += group)
+      if (random.uniform() < p) stay += static_cast<double>(group);
+    row.push_back(stay / n_spheres);
+  }
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("Quantiles of chi2 are those of its tail and of tables") {
+  CHECK(chi_squared_quantile(0.95, 1) == Approx(3.841458820694124));
+  CHECK(chi_squared_quantile(0.025, 2) == Approx(0.0506356159685798));
+  CHECK(chi_squared_quantile(0.975, 19) == Approx(32.8523268616912));
+  for (const double p : {0.001, 0.16, 0.5, 0.999})
+    for (const double dof : {1.0, 3.0, 50.0})
+      CHECK(chi_squared_tail(chi_squared_quantile(p, dof), dof) == Approx(1 - p));
+}
+
+TEST_CASE("Intervals of chi_4 hold the truth as often as they say", "[statistics]") {
+  RandomStream random = test_stream(41);
+  fmt::print("{:>3} {:>6} {:>5} | {:>7} {:>7} {:>8} {:>9}\n", "M", "group", "stay", "68 %", "95 %",
+             "given", "mean/true");
+  for (const std::size_t realizations : sizes)
+    for (const std::size_t group : {1u, 8u, 32u})
+      for (const double p : {0.5, 0.9, 0.98}) {
+        Coverage found;
+        Moments values;
+        const double truth = static_cast<double>(group) * p * (1 - p);
+        for (int e = 0; e < ensembles; ++e) {
+          const LogEstimate one =
+              four_point_susceptibility(overlaps(realizations, group, p, random), n_spheres);
+          found.add(truth, one);
+          values.add(one.value);
+        }
+        fmt::print("{:>3} {:>6} {:>5} | {:>6.1f}% {:>6.1f}% {:>7.0f}% {:>9.3f}\n", realizations,
+                   group, p, 100 * found.share_68(), 100 * found.share_95(),
+                   100.0 * found.n / ensembles, values.mean() / truth);
+        CAPTURE(realizations, group, p, found.n);
+        CHECK(std::abs(values.mean() - truth) <= 4 * values.standard_error());
+        // Of sixteen groups Q has few values, and three of them are often equal.
+        if (found.n > ensembles / 2) require(found, group < 32);
+      }
+  std::fflush(stdout);
+}
+
+TEST_CASE("Errors of mean squares, overlaps, exponents and ratios hold the truth", "[statistics]") {
+  RandomStream random = test_stream(42);
+  for (const std::size_t realizations : sizes)
+    for (const bool mobile : {false, true}) {
+      Coverage squares, settling, overlap, exponent, ratio;
+      const double square = 2 * 4 * 0.0009 * (mobile ? (13.0 * 81 + 115 * 9) / (128 * 9) : 1);
+      const auto stays = [](double step) { return 1 - std::exp(-0.01 / (2 * 4 * step * step)); };
+      const double q = mobile ? (13 * stays(0.09) + 115 * stays(0.03)) / 128 : stays(0.03);
+      for (int e = 0; e < 300; ++e) {
+        const MotionRecords records = walks(realizations, 4, mobile, 0.5, random);
+        squares.add(square, mean_estimate(lateral_squares(records, 0, 2)));
+        settling.add(0, mean_estimate(records.row("mean_displacement", 0, 2, 2)));
+        overlap.add(q, mean_estimate(records.row("lateral_overlap", 0, 2)));
+        exponent.add(1, lateral_exponent(records, 0, 1));
+        ratio.add(0.5, lateral_ratio(records, 1, 2));
+      }
+      CAPTURE(realizations, mobile);
+      const std::pair<const char*, const Coverage*> all[] = {{"msd", &squares},
+                                                             {"settling", &settling},
+                                                             {"overlap", &overlap},
+                                                             {"exponent", &exponent},
+                                                             {"ratio", &ratio}};
+      for (const auto& [name, one] : all) {
+        CAPTURE(name);
+        fmt::print("{:>3} {:>6} {:>9} | {:>6.1f}% {:>6.1f}%\n", realizations,
+                   mobile ? "mixed" : "alike", name, 100 * one->share_68(), 100 * one->share_95());
+        require(*one);
+      }
+    }
+  std::fflush(stdout);
+}
+
+TEST_CASE("Gaussian motion has no non-Gaussian parameter, motion of two rates has") {
+  RandomStream random = test_stream(43);
+  Moments alike, mixed, vertical;
+  for (int e = 0; e < 40; ++e) {
+    alike.add(lateral_non_gaussian(walks(1, 1, false, 1, random), 0, 2)[0]);
+    mixed.add(lateral_non_gaussian(walks(1, 1, true, 1, random), 0, 2)[0]);
+    vertical.add(vertical_non_gaussian(walks(1, 1, true, 1, random), 0, 2)[0]);
+  }
+  // One in ten (52 of 512) of 9 times the variance: <v^2> / <v>^2 - 1.
+  const double share = 52.0 / n_spheres;
+  const double expected = (share * 81 + 1 - share) / std::pow(share * 9 + 1 - share, 2) - 1;
+  CHECK(std::abs(alike.mean()) <= 3 * alike.standard_error() + 0.01);
+  // Of 512 spheres it is some 4 % low: a ratio of means of few fast ones.
+  CHECK(mixed.mean() == Approx(expected).epsilon(0.1));
+  CHECK(vertical.mean() == Approx(expected).epsilon(0.1));
+}
+
+TEST_CASE("No error stands where there is none, and a doubtful unwrapping is told") {
+  RandomStream random = test_stream(44);
+  const LogEstimate still = four_point_susceptibility(std::vector<double>(8, 1.0), n_spheres);
+  CHECK(still.value == 0);
+  CHECK(std::isnan(still.low_95));
+  CHECK(std::isnan(four_point_susceptibility(std::vector<double>{0.5}, n_spheres).value));
+  MotionRecords records = walks(3, 1, false, 1, random);
+  CHECK(mean_estimate(std::vector<double>{0.5}).dof == 0);
+  CHECK(std::isnan(lateral_exponent(records, 0, 0).value));
+  CHECK(motion_tables("", records).at(0).notes.empty());
+  records.largest_step = {0.1, 0.3, 0};
+  const Table table = motion_tables("point_0000/motion/", records).at(0);
+  CHECK(table.name == "point_0000/motion/displacement");
+  REQUIRE(table.notes.size() == 1);
+  CHECK(table.notes[0].second.starts_with("doubtful"));
+  records.largest_step = {0.1, 0.2, 0};
+  CHECK(motion_tables("", records).at(0).notes[0].second.starts_with("sound"));
+}
