@@ -1,15 +1,16 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "engine/bed/geometry.hpp"
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "engine/monte_carlo/kernel/packed_geometry.hpp"
+#include "engine/monte_carlo/rejection_free/place_grid.hpp"
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 #include "engine/monte_carlo/rejection_free/weight_tree.hpp"
 
@@ -24,49 +25,51 @@ class BoundTables {
   using Bins = typename Directions::Bins;
   using Row = BoundRow<Directions::n_sectors>;
 
-  BoundTables(const Box& box, BoundsKernel<Directions::n_sectors> kernel)
-      : box_(box), packed_box_(box), kernel_(kernel) {}
+  BoundTables(const Box& box, const RejectionFreeKernels& kernels)
+      : box_(box),
+        packed_box_(box),
+        grid_(box),
+        make_bounds_(Directions::bounds(kernels)),
+        seen_by_(kernels.seen_by),
+        try_step_(kernels.try_step) {}
 
   /// Builds everything.
   void build(const Bins& bins, std::vector<PackedCentre> centres) {
     bins_ = bins;
-    reach_squared_ = reach(bins.longest) * reach(bins.longest);
+    for (float& spread : bins_.spread) spread += 2 * static_cast<float>(grid_.coarsest());
+    sight_ = sight();
     centres_ = std::move(centres);
+    places_.resize(centres_.size());
+    std::ranges::transform(centres_, places_.begin(), grid_);
     build_lists();
     rows_.resize(centres_.size());
+    stale_.clear();
+    for (Index i = 0; i < centres_.size(); ++i) stale_.push_back(i);
+    make_rows();
     std::vector<std::uint32_t> weights(centres_.size());
-    obstacles_.resize(1);
-    for (Index i = 0; i < centres_.size(); ++i) {
-      look_around(i, obstacles_[0]);
-      weights[i] = make_row(i, obstacles_[0]);
-    }
+    for (const Bounded& made : made_) weights[made.sphere] = made.weight;
     tree_.assign(std::move(weights));
   }
 
   /// Moves sphere j, and brings its bounds and those of its neighbours up to date.
   void move(Index j, const PackedCentre& centre) {
-    const PackedCentre old = std::exchange(centres_[j], centre);
+    centres_[j] = centre;
+    const GridPlace former = std::exchange(places_[j], grid_(centre));
     stale_.assign(1, j);
     if (distance_squared(packed_box_, centre, lists_.origins()[j]) > spare * spare) {
       for_each_listed(j, [&](Index i) { stale_.push_back(i); });
       if (!lists_.renew(box_, j, centre)) build_lists();
       for_each_listed(j, [&](Index i) { stale_.push_back(i); });
     } else {
-      stale_.resize(1 + lists_.stride());
-      std::size_t n = 1;
-      for_each_listed(j, [&](Index i) {
-        stale_[n] = i;
-        n += seen_from(centres_[i], old).in_the_way(reach_squared_) |
-             seen_from(centres_[i], centre).in_the_way(reach_squared_);
-      });
-      stale_.resize(n);
+      stale_.resize(1 + lists_.stride() + 3);
+      stale_.resize(1 + seen_by_(sight_, surroundings(), j, former, &stale_[1]));
     }
-    // What was just written is read faster a little later.
-    if (obstacles_.size() < stale_.size()) obstacles_.resize(stale_.size());
-    for (std::size_t k = 0; k < stale_.size(); ++k) look_around(stale_[k], obstacles_[k]);
-    for (std::size_t k = 0; k < stale_.size(); ++k) {
-      tree_.set(stale_[k], make_row(stale_[k], obstacles_[k]));
+    for (const Index i : stale_) {
+      prefetch(i);
+      tree_.prefetch(i);
     }
+    make_rows();
+    for (const Bounded& made : made_) tree_.set(made.sphere, made.weight);
   }
 
   const std::vector<PackedCentre>& centres() const { return centres_; }
@@ -76,7 +79,34 @@ class BoundTables {
   std::uint64_t rows_made() const { return rows_made_; }
 
   /// Whether another sphere overlaps sphere i placed at `target`, one step away from its centre.
-  bool blocked(Index i, const PackedCentre& target, std::uint64_t& tests) const {
+  bool blocked(Index i, Vec3 step, const PackedCentre& target, std::uint64_t& tests) const {
+    tests += *(lists_.rows() + i * lists_.stride());
+    const StepOutcome outcome = try_step_(sight_, surroundings(), i, step.x, step.y, step.z);
+    return outcome == StepOutcome::unsure ? blocked(i, target, tests)
+                                          : outcome == StepOutcome::blocked;
+  }
+
+  std::size_t bytes() const {
+    return lists_.bytes() + sizeof(PackedCentre) * centres_.capacity() +
+           sizeof(GridPlace) * places_.capacity() + sizeof(Row) * rows_.capacity() + tree_.bytes();
+  }
+
+  void prefetch(Index i) const {
+    const char* const row = reinterpret_cast<const char*>(&rows_[i]);
+    for (std::size_t line = 0; line < sizeof(Row); line += 64) __builtin_prefetch(row + line);
+    __builtin_prefetch(&centres_[i]);
+    __builtin_prefetch(&lists_.origins()[i]);
+    __builtin_prefetch(lists_.rows() + i * lists_.stride());
+  }
+
+ private:
+  // How far a sphere may be from where its list was made.
+  static constexpr double spare = 0.06;
+  // Of numbers near 1 in single precision, after a few operations.
+  static constexpr double rounding = 2e-6;
+
+  // In double precision, which decides.
+  [[gnu::noinline]] bool blocked(Index i, const PackedCentre& target, std::uint64_t& tests) const {
     const Index* const row = lists_.rows() + i * lists_.stride();
     for (const Index *j = row + 1, *const last = j + *row; j != last; ++j) {
       ++tests;
@@ -84,24 +114,6 @@ class BoundTables {
     }
     return false;
   }
-
-  void prefetch(Index i) const {
-    const char* const row = reinterpret_cast<const char*>(&rows_[i]);
-    for (std::size_t line = 0; line < sizeof(Row); line += 64) __builtin_prefetch(row + line);
-    __builtin_prefetch(&centres_[i]);
-    __builtin_prefetch(lists_.rows() + i * lists_.stride());
-  }
-
-  std::size_t bytes() const {
-    return lists_.bytes() + sizeof(PackedCentre) * centres_.capacity() +
-           sizeof(Row) * rows_.capacity() + tree_.bytes();
-  }
-
- private:
-  // How far a sphere may be from where its list was made.
-  static constexpr double spare = 0.06;
-  // Rounding, of float components too.
-  static constexpr double margin = 1e-6;
 
   template <class Visit>
   void for_each_listed(Index i, Visit&& visit) const {
@@ -115,87 +127,85 @@ class BoundTables {
     return longest < 1.99 ? 1 + std::min(Directions::obstacle_reach * longest, 0.3) : 0;
   }
 
-  // Another centre as seen from a sphere's own. All say in the same arithmetic what is in the way.
-  struct Seen {
-    Pair away;
-    double up, squared;
-    bool in_the_way(double reach_squared) const {
-      return (up < Directions::highest_obstacle) &
-             (squared < reach_squared);  // no branch: it could not be guessed
+  Sight sight() const {
+    const double farthest = reach(bins_.longest);
+    Sight sight{.unit = {},
+                .margin = static_cast<float>(rounding + 8 * grid_.coarsest()),
+                .doubt = 0,
+                .highest = static_cast<float>(Directions::highest_obstacle),
+                .farthest = static_cast<float>(farthest * farthest - 1)};
+    constexpr double longest_seen = 8;
+    sight.doubt = bins_.longest < longest_seen
+                      ? static_cast<float>(2 * (1 + bins_.longest)) * sight.margin
+                      : std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      sight.unit[axis] = static_cast<float>(axis == 2 ? -grid_.unit(axis) : grid_.unit(axis));
     }
-  };
-  Seen seen_from(const PackedCentre& own, const PackedCentre& other) const {
-    const Pair away = packed_box_.lateral(other.xy - own.xy);
-    const double up = other.z - own.z;
-    const Pair squares = away * away;
-    return {away, up, squares[0] + squares[1] + up * up};
+    return sight;
   }
 
   void build_lists() {
-    lists_.build(box_, centres_, bins_.longest + 2 * spare + margin, {0, 0, -0.43 * bins_.longest});
+    lists_.build(box_, centres_, bins_.longest + 2 * spare + rounding,
+                 {0, 0, -0.43 * bins_.longest});
   }
 
-  // Notes what is in the way of sphere i.
-  void look_around(Index i, Obstacles& seen) const {
-    const PackedCentre& own = centres_[i];
-    std::uint32_t n = 0;
-    for_each_listed(i, [&](Index j) {
-      const Seen other = seen_from(own, centres_[j]);
-      seen.x[n] = static_cast<float>(other.away[0]);
-      seen.y[n] = static_cast<float>(other.away[1]);
-      seen.z[n] = static_cast<float>(-other.up);
-      seen.tangent_squared[n] = static_cast<float>(other.squared - 1 + margin);
-      n += other.in_the_way(reach_squared_);
-    });
-    assert(n < Obstacles::most_spheres);
-    seen.n_spheres = n;
-    seen.n_planes = 0;
-    add_plane(seen, {0, 0, 1}, own.z - sphere_radius + margin);
-    add_sides(seen, box_, own);
+  // Of the stale spheres.
+  void make_rows() {
+    made_.resize(stale_.size());
+    for (std::size_t k = 0; k < stale_.size(); ++k) {
+      const PackedCentre& own = centres_[stale_[k]];
+      made_[k].sphere = stale_[k];
+      made_[k].planes.n = 0;
+      add_plane(made_[k].planes, {0, 0, 1}, own.z - sphere_radius + rounding);
+      add_sides(made_[k].planes, box_, own);
+    }
+    make_bounds_(bins_, sight_, surroundings(), made_.data(), made_.size(), rows_.data());
+    rows_made_ += made_.size();
   }
 
-  std::uint32_t make_row(Index i, const Obstacles& seen) {
-    ++rows_made_;
-    return kernel_(bins_, seen, rows_[i]);
-  }
+  Surroundings surroundings() const { return {places_.data(), lists_.rows(), lists_.stride()}; }
 
-  void add_plane(Obstacles& seen, Vec3 normal, double gap) const {
+  void add_plane(Planes& planes, Vec3 normal, double gap) const {
     if (gap > bins_.longest) return;
-    const std::uint32_t w = seen.n_planes++;
-    seen.plane_x[w] = static_cast<float>(normal.x);
-    seen.plane_y[w] = static_cast<float>(normal.y);
-    seen.plane_z[w] = static_cast<float>(normal.z);
-    seen.gap[w] = static_cast<float>(gap);
+    const std::uint32_t w = planes.n++;
+    planes.x[w] = static_cast<float>(normal.x);
+    planes.y[w] = static_cast<float>(normal.y);
+    planes.z[w] = static_cast<float>(normal.z);
+    planes.gap[w] = static_cast<float>(gap);
   }
 
-  void add_sides(Obstacles&, const PeriodicBox&, const PackedCentre&) const {}
-  void add_sides(Obstacles& seen, const WalledBox& box, const PackedCentre& own) const {
-    const double beyond = margin - sphere_radius;
-    add_plane(seen, {-1, 0, 0}, own.xy[0] + beyond);
-    add_plane(seen, {1, 0, 0}, box.width_x - own.xy[0] + beyond);
-    add_plane(seen, {0, -1, 0}, own.xy[1] + beyond);
-    add_plane(seen, {0, 1, 0}, box.width_y - own.xy[1] + beyond);
+  void add_sides(Planes&, const PeriodicBox&, const PackedCentre&) const {}
+  void add_sides(Planes& planes, const WalledBox& box, const PackedCentre& own) const {
+    const double beyond = rounding - sphere_radius;
+    add_plane(planes, {-1, 0, 0}, own.xy[0] + beyond);
+    add_plane(planes, {1, 0, 0}, box.width_x - own.xy[0] + beyond);
+    add_plane(planes, {0, -1, 0}, own.xy[1] + beyond);
+    add_plane(planes, {0, 1, 0}, box.width_y - own.xy[1] + beyond);
   }
   // A tube lies within every plane that touches it.
-  void add_sides(Obstacles& seen, const Cylinder& tube, const PackedCentre& own) const {
+  void add_sides(Planes& planes, const Cylinder& tube, const PackedCentre& own) const {
     const double axis = 0.5 * tube.diameter;
     const double x = own.xy[0] - axis, y = own.xy[1] - axis;
     const double distance = std::sqrt(x * x + y * y);
     if (distance < 1e-3) return;
-    add_plane(seen, {x / distance, y / distance, 0}, axis - sphere_radius - distance + margin);
+    add_plane(planes, {x / distance, y / distance, 0}, axis - sphere_radius - distance + rounding);
   }
 
   Box box_;
   PackedBox<Box> packed_box_;
-  BoundsKernel<Directions::n_sectors> kernel_;
+  PlaceGrid grid_;
+  BoundsKernel<Directions::n_sectors> make_bounds_;
+  decltype(RejectionFreeKernels::seen_by) seen_by_;
+  decltype(RejectionFreeKernels::try_step) try_step_;
   Bins bins_{};
-  double reach_squared_ = 0;
+  Sight sight_{};
   std::vector<PackedCentre> centres_;
+  std::vector<GridPlace> places_;
   NeighbourLists lists_;
   std::vector<Row> rows_;
   WeightTree tree_;
-  std::vector<Obstacles> obstacles_;  // of the stale spheres
   std::vector<Index> stale_;
+  std::vector<Bounded> made_;  // last
   std::uint64_t rows_made_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,11 +27,7 @@ class CandidateSampler {
 
   CandidateSampler(const Box& box, const typename Directions::Policy& move, StreamKey key,
                    const RejectionFreeKernels& kernels)
-      : box_(box),
-        key_(key),
-        kernels_(kernels),
-        directions_(move),
-        tables_(box, Directions::kernel(kernels)) {
+      : box_(box), key_(key), kernels_(kernels), directions_(move), tables_(box, kernels) {
     for (int p = 0; p < n_sectors; ++p) sector_begins_[p] = sector_begin(p, n_sectors);
   }
 
@@ -96,7 +93,7 @@ class CandidateSampler {
     const auto place = static_cast<std::uint32_t>(number % CandidateBatch::size);
     const std::uint64_t first = number - place;
     if (batch_valid_ && batch_first_ == first) return place;
-    kernels_.candidates(static_cast<std::uint64_t>(key_), first, n_sectors, batch_);
+    kernels_.draw_candidates(static_cast<std::uint64_t>(key_), first, n_sectors, batch_);
     n_located_ = 0;
     batch_first_ = first;
     batch_valid_ = true;
@@ -111,33 +108,52 @@ class CandidateSampler {
     n_located_ = std::min(n_ahead_, CandidateBatch::size - t);
     for (std::uint32_t k = 0; k < n_located_; ++k) {
       located_[k] = locate(t + k);
-      tables_.prefetch(located_[k].index);
+      tables_.prefetch(located_[k].sphere);
     }
   }
 
-  // The sphere of a candidate of the batch, and what chooses its bin.
-  WeightTree::Hit locate(std::uint32_t t) const {
+  // The sphere of a candidate of the batch, and what chooses its bin: rest + fraction is uniform in
+  // [0, weight).
+  struct Located {
+    std::uint32_t sphere;
+    std::int32_t rest;
+    double fraction;
+  };
+  Located locate(std::uint32_t t) const {
     __extension__ using Wide = unsigned __int128;
     const WeightTree& weights = tables_.weights();
-    return weights.find(
-        static_cast<std::uint64_t>((Wide{batch_.choice[t]} * weights.total()) >> 64));
+    const Wide target = Wide{batch_.choice[t]} * weights.total();
+    const WeightTree::Hit hit = weights.find(static_cast<std::uint64_t>(target >> 64));
+    const auto fraction = static_cast<std::uint64_t>(target) >> 11;
+    return {hit.index, static_cast<std::int32_t>(hit.rest),
+            static_cast<double>(fraction) * 0x1p-53};
   }
 
-  Vec3 displacement(std::uint32_t t, const WeightTree::Hit& hit) const {
-    const BoundRow<n_sectors>& row = tables_.row(hit.index);
-    auto rest = static_cast<std::int32_t>(hit.rest);
-    int sector = 0, ring = 0;
-    while (rest >= row.sector_weight[sector]) rest -= row.sector_weight[sector++];
-    for (;; ++ring) {
-      const std::int32_t weight = row.weight[ring][sector] * tables_.bins().parts[ring];
-      if (rest < weight) break;
-      rest -= weight;
+  // The bin that a candidate falls in, and its bound over the longest step.
+  struct Bin {
+    int sector, ring;
+    double length_ratio;
+  };
+  std::optional<Bin> bin_of(const Located& located) const {
+    const auto& row = tables_.row(located.sphere);
+    int sector = 0;
+    for (int p = 0; p < n_sectors; ++p) sector += row.up_to[p] <= located.rest;
+    const std::int32_t before = sector == 0 ? 0 : row.up_to[sector - 1];
+    double rest = (located.rest - before) + located.fraction;
+    // The likeliest first. A sector weighs a little more than its bins.
+    for (int ring = n_rings - 1; ring >= 0; --ring) {
+      const double size = Directions::size(row.bound(ring, sector));
+      rest -= size * (tables_.bins().parts[ring] * whole_weight);
+      if (rest < 0) return Bin{sector, ring, Directions::length_ratio(size)};
     }
-    const double bound = row.weight[ring][sector] * (1.0 / whole_weight);
-    const SineCosine theta = directions_.angle(ring, unit(batch_.theta[t]));
-    const double length = tables_.bins().longest * Directions::length_ratio(bound) *
-                          unit(Directions::length_word(batch_, t));
-    const SineCosine begin = sector_begins_[sector];
+    return std::nullopt;
+  }
+
+  Vec3 displacement(std::uint32_t t, const Bin& bin) const {
+    const SineCosine theta = directions_.angle(bin.ring, unit(batch_.theta[t]));
+    const double length =
+        tables_.bins().longest * bin.length_ratio * unit(Directions::length_word(batch_, t));
+    const SineCosine begin = sector_begins_[bin.sector];
     const double sideways = length * theta.sine;
     return {sideways * (begin.cosine * batch_.cosine[t] - begin.sine * batch_.sine[t]),
             sideways * (begin.sine * batch_.cosine[t] + begin.cosine * batch_.sine[t]),
@@ -146,14 +162,16 @@ class CandidateSampler {
 
   static double unit(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 
-  bool accepts(std::uint32_t t, const WeightTree::Hit& hit) {
-    const Vec3 d = displacement(t, hit);
+  bool accepts(std::uint32_t t, const Located& located) {
+    const std::optional<Bin> bin = bin_of(located);
+    if (!bin) return false;
+    const Vec3 d = displacement(t, *bin);
     if (!Directions::proposes(d, step_)) return false;
-    const std::uint32_t i = hit.index;
+    const std::uint32_t i = located.sphere;
     const PackedCentre& centre = centres()[i];
     const PackedCentre target = box_.wrapped({centre.xy + Pair{d.x, d.y}, centre.z + d.z, 0});
     if (!box_.clear_of_boundaries(target)) return false;
-    if (tables_.blocked(i, target, distance_tests_)) return false;
+    if (tables_.blocked(i, d, target, distance_tests_)) return false;
     tables_.move(i, target);
     weigh();
     return true;
@@ -168,7 +186,7 @@ class CandidateSampler {
   std::array<SineCosine, n_sectors> sector_begins_;
   double mean_wait_ = 0;
   CandidateBatch batch_;
-  std::array<WeightTree::Hit, most_ahead> located_;
+  std::array<Located, most_ahead> located_;
   std::uint32_t first_located_ = 0, n_located_ = 0, n_ahead_ = 0;
   std::uint64_t batch_first_ = 0;
   bool batch_valid_ = false;

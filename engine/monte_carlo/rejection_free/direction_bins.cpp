@@ -55,7 +55,7 @@ struct RingShares {
 };
 
 // Few polar steps are nearly horizontal, but their bounds are the loosest.
-constexpr RingShares polar_rings({1, 1, 2, 4, 8, 16, 32, 64});
+constexpr RingShares polar_rings({1, 3, 6, 10, 16, 24, 32, 36});
 constexpr RingShares cubic_rings({8, 8, 12, 16, 16, 20, 28, 20});
 static_assert(polar_rings.edges[n_rings] == 1 && cubic_rings.edges[n_rings] == 1);
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -31,14 +33,18 @@ class PolarDirections {
 
   explicit PolarDirections(const Polar& move) : theta_table_(move.theta_table()) {}
 
-  static BoundsKernel<n_sectors> kernel(const RejectionFreeKernels& kernels) {
-    return kernels.linear_bounds;
+  static BoundsKernel<n_sectors> bounds(const RejectionFreeKernels& kernels) {
+    return kernels.polar_bounds;
   }
   Bins bins(double step) const { return polar_bins(theta_table_, step); }
   /// The probability of a trial within bounds that take up `share` of the bins' weight.
   static double probability(double share, const Bins&, double /*step*/) { return share; }
-  /// The length at a bound's weight in (0, 1], over the longest.
-  static double length_ratio(double weight) { return weight; }
+  /// What a bound gives its bin of the weight that it may have, in (0, 1], and the length that this
+  /// is, over the longest.
+  static double size(std::uint16_t bound) {
+    return 1.0 / std::bit_cast<float>(std::uint32_t{bound} << 16);
+  }
+  static double length_ratio(double size) { return size; }
   /// The word of candidate t that chooses the length within the bound.
   static std::uint32_t length_word(const CandidateBatch& batch, std::uint32_t t) {
     return batch.length[0][t];
@@ -66,7 +72,7 @@ class CubicDirections {
 
   explicit CubicDirections(const ZeroTemperature&) {}
 
-  static BoundsKernel<n_sectors> kernel(const RejectionFreeKernels& kernels) {
+  static BoundsKernel<n_sectors> bounds(const RejectionFreeKernels& kernels) {
     return kernels.cubic_bounds;
   }
   static Bins bins(double step) { return cubic_bins(step); }
@@ -75,7 +81,8 @@ class CubicDirections {
     const double ratio = bins.longest / (2 * step);
     return share * (ratio * ratio * ratio) * (solid_angle / 3);
   }
-  static double length_ratio(double weight) { return cube_root(weight); }
+  static double size(std::uint16_t bound) { return bound * (1.0 / whole_weight); }
+  static double length_ratio(double size) { return cube_root(size); }
   static std::uint32_t length_word(const CandidateBatch& batch, std::uint32_t t) {
     return std::max({batch.length[0][t], batch.length[1][t], batch.length[2][t]});
   }

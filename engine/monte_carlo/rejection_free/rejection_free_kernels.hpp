@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 // The vectorised parts of rejection-free sampling: how far a sphere may go in every direction, and
@@ -23,34 +24,69 @@ template <int n_sectors>
 struct DirectionBins {
   static constexpr int sectors = n_sectors;
   alignas(64) float cosine[n_sectors], sine[n_sectors];  // of the azimuth of a sector's middle
-  float across[n_rings];                                 // sin(theta) cos(alpha) of a ring's middle
-  float down[n_rings];                                   // cos(theta) cos(alpha)
-  float spread[n_rings];                                 // sin(alpha), rounded up
+  alignas(32) float across[n_rings];                     // sin(theta) cos(alpha) of a ring's middle
+  alignas(32) float down[n_rings];                       // cos(theta) cos(alpha)
+  alignas(32) float spread[n_rings];                     // sin(alpha), rounded up
   alignas(64) std::int32_t cap[n_rings][n_sectors];      // of what no step exceeds
   int parts[n_rings];
   double longest;  // step, diameters
 };
 
-/// A bound is kept as the weight it gives its bin: the length beyond which a step is certainly
-/// rejected over the longest, or the cube of this ratio, in units of 1 / whole_weight, rounded up.
+/// The weight of a bin that is open to the longest step, for each of its ring's parts.
 inline constexpr int whole_weight = 65535;
 
-/// What stands in a sphere's way, as seen from its centre.
-struct Obstacles {
-  static constexpr std::uint32_t most_spheres = 64, most_planes = 5;
-  std::uint32_t n_spheres = 0, n_planes = 0;
-  alignas(64) float x[most_spheres] = {}, y[most_spheres] = {}, z[most_spheres] = {};  // r
-  alignas(64) float tangent_squared[most_spheres] = {};  // |r|^2 - 1, rounded up; > 0
-  float plane_x[most_planes] = {}, plane_y[most_planes] = {}, plane_z[most_planes] = {};  // normals
-  float gap[most_planes] = {};                                                            // > 0
+/// A centre on a fine grid, modulo 2^32: differences of places near each other are right across
+/// periodic sides too.
+struct alignas(16) GridPlace {
+  std::int32_t at[4];  // x, y, z, 0
 };
 
-/// The weights of all bins of a sphere; and their sums over a sector, each times the parts of its
-/// ring.
+/// How a sphere sees the others: what differences of places mean, and which of them count.
+struct alignas(16) Sight {
+  float unit[4];   // diameters a step of the grid; negative in z, which counts downward
+  float margin;    // of |r|^2 near 1, for the grid and for rounding in single precision
+  float doubt;     // the same after a step; infinite where the grid is too small for steps
+  float highest;   // whatever is higher than that is left out
+  float farthest;  // and what has a greater |r|^2 - 1
+};
+
+/// Spheres and their lists (engine/monte_carlo/kernel/neighbour_lists.hpp).
+struct Surroundings {
+  const GridPlace* places;
+  const std::uint32_t* lists;
+  std::size_t stride;
+};
+
+/// Floor and sides near a sphere.
+struct Planes {
+  static constexpr std::uint32_t most = 5;
+  std::uint32_t n = 0;
+  float x[most], y[most], z[most];  // normals
+  float gap[most];                  // > 0
+};
+
+/// So many spheres cannot all be in the way of one.
+inline constexpr std::uint32_t most_in_the_way = 64;
+
+/// The bounds of all bins of a sphere: lengths beyond which a step is certainly rejected, over the
+/// longest. Of the polar move the upper half of an inverse ratio in single precision, rounded down;
+/// of the Metropolis move the ratio cubed, in units of 1 / whole_weight, rounded up. A bin's weight
+/// is its ring's parts times the ratio, or its cube, times whole_weight.
 template <int n_sectors>
 struct alignas(64) BoundRow {
-  std::uint16_t weight[n_rings][n_sectors];
-  std::int32_t sector_weight[n_sectors];
+  std::uint32_t bounds[n_rings / 2][n_sectors];  // two rings a word, the lower half first
+  std::int32_t
+      up_to[n_sectors];  // no less than the weights of all bins of a sector and those before
+
+  std::uint16_t bound(int ring, int sector) const {
+    return static_cast<std::uint16_t>(bounds[ring / 2][sector] >> (ring % 2 * 16));
+  }
+};
+
+/// A sphere whose bounds are to be made, and their sum of weights.
+struct Bounded {
+  std::uint32_t sphere, weight;
+  Planes planes;
 };
 
 /// The random words of consecutive candidates.
@@ -62,26 +98,42 @@ struct CandidateBatch {
   alignas(64) std::uint32_t theta[size], length[3][size];
 };
 
-/// Fills the row and returns the sum of its weights.
+/// Makes the rows of n spheres, rows[sphere], and their weights. What they wait for is waited for
+/// together.
 template <int n_sectors>
-using BoundsKernel = std::uint32_t (*)(const DirectionBins<n_sectors>& bins,
-                                       const Obstacles& obstacles, BoundRow<n_sectors>& row);
+using BoundsKernel = void (*)(const DirectionBins<n_sectors>& bins, const Sight& sight,
+                              const Surroundings& around, Bounded* spheres, std::size_t n,
+                              BoundRow<n_sectors>* rows);
+
+/// What single precision can tell of a step.
+enum class StepOutcome { free, blocked, unsure };
 
 struct RejectionFreeKernels {
-  BoundsKernel<polar_sectors> linear_bounds;  // weights are lengths
-  BoundsKernel<cubic_sectors> cubic_bounds;   // and their cubes
+  BoundsKernel<polar_sectors> polar_bounds;
+  BoundsKernel<cubic_sectors> cubic_bounds;
+  /// Notes those in the list of sphere i whose bounds sphere i takes part in, at its place or at
+  /// `former`. Returns how many; `seeing` has room for 3 more than are listed.
+  std::uint32_t (*seen_by)(const Sight& sight, const Surroundings& around, std::uint32_t i,
+                           const GridPlace& former, std::uint32_t* seeing);
+  /// Whether the spheres in its list leave sphere i where a step leads it; of the step z is up.
+  StepOutcome (*try_step)(const Sight& sight, const Surroundings& around, std::uint32_t i,
+                          double dx, double dy, double dz);
   /// Candidates first .. first + CandidateBatch::size - 1 of a stream, where azimuths are cut into
   /// n_sectors; first is a multiple of size.
-  void (*candidates)(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
+  void (*draw_candidates)(std::uint64_t key, std::uint64_t first, int n_sectors,
+                          CandidateBatch& batch);
 };
 
 namespace baseline {
+void draw_candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
 RejectionFreeKernels rejection_free_kernels();
 }
 namespace avx2 {
+void draw_candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
 RejectionFreeKernels rejection_free_kernels();
 }
 namespace avx512 {
+void draw_candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
 RejectionFreeKernels rejection_free_kernels();
 }
 

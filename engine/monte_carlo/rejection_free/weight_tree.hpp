@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -17,72 +18,80 @@ class WeightTree {
   };
 
   void assign(std::vector<std::uint32_t> weights) {
-    leaves_ = std::move(weights);
-    leaves_.resize(padded(leaves_.size()), 0);
-    total_ = 0;
-    for (const std::uint32_t weight : leaves_) total_ += weight;
+    weights_ = std::move(weights);
     levels_.clear();
-    for (std::size_t size = leaves_.size(); size > fan; size = levels_.back().size()) {
-      std::vector<std::uint64_t> sums(padded(size / fan), 0);
-      for (std::size_t k = 0; k < size; ++k) {
-        sums[k / fan] += levels_.empty() ? leaves_[k] : levels_.back()[k];
+    std::vector<std::uint64_t> sums(weights_.begin(), weights_.end());
+    do {
+      sums.resize((sums.size() + fan - 1) / fan * fan, 0);
+      std::vector<Node> nodes(sums.size() / fan);
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        const std::uint64_t* const children = &sums[k * fan];
+        std::exclusive_scan(children, children + fan, nodes[k].before, std::uint64_t{0});
+        sums[k] = nodes[k].before[fan - 1] + children[fan - 1];
       }
-      levels_.push_back(std::move(sums));
-    }
+      sums.resize(nodes.size());
+      levels_.push_back(std::move(nodes));
+    } while (sums.size() > 1);
+    total_ = sums[0];
   }
 
   void set(std::uint32_t index, std::uint32_t weight) {
     const std::uint64_t change =
-        std::uint64_t{weight} - leaves_[index];  // modulo 2^64, as sums are
-    leaves_[index] = weight;
+        std::uint64_t{weight} - weights_[index];  // modulo 2^64, as sums are
+    weights_[index] = weight;
     std::size_t k = index;
-    for (std::vector<std::uint64_t>& level : levels_) level[k /= fan] += change;
+    for (std::vector<Node>& level : levels_) {
+      const std::uint64_t* const counts = &first_none_then_all[fan - 1 - k % fan];
+      Node& node = level[k /= fan];
+      for (std::size_t c = 0; c < fan; ++c) node.before[c] += change & counts[c];
+    }
     total_ += change;
   }
 
+  void prefetch(std::uint32_t index) const {
+    __builtin_prefetch(&weights_[index]);
+    __builtin_prefetch(&levels_[0][index / fan]);
+  }
+
   std::uint64_t total() const { return total_; }
-  std::uint32_t weight(std::uint32_t index) const { return leaves_[index]; }
+  std::uint32_t weight(std::uint32_t index) const { return weights_[index]; }
 
   /// The index whose stretch of [0, total) holds the target. Requires target < total().
   Hit find(std::uint64_t target) const {
-    assert(target < total_);
-    std::size_t node = 0;
+    assert(target < total());
+    std::size_t k = 0;
     for (std::size_t level = levels_.size(); level-- > 0;) {
-      node = child(levels_[level].data(), node, target);
+      const std::uint64_t* const before = levels_[level][k].before;
+      std::size_t child = 0;
+#pragma GCC unroll 8
+      for (std::size_t c = 1; c < fan; ++c) child += target >= before[c];
+      target -= before[child];
+      k = k * fan + child;
     }
-    node = child(leaves_.data(), node, target);
-    return {static_cast<std::uint32_t>(node), target};
+    return {static_cast<std::uint32_t>(k), target};
   }
 
   std::size_t bytes() const {
-    std::size_t sum = sizeof(std::uint32_t) * leaves_.capacity();
-    for (const auto& level : levels_) sum += sizeof(std::uint64_t) * level.capacity();
+    std::size_t sum = sizeof(std::uint32_t) * weights_.capacity();
+    for (const auto& level : levels_) sum += sizeof(Node) * level.capacity();
     return sum;
   }
 
  private:
-  static constexpr std::size_t fan = 16;
+  static constexpr std::size_t fan = 8;
 
-  static std::size_t padded(std::size_t size) { return (size + fan - 1) / fan * fan; }
+  // Of every child the sum of the weights below those before it.
+  struct alignas(64) Node {
+    std::uint64_t before[fan];
+  };
 
-  // The child of a node in whose stretch the target lies; the target becomes relative to it.
-  template <class Weight>
-  static std::size_t child(const Weight* level, std::size_t node, std::uint64_t& target) {
-    const Weight* const weights = level + node * fan;
-    std::uint64_t sum = 0, passed = 0;
-    std::size_t index = 0;
-    for (std::size_t k = 0; k < fan; ++k) {
-      sum += weights[k];
-      const bool beyond = sum <= target;
-      index += beyond;
-      passed = beyond ? sum : passed;
-    }
-    target -= passed;
-    return node * fan + index;
-  }
+  // Its last fan - 1 - k words are all bits, those before are none: no branch is needed.
+  static constexpr std::uint64_t all = ~std::uint64_t{0};
+  static constexpr std::uint64_t first_none_then_all[2 * fan - 1] = {
+      0, 0, 0, 0, 0, 0, 0, 0, all, all, all, all, all, all, all};
 
-  std::vector<std::uint32_t> leaves_;
-  std::vector<std::vector<std::uint64_t>> levels_;  // sums of `fan` below, the lowest first
+  std::vector<std::uint32_t> weights_;
+  std::vector<std::vector<Node>> levels_;  // the lowest first
   std::uint64_t total_ = 0;
 };
 

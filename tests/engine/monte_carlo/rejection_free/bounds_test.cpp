@@ -1,6 +1,8 @@
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "engine/monte_carlo/rejection_free/bound_tables.hpp"
 #include "engine/monte_carlo/rejection_free/directions.hpp"
@@ -26,7 +28,7 @@ std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
   return centres;
 }
 
-// The two moves, and the length at a bound's weight over the longest, by the C library.
+// The two moves, and the length that a bound is, over the longest, by the C library.
 template <class Directions>
 struct Kind;
 template <>
@@ -34,19 +36,21 @@ struct Kind<PolarDirections> {
   PolarMove move;
   PolarDirections directions{Polar(move)};
   auto bins() const { return directions.bins(move.max_step); }
-  static double ratio(double weight) { return weight; }
+  static double ratio(std::uint16_t bound) {
+    return 1.0 / std::bit_cast<float>(std::uint32_t{bound} << 16);
+  }
 };
 template <>
 struct Kind<CubicDirections> {
   MetropolisMove move;
   CubicDirections directions{ZeroTemperature(move)};
   auto bins() const { return directions.bins(move.max_step); }
-  static double ratio(double weight) { return std::cbrt(weight); }
+  static double ratio(std::uint16_t bound) { return std::cbrt(bound / double{whole_weight}); }
 };
 
 template <class Box, class Directions>
 BoundTables<Box, Directions> tables_for(const Box& box) {
-  return {box, Directions::kernel(baseline::rejection_free_kernels())};
+  return {box, baseline::rejection_free_kernels()};
 }
 
 // Whether a step is possible, against all spheres.
@@ -76,8 +80,7 @@ Tried try_steps(const Box& box, const Kind<Directions>& kind,
   for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
     for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
       const int ring = bin / n_sectors, sector = bin % n_sectors;
-      const double weight = tables.row(i).weight[ring][sector] / double{whole_weight};
-      const double bound = longest * kind.ratio(weight);
+      const double bound = longest * kind.ratio(tables.row(i).bound(ring, sector));
       const SineCosine theta = kind.directions.angle(ring, random.uniform());
       const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / n_sectors;
       const bool beyond = random.uniform() < 0.5;
@@ -149,9 +152,72 @@ void check_function_of_centres(const Kind<Directions>& kind) {
     CHECK(fresh.weights().weight(i) == moved.weights().weight(i));
     for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
       const int ring = bin / n_sectors, sector = bin % n_sectors;
-      REQUIRE(fresh.row(i).weight[ring][sector] == moved.row(i).weight[ring][sector]);
+      REQUIRE(fresh.row(i).bound(ring, sector) == moved.row(i).bound(ring, sector));
     }
   }
+}
+
+// What a sector weighs covers its bins, and hardly more.
+template <class Box, class Directions>
+void check_weights_of(const Box& box, const std::vector<PackedCentre>& centres,
+                      const Kind<Directions>& kind) {
+  auto tables = tables_for<Box, Directions>(box);
+  tables.build(kind.bins(), centres);
+  double excess = 0, all = 0;
+  for (std::uint32_t i = 0; i < centres.size(); ++i) {
+    std::int32_t before = 0;
+    for (int sector = 0; sector < Directions::n_sectors; ++sector) {
+      double sum = 0;
+      for (int ring = 0; ring < n_rings; ++ring) {
+        const double ratio = kind.ratio(tables.row(i).bound(ring, sector));
+        const double size =
+            std::is_same_v<Directions, PolarDirections> ? ratio : std::pow(ratio, 3);
+        sum += size * tables.bins().parts[ring] * whole_weight;
+      }
+      const std::int32_t weight =
+          tables.row(i).up_to[sector] - std::exchange(before, tables.row(i).up_to[sector]);
+      REQUIRE(weight >= sum * (1 - 1e-12));
+      excess += weight - sum;
+      all += sum;
+    }
+    REQUIRE(before == static_cast<std::int32_t>(tables.weights().weight(i)));
+  }
+  CHECK(excess < 1e-3 * all);
+}
+
+// Single precision rejects and lets pass as double precision does, near contact too.
+template <class Box>
+void check_blocked(const Box& box, std::uint32_t n) {
+  const auto centres = bed(box, n);
+  const Kind<PolarDirections> kind;
+  auto tables = tables_for<Box, PolarDirections>(box);
+  tables.build(kind.bins(), centres);
+  const PackedBox<Box> packed_box(box);
+  RandomStream random(stream_key(51, 0, 0, Purpose::start));
+  std::uint64_t tests = 0;
+  int blocked = 0;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Vec3 own = unpacked(centres[i]);
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const Vec3 away = separation(box, unpacked(centres[j]), own);
+      const double distance = std::sqrt(norm_squared(away));
+      if (i == j || distance > 1.09) continue;
+      for (const double beyond : {1e-3, 1e-5, 3e-6, 1e-6, 1e-7, 1e-9, 1e-12, 0.0, -1e-12, -1e-9,
+                                  -1e-7, -1e-6, -3e-6, -1e-5, -1e-3}) {
+        const double length = distance - 1 + beyond;
+        const Vec3 step = (length / distance) * away;
+        const PackedCentre target =
+            packed_box.wrapped({centres[i].xy + Pair{step.x, step.y}, centres[i].z + step.z, 0});
+        bool expected = false;
+        for (std::uint32_t k = 0; k < n; ++k) {
+          expected = expected || (k != i && distance_squared(packed_box, target, centres[k]) < 1.0);
+        }
+        REQUIRE(tables.blocked(i, step, target, tests) == expected);
+        blocked += expected;
+      }
+    }
+  }
+  CHECK(blocked > static_cast<int>(n));
 }
 
 }  // namespace
@@ -169,6 +235,19 @@ TEST_CASE("every step beyond its bound overlaps, between walls") {
 TEST_CASE("every step beyond its bound overlaps, in a tube") {
   check_bounds(Cylinder{5}, 90);
   check_bounds(Cylinder{1.2}, 12);
+}
+
+TEST_CASE("a sector weighs what its bins do") {
+  const PeriodicBox box{4, 5};
+  const auto centres = bed(box, 100);
+  check_weights_of(box, centres, Kind<PolarDirections>{});
+  check_weights_of(box, centres, Kind<CubicDirections>{});
+}
+
+TEST_CASE("single precision tells only what double precision would") {
+  check_blocked(PeriodicBox{4, 5}, 100);
+  check_blocked(WalledBox{40, 3}, 70);
+  check_blocked(Cylinder{5}, 90);
 }
 
 TEST_CASE("bounds are a function of the centres, whatever moves led there") {
