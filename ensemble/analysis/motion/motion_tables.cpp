@@ -1,5 +1,7 @@
 #include "ensemble/analysis/motion/motion_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -152,6 +154,22 @@ void add_unwrapping(const MotionRecords& records, Table& table) {
                           "other way; a wider container is safe");
 }
 
+/// Of the last waiting time that can be compared, over its longest lag.
+void add_age(const MotionRecords& records, Table& table) {
+  const auto &origins = records.settings.origins, &lags = records.settings.lags;
+  for (std::size_t o = origins.size(); o-- > 1;)
+    for (std::size_t l = lags.size(); l-- > 0;) {
+      const LogEstimate ratio = lateral_ratio(records, o, l);
+      if (!is_limited(ratio)) continue;
+      table.notes.emplace_back(
+          "age",
+          fmt::format("over {} taps msd_lateral from tap {} is {:.3g} (95 %: {:.3g} to "
+                      "{:.3g}) of that from tap {}",
+                      lags[l], origins[o], ratio.value, ratio.low_95, ratio.high_95, origins[0]));
+      return;
+    }
+}
+
 Table displacement_table(const std::string& prefix, const MotionRecords& records) {
   MotionTable table(prefix + "displacement", records);
   const std::pair<const char*, const char*> directions[] = {
@@ -192,6 +210,7 @@ Table displacement_table(const std::string& prefix, const MotionRecords& records
       "end of the interval, Student's t of the logarithm",
       [&](std::size_t o, std::size_t l, std::size_t) { return lateral_ratio(records, o, l); });
   table.add_count();
+  add_age(records, table.table());
   add_unwrapping(records, table.table());
   return table.take();
 }

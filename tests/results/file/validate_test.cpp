@@ -31,6 +31,30 @@ TEST_CASE("A restart state is used only where a realization could have stopped s
   CHECK_NOTHROW(validate(starting, point));
   starting.rows = 1;
   CHECK_THROWS_AS(validate(starting, point), Hdf5Error);
+  // The motion is followed as far as the taps go, where the study asks for it.
+  StudyPoint followed = point;
+  followed.motion =
+      MotionSettings{.origins = {0, 3}, .lags = {1, 2}, .overlap_lengths = {0.1}, .layers = 2};
+  CHECK_THROWS_AS(validate(state, followed), Hdf5Error);
+  RealizationState following = state;
+  following.rows = 3;
+  following.motion.emplace();
+  following.motion->unwrapped = state.centres;
+  following.motion->origins = {
+      {0, state.centres, std::vector<double>(2 * n_motion_values(*followed.motion))}};
+  CHECK_NOTHROW(validate(following, followed));
+  CHECK_THROWS_AS(validate(following, point), Hdf5Error);
+  const auto refuses = [&](const auto& forge) {
+    RealizationState forged = following;
+    forge(*forged.motion);
+    CHECK_THROWS_AS(validate(forged, followed), Hdf5Error);
+  };
+  refuses([](MotionState& motion) { motion.unwrapped.pop_back(); });
+  refuses([](MotionState& motion) { motion.unwrapped[0].x = none; });
+  refuses([](MotionState& motion) { motion.origins[0].tap = 1; });
+  refuses([](MotionState& motion) { motion.origins[0].centres.clear(); });
+  refuses([](MotionState& motion) { motion.origins[0].values.push_back(0); });
+  refuses([](MotionState& motion) { motion.origins.push_back(motion.origins[0]); });
   state.centres.back().z = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(validate(state, point), Hdf5Error);
 }
