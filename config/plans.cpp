@@ -49,7 +49,8 @@ Snapshots snapshots(const SnapshotChoice& choice) {
           .velocities = choice.velocities,
           .contacts = choice.contacts,
           .granular_temperature = choice.granular_temperature,
-          .forces = choice.forces};
+          .forces = choice.forces,
+          .driven_temperature = choice.driven_temperature};
 }
 
 }  // namespace

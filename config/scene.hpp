@@ -75,6 +75,7 @@ struct SnapshotChoice {
   double contact_cut = 1.05, bin_width = 0.1;  // diameters
   // Of discrete elements, which keep them by default:
   bool velocities = false, contacts = false, granular_temperature = false, forces = false;
+  bool driven_temperature = false;  // of discrete elements, on request
   bool operator==(const SnapshotChoice&) const = default;
 };
 

@@ -57,6 +57,10 @@ class Dynamics {
   virtual void settle(const Start& start) = 0;
   /// Excites the bed as it is, or begins to. `random` is the stream of Purpose::tap.
   virtual void tap(const Tap& tap, RandomStream& random) = 0;
+  /// Of the tap that was just begun, keeps what the bed does while the floor moves, in bins of this
+  /// height (diameters): mechanics().driven. Nothing else depends on it. An engine without time, or
+  /// a tap that moves no floor, has nothing to keep.
+  virtual void watch_motion(double /*bin_width*/) {}
   /// Goes on for about so many units, or until the bed is at rest. At rest it does nothing. Throws
   /// std::invalid_argument where the engine's settings do not suit the container.
   virtual DynamicsStatus advance(std::uint64_t units) = 0;

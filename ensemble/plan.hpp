@@ -46,6 +46,7 @@ struct Snapshots {
   bool contacts = false;              // where positions are kept
   bool granular_temperature = false;  // in bins as those of the histogram
   bool forces = false;                // BedForces
+  bool driven_temperature = false;    // DrivenBed, in the same bins, of taps that move the floor
   bool operator==(const Snapshots&) const = default;
 };
 

@@ -12,7 +12,8 @@ namespace jostle::inline ensemble {
 namespace {
 
 bool moves_in_time(const Snapshots& wanted) {
-  return wanted.velocities || wanted.contacts || wanted.granular_temperature || wanted.forces;
+  return wanted.velocities || wanted.contacts || wanted.granular_temperature || wanted.forces ||
+         wanted.driven_temperature;
 }
 
 }  // namespace
@@ -48,8 +49,7 @@ Slice Realization::advance(std::uint64_t units, const StopAsked& stop) {
   assert(!finished());
   Slice slice;
   if (!state_.relaxing && state_.rows == 0 && !start(stop)) return slice;
-  if (!state_.relaxing && state_.rows > 0)
-    dynamics_->tap(tap_number(plan_, state_.rows), tap_random_);
+  if (!state_.relaxing && state_.rows > 0) tap();
   const Effort before = dynamics_->effort();
   const auto began = ProcessorClock::now();
   state_.relaxing = dynamics_->advance(units) == DynamicsStatus::running;
@@ -57,6 +57,16 @@ Slice Realization::advance(std::uint64_t units, const StopAsked& stop) {
   slice.effort = dynamics_->effort() - before;
   if (!state_.relaxing) record(slice);
   return slice;
+}
+
+void Realization::tap() {
+  dynamics_->tap(tap_number(plan_, state_.rows), tap_random_);
+  const Snapshots& wanted = plan_.snapshots;
+  if (wanted.driven_temperature && keeps_this_row()) dynamics_->watch_motion(wanted.bin_width);
+}
+
+bool Realization::keeps_this_row() const {
+  return std::ranges::binary_search(plan_.snapshots.taps, state_.rows);
 }
 
 // Returns whether it was made, not stopped.
@@ -85,9 +95,7 @@ void Realization::record(Slice& slice) {
     follow_motion(*plan_.motion, packing_, state_.rows, *state_.motion);
   }
   slice.row = TapRow{state_.rows, (*observer_)(packing_), dynamics_->diagnostics()};
-  if (std::ranges::binary_search(plan_.snapshots.taps, state_.rows)) {
-    slice.snapshot = snapshot_of_row();
-  }
+  if (keeps_this_row()) slice.snapshot = snapshot_of_row();
   ++state_.rows;
 }
 
@@ -114,6 +122,11 @@ void Realization::add_mechanics(SnapshotRecord& record) const {
     record.temperature_vertical = std::move(temperature.vertical);
   }
   if (wanted.forces) record.forces = bed_forces(packing_, bed.contacts);
+  if (wanted.driven_temperature) {
+    record.driven_fraction = std::move(bed.driven.fraction);
+    record.driven_lateral = std::move(bed.driven.lateral);
+    record.driven_vertical = std::move(bed.driven.vertical);
+  }
   if (wanted.contacts) record.contacts = std::move(bed.contacts);
   if (!wanted.velocities) return;
   record.velocities = std::move(bed.velocities);

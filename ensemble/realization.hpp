@@ -57,6 +57,8 @@ class Realization {
 
  private:
   bool start(const StopAsked& stop);
+  void tap();
+  bool keeps_this_row() const;
   void record(Slice& slice);
   SnapshotRecord snapshot_of_row() const;
   void add_mechanics(SnapshotRecord& record) const;

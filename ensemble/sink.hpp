@@ -44,6 +44,7 @@ struct SnapshotRecord {
   std::vector<Contact> contacts{};
   std::vector<double> temperature_lateral{}, temperature_vertical{};
   std::optional<BedForces> forces{};
+  std::vector<double> driven_fraction{}, driven_lateral{}, driven_vertical{};  // DrivenBed
 };
 
 /// A realization between two slices: what it needs to go on bit for bit.

@@ -41,7 +41,18 @@ inline constexpr HeightProfile height_profiles[] = {
      "(diameter / s)^2",
      "variance of horizontal velocities about their mean in the bin, a direction", "jostle"},
     {"granular_temperature_vertical", &SnapshotRecord::temperature_vertical, no_number,
-     "(diameter / s)^2", "variance of vertical velocities about their mean in the bin", "jostle"}};
+     "(diameter / s)^2", "variance of vertical velocities about their mean in the bin", "jostle"},
+    {"driven_height_histogram", &SnapshotRecord::driven_fraction, 0, "1",
+     "fraction of all centres in the bin, while the floor moves, above it", "jostle"},
+    {"driven_temperature_lateral", &SnapshotRecord::driven_lateral, no_number, "(diameter / s)^2",
+     "variance of horizontal velocities about their mean in the bin, a direction, while the floor "
+     "moves, by height above it",
+     "jostle"},
+    {"driven_temperature_vertical", &SnapshotRecord::driven_vertical, no_number, "(diameter / s)^2",
+     "variance of vertical velocities about their mean in the bin, while the floor moves, by "
+     "height "
+     "above it",
+     "jostle"}};
 inline constexpr std::size_t n_height_profiles = std::size(height_profiles), kept_histogram = 0;
 
 /// What is stored of one realization but for its series and its snapshots.

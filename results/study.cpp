@@ -56,8 +56,9 @@ std::uint64_t bytes_of_realization(const StudyPoint& point) {
   const std::uint64_t positions = point.n_spheres * sizeof(Vec3);
   constexpr std::uint64_t contacts_a_sphere = 3;  // isostatic without friction; fewer with it
   const Snapshots& kept = point.snapshots;
-  const std::uint64_t profiles =
-      std::uint64_t{kept.height_histogram} + 2 * kept.granular_temperature;
+  constexpr std::uint64_t driven = 3 * 8;  // profiles of a bed that is thrown eight times as high
+  const std::uint64_t profiles = std::uint64_t{kept.height_histogram} +
+                                 2 * kept.granular_temperature + driven * kept.driven_temperature;
   const std::uint64_t a_snapshot =
       (kept.positions ? positions : 0) + (kept.velocities ? 2 * positions : 0) +
       (kept.contacts ? contacts_a_sphere * point.n_spheres * sizeof(Contact) : 0) +

@@ -151,7 +151,7 @@ LogarithmicTaps read_logarithmic_taps(const Reader& in) {
 struct KeptPart {
   const char* name;
   bool SnapshotChoice::*kept;
-  bool of_grains = false, beside_positions = false;
+  bool of_grains = false, beside_positions = false, on_request = false;
 };
 constexpr KeptPart kept_parts[] = {
     {"positions", &SnapshotChoice::positions},
@@ -160,7 +160,8 @@ constexpr KeptPart kept_parts[] = {
     {"velocities", &SnapshotChoice::velocities, true, true},
     {"contacts", &SnapshotChoice::contacts, true, true},
     {"granular_temperature", &SnapshotChoice::granular_temperature, true},
-    {"forces", &SnapshotChoice::forces, true}};
+    {"forces", &SnapshotChoice::forces, true},
+    {"driven_temperature", &SnapshotChoice::driven_temperature, true, false, true}};
 
 void read_keep(const Reader& in, SnapshotChoice& snapshots) {
   std::vector<std::string> names;
@@ -209,7 +210,8 @@ TapChoice read_taps(const Reader& in) {
 
 SnapshotChoice default_snapshots(bool grains) {
   SnapshotChoice snapshots;
-  for (const KeptPart& part : kept_parts) snapshots.*part.kept = grains || !part.of_grains;
+  for (const KeptPart& part : kept_parts)
+    snapshots.*part.kept = (grains || !part.of_grains) && !part.on_request;
   return snapshots;
 }
 

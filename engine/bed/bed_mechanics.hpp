@@ -22,11 +22,21 @@ struct Contact {
   bool operator==(const Contact&) const = default;
 };
 
+/// A bed while its floor moves, by height above the floor, over the whole of the motion.
+struct DrivenBed {
+  std::vector<double> fraction;  // [n_bins] of all centres, the mean over time
+  /// Granular temperature, (diameters / s)^2: variance of the velocities about the mean of the bin
+  /// at that time, unbiased; lateral is half of the variances along x and y together. NaN in bins
+  /// that never held two spheres, and none above the highest that did.
+  std::vector<double> lateral, vertical;
+};
+
 /// Of a bed at one time: that of its positions.
 struct BedMechanics {
   std::vector<Vec3> velocities;   // [n_spheres], diameters / s; empty where nothing has any
   std::vector<Vec3> spins;        // [n_spheres], rad / s; empty where nothing turns
   std::vector<Contact> contacts;  // with force, by (first, second)
+  DrivenBed driven;               // of a tap whose motion was watched (Dynamics::watch_motion)
 };
 
 /// What a sphere can lean on, by number: "floor", then "x_min", "x_max", "y_min", "y_max" of

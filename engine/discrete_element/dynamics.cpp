@@ -57,17 +57,23 @@ class GrainDynamics final : public Dynamics {
     state_.input = state_.before.held() - held;
   }
 
+  void watch_motion(double bin_width) override {
+    if (loop_->floor_moves()) state_.driven.bin_width = bin_width;
+  }
+
   DynamicsStatus advance(std::uint64_t units) override {
     if (state_.status != DynamicsStatus::running) return state_.status;
     const std::uint64_t n = std::max<std::uint64_t>(1, loop_->n_spheres());
     const std::uint64_t slice = std::max<std::uint64_t>(1, units / n);
     for (std::uint64_t done = 0; done < slice && state_.status == DynamicsStatus::running;) {
-      const std::uint64_t steps = steps_to_next_check();
-      const std::uint64_t now = std::min(steps, slice - done);
+      const std::uint64_t now =
+          std::min({steps_to_next(check_interval()), steps_to_next_sample(), slice - done});
       loop_->run(now);
       effort_.units += now * n;
       done += now;
-      if (now == steps) check();
+      if (is_watched() && loop_->steps() % sample_interval() == 0)
+        add_sample(state_.driven, loop_->grains(), motion_height());
+      if (loop_->steps() % check_interval() == 0) check();
     }
     effort_.pair_tests = loop_->pair_tests();
     return state_.status;
@@ -101,6 +107,7 @@ class GrainDynamics final : public Dynamics {
     BedMechanics bed = loop_->mechanics();
     for (std::vector<Vec3>* rates : {&bed.velocities, &bed.spins})
       for (Vec3& rate : *rates) rate = (1 / units_.seconds) * rate;
+    bed.driven = driven_bed(state_.driven, units_.seconds);
     return bed;
   }
 
@@ -137,10 +144,18 @@ class GrainDynamics final : public Dynamics {
   std::uint64_t check_interval() const {
     return static_cast<std::uint64_t>(std::ceil(0.02 / units_.time_step));
   }
-  std::uint64_t steps_to_next_check() const {
-    const std::uint64_t every = check_interval();
-    return every - loop_->steps() % every;
+  std::uint64_t steps_to_next(std::uint64_t every) const { return every - loop_->steps() % every; }
+
+  // A motion is sampled about twenty times a period.
+  bool is_watched() const { return state_.driven.bin_width > 0 && loop_->floor_moves(); }
+  std::uint64_t sample_interval() const {
+    const double steps = 0.05 / (loop_->motion().frequency * units_.time_step);
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(steps));
   }
+  std::uint64_t steps_to_next_sample() const {
+    return is_watched() ? steps_to_next(sample_interval()) : check_interval();
+  }
+  double motion_height() const { return loop_->motion().at(loop_->time()).height; }
 
   void check() {
     if (!loop_->is_sound())

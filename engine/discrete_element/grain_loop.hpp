@@ -53,6 +53,7 @@ class GrainLoop {
   void load(const Packing& bed);
   /// [n_spheres] centres, brought into the box, in the order of load().
   void store(Packing& bed) const;
+  std::vector<GrainState> grains() const;  // in the order of load()
   /// Moves every centre, as a tap that is a displacement does; velocities stay.
   void displace(const Packing& to);
 
@@ -94,7 +95,6 @@ class GrainLoop {
 
  private:
   void place(const std::vector<GrainState>& grains);
-  std::vector<GrainState> grains() const;
   void step();
   void find_forces();
   void add_contacts(std::vector<Contact>& out);

@@ -14,6 +14,7 @@ namespace {
 
 // "DE" and a number that counts up when the bytes change.
 constexpr std::uint32_t version = 0x44450001;
+constexpr std::uint32_t version_of_watched = 0x44450002;  // with what a watched motion sums up
 
 // Aggregates of numbers without padding, as the numbers in a row.
 template <class T>
@@ -51,6 +52,14 @@ bool is_possible(const FloorMotion& motion) {
   return are_finite(numbers) && motion.frequency > 0 && motion.half_periods <= 2 * most_cycles;
 }
 
+bool is_possible(const DrivenSums& driven) {
+  const auto bin_is = [](const DrivenSums::Bin& bin) {
+    return are_finite(std::bit_cast<Numbers<DrivenSums::Bin>>(bin));
+  };
+  return std::isfinite(driven.bin_width) && driven.bin_width >= 0 &&
+         std::ranges::all_of(driven.bins, bin_is);
+}
+
 bool is_possible(const GrainDynamicsState& state) {
   const GrainLoop::State& loop = state.loop;
   const std::size_t n = loop.grains.size();
@@ -62,20 +71,26 @@ bool is_possible(const GrainDynamicsState& state) {
   };
   const double sums[] = {state.quiet_since, state.input, loop.floor_work, loop.floor_force,
                          loop.greatest_overlap};
-  return are_finite(sums) && is_possible(loop.motion) &&
+  return are_finite(sums) && is_possible(loop.motion) && is_possible(state.driven) &&
          std::ranges::all_of(loop.grains,
                              [](const GrainState& grain) { return is_possible(grain); }) &&
          std::ranges::all_of(loop.pairs, pair_is) && std::ranges::all_of(loop.sides, side_is);
 }
 
 GrainDynamicsState read(ByteReader& reader) {
-  if (reader.get<std::uint32_t>() != version) throw std::out_of_range("another version");
+  const auto found = reader.get<std::uint32_t>();
+  if (found != version && found != version_of_watched) throw std::out_of_range("another version");
   GrainDynamicsState state;
   state.status = reader.get_enum(DynamicsStatus::capped);
   state.quiet_since = reader.get<double>();
   state.input = reader.get<double>();
   state.dropped_offsets = reader.get<std::uint64_t>();
   state.before = get_numbers<Energies>(reader);
+  if (found == version_of_watched) {
+    state.driven.bin_width = reader.get<double>();
+    state.driven.samples = reader.get<std::uint64_t>();
+    state.driven.bins = reader.get_vector<DrivenSums::Bin>();
+  }
   GrainLoop::State& loop = state.loop;
   loop.grains = reader.get_vector<GrainState>();
   loop.pairs = reader.get_vector<KeptPair>();
@@ -95,12 +110,18 @@ GrainDynamicsState read(ByteReader& reader) {
 
 std::vector<std::byte> bytes_of(const GrainDynamicsState& state) {
   ByteWriter writer;
-  writer.put(version);
+  const bool watched = state.driven.bin_width > 0;
+  writer.put(watched ? version_of_watched : version);
   writer.put(state.status);
   writer.put(state.quiet_since);
   writer.put(state.input);
   writer.put(state.dropped_offsets);
   put_numbers(writer, state.before);
+  if (watched) {
+    writer.put(state.driven.bin_width);
+    writer.put(state.driven.samples);
+    writer.put(state.driven.bins);
+  }
   const GrainLoop::State& loop = state.loop;
   writer.put(loop.grains);
   writer.put(loop.pairs);

@@ -15,7 +15,7 @@
 namespace jostle::inline results {
 
 /// The number of the parts' format.
-inline constexpr std::uint32_t part_format = 5;
+inline constexpr std::uint32_t part_format = 6;
 
 /// What every part carries, so that a foreign one is told from ours.
 struct PartIdentity {

@@ -44,9 +44,9 @@ inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "s
 /// Attribute `snapshots_keep` of /sweep/P: what is kept of snapshots, in this order; the first
 /// three of every engine.
 inline constexpr bool Snapshots::*kept_fields[] = {
-    &Snapshots::positions,  &Snapshots::coordination, &Snapshots::height_histogram,
-    &Snapshots::velocities, &Snapshots::contacts,     &Snapshots::granular_temperature,
-    &Snapshots::forces};
+    &Snapshots::positions,  &Snapshots::coordination,      &Snapshots::height_histogram,
+    &Snapshots::velocities, &Snapshots::contacts,          &Snapshots::granular_temperature,
+    &Snapshots::forces,     &Snapshots::driven_temperature};
 inline constexpr std::size_t n_kept_by_all = 3;
 
 /// Attributes of /sweep/P where the motion is followed, and the group of what was found.

@@ -39,6 +39,10 @@ class Grains(Case):
                 self.jostle("run", "scene.json", "-o", f"{name}.h5", "--quiet",
                             environment=environment)
                 self.assertEqual(self.digest(f"{name}.h5"), straight)
+        for threads in ("2", "3", "7"):
+            with self.subTest(threads=threads):
+                self.run_scene("-o", f"{threads}.h5", "--threads", threads)
+                self.assertEqual(self.digest(f"{threads}.h5"), straight)
         for shard in ("1/2", "2/2"):
             self.jostle("run", "scene.json", "--shard", shard, "-o", f"{shard[0]}of2.h5", "--quiet")
         self.jostle("merge", "1of2.h5", "2of2.h5", "-o", "both.h5")
@@ -97,6 +101,36 @@ class Grains(Case):
                              ["tap", "realization", "height"])
             self.assertTrue((vertical[:][np.isfinite(vertical[:])] >= 0).all())
             self.assertEqual(point["height_histogram"].shape, vertical.shape)
+
+    def test_snapshots_keep_the_driven_bed_on_request(self):
+        self.write(changed(GRAINS, realizations=2, snapshots={
+            "taps": [0, 2, 3], "keep": ["positions", "driven_temperature"], "bin_width": 0.5}))
+        self.run_scene("-o", "straight.h5")
+        with h5py.File(self.folder / "straight.h5") as file:
+            point = file["snapshots/point_0000"]
+            for name in ("driven_temperature_lateral", "driven_temperature_vertical",
+                         "driven_height_histogram"):
+                with self.subTest(name=name):
+                    self.assertEqual([axis[0].name.split("/")[-1] for axis in point[name].dims],
+                                     ["tap", "realization", "height"])
+                    values = point[name][:]
+                    # Neither the start nor a lift moves the floor.
+                    self.assertTrue(np.isnan(values[[0, 2]]).all())
+                    self.assertTrue((values[1][np.isfinite(values[1])] >= 0).all())
+            share = point["driven_height_histogram"][1]
+            np.testing.assert_allclose(np.nansum(share, axis=1), 1, rtol=1e-12)
+            lateral, vertical = (point[f"driven_temperature_{way}"][1, 0, :4]
+                                 for way in ("lateral", "vertical"))
+            self.assertTrue((lateral[1:] > 0).all() and (vertical[1:] > 0).all())
+        arguments = ("run", "scene.json", "-o", "cut.h5", "--quiet", "--checkpoint-every", "0")
+        for _ in range(2):
+            more = ("--resume",) if (self.folder / "cut.h5").exists() else ()
+            process = self.popen(*arguments, *more)
+            time.sleep(0.4)
+            process.kill()
+            process.communicate(timeout=60)
+        self.jostle(*arguments, "--resume")
+        self.assertEqual(self.digest("cut.h5"), self.digest("straight.h5"))
 
     def check_frame(self, group, point, frame):
         contacts = group["contacts"]

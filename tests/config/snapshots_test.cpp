@@ -22,7 +22,7 @@ Json kept(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("By default snapshots keep everything that the engine has") {
+TEST_CASE("By default snapshots keep everything that the engine has at the end of a tap") {
   CHECK(kept(scene_with(grains)).dump() == all_kept);
   CHECK(kept(scene_with(grains + R"(, "snapshots": {"taps": [0]})")).dump() == all_kept);
   CHECK(kept(scene_with(R"("snapshots": {"taps": [0]})")).dump() ==
@@ -31,6 +31,11 @@ TEST_CASE("By default snapshots keep everything that the engine has") {
       scene_of(scene_with(grains + R"(, "snapshots": {"keep": ["positions", "contacts"]})"));
   CHECK(chosen.snapshots.contacts);
   CHECK_FALSE(chosen.snapshots.velocities);
+  CHECK_FALSE(chosen.snapshots.driven_temperature);
+  const Scene driven =
+      scene_of(scene_with(grains + R"(, "snapshots": {"keep": ["driven_temperature"]})"));
+  CHECK(make_plans(driven, {}).at(0).snapshots.driven_temperature);
+  CHECK(scene_of(resolved(driven).dump()) == driven);
   const Snapshots plan = make_plans(chosen, {}).at(0).snapshots;
   CHECK(plan.contacts);
   CHECK_FALSE(plan.forces);
@@ -55,6 +60,8 @@ TEST_CASE("What an engine does not have cannot be kept, nor what stands beside n
   CHECK(faults(R"("snapshots": {"keep": ["positions", "forces"]})") ==
         "/snapshots/keep: \"forces\" is of discrete elements only: Monte Carlo has no times and no "
         "forces; leave it out\n");
+  CHECK(faults(R"("snapshots": {"keep": ["driven_temperature"]})")
+            .starts_with("/snapshots/keep: \"driven_temperature\" is of discrete elements only"));
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["velocities"]})") ==
         "/snapshots/keep: \"velocities\" stands beside positions: keep positions, too\n");
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["forces", "granular_temperature"]})").empty());

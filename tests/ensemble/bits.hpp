@@ -46,6 +46,9 @@ class Bits {
     }
     add(snapshot.temperature_lateral);
     add(snapshot.temperature_vertical);
+    add(snapshot.driven_fraction);
+    add(snapshot.driven_lateral);
+    add(snapshot.driven_vertical);
     if (!snapshot.forces) return;
     for (const double one : snapshot.forces->moment) add(one);
     for (const WallForce& wall : snapshot.forces->walls) {

@@ -27,6 +27,7 @@ Plan grains_plan() {
 Plan keeping_all(Plan plan) {
   Snapshots& kept = plan.snapshots;
   kept.velocities = kept.contacts = kept.granular_temperature = kept.forces = true;
+  kept.driven_temperature = true;
   return plan;
 }
 
@@ -60,6 +61,10 @@ TEST_CASE("Snapshots keep what moves and acts in a bed of grains") {
     CHECK(one.forces->walls.size() == 5);
     const GranularTemperature temperature = granular_temperature(packing, one.velocities, 0.1);
     CHECK(one.temperature_lateral.size() == temperature.lateral.size());
+    // Tap 1 alone moves the floor: tap 0 is the start, tap 3 a lift.
+    CHECK(one.driven_fraction.empty() == (one.tap != 1));
+    CHECK(one.driven_lateral.size() == one.driven_vertical.size());
+    CHECK(one.driven_lateral.size() <= one.driven_fraction.size());
     // The contacts are those of the stored positions, with those that have opened left out.
     for (const Contact& contact : one.contacts) {
       if (contact.second >= plan.n_spheres) continue;

@@ -90,6 +90,9 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   CHECK(last.temperature_lateral.size() == 2);
   CHECK(std::isnan(last.temperature_vertical.at(0)));
   CHECK(last.temperature_vertical.at(1) == 2 * last.centres[0].x);
+  CHECK(last.driven_fraction == std::vector<double>{0.5, 0, last.centres[0].x});
+  CHECK(last.driven_lateral.at(1) == 3 * last.centres[0].x);
+  CHECK(last.driven_vertical == std::vector<double>{4 * last.centres[0].x});
   REQUIRE(last.forces);
   CHECK(last.forces->moment[8] == 8 + last.centres[0].x);
   CHECK(last.forces->walls == std::vector<WallForce>{{5.5, {0.5, last.centres[0].x, 0}}});

@@ -96,6 +96,9 @@ SnapshotRecord snapshot_of(const RealizationState& state) {
   const double nan = std::nan("");
   record.temperature_lateral = {nan, state.centres[0].x};
   record.temperature_vertical = {nan, 2 * state.centres[0].x};
+  record.driven_fraction = {0.5, 0, state.centres[0].x};
+  record.driven_lateral = {nan, 3 * state.centres[0].x};
+  record.driven_vertical = {4 * state.centres[0].x};
   record.forces.emplace();
   for (std::size_t k = 0; k < 9; ++k)
     record.forces->moment[k] = static_cast<double>(k) + state.centres[0].x;
@@ -149,6 +152,7 @@ Study study(const Sizes& sizes) {
     point.snapshots.taps = sizes.snapshot_taps;
     point.snapshots.velocities = point.snapshots.contacts = true;
     point.snapshots.granular_temperature = point.snapshots.forces = true;
+    point.snapshots.driven_temperature = true;
     study.points.push_back(point);
   }
   return study;

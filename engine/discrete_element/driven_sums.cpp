@@ -1,0 +1,59 @@
+#include "engine/discrete_element/driven_sums.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace jostle::inline engine {
+
+void add_sample(DrivenSums& sums, std::span<const GrainState> grains, double floor_height) {
+  struct Sample {
+    double n = 0;
+    Vec3 mean;
+  };
+  std::vector<Sample> samples;
+  const auto bin_of = [&](const GrainState& grain) {
+    return static_cast<std::size_t>(std::max(0.0, grain.centre.z - floor_height) / sums.bin_width);
+  };
+  for (const GrainState& grain : grains) {
+    const std::size_t bin = bin_of(grain);
+    if (bin >= samples.size()) samples.resize(bin + 1);
+    samples[bin].n += 1;
+    samples[bin].mean = samples[bin].mean + grain.velocity;
+  }
+  if (samples.size() > sums.bins.size()) sums.bins.resize(samples.size());
+  for (std::size_t bin = 0; bin < samples.size(); ++bin) {
+    Sample& one = samples[bin];
+    if (!(one.n > 0)) continue;
+    one.mean = (1 / one.n) * one.mean;
+    sums.bins[bin].spheres += one.n;
+    sums.bins[bin].freedom += one.n - 1;
+  }
+  for (const GrainState& grain : grains) {
+    const std::size_t bin = bin_of(grain);
+    const Vec3 about = grain.velocity - samples[bin].mean;
+    sums.bins[bin].lateral += 0.5 * (about.x * about.x + about.y * about.y);
+    sums.bins[bin].vertical += about.z * about.z;
+  }
+  ++sums.samples;
+}
+
+DrivenBed driven_bed(const DrivenSums& sums, double seconds) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double unit = 1 / (seconds * seconds);
+  DrivenBed bed;
+  double all = 0;
+  for (const DrivenSums::Bin& bin : sums.bins) all += bin.spheres;
+  std::size_t n_temperatures = 0;
+  for (std::size_t k = 0; k < sums.bins.size(); ++k) {
+    const DrivenSums::Bin& bin = sums.bins[k];
+    bed.fraction.push_back(bin.spheres / all);
+    bed.lateral.push_back(bin.freedom > 0 ? unit * bin.lateral / bin.freedom : none);
+    bed.vertical.push_back(bin.freedom > 0 ? unit * bin.vertical / bin.freedom : none);
+    if (bin.freedom > 0) n_temperatures = k + 1;
+  }
+  bed.lateral.resize(n_temperatures);
+  bed.vertical.resize(n_temperatures);
+  return bed;
+}
+
+}  // namespace jostle::inline engine
