@@ -112,6 +112,119 @@ TEST_CASE("no grazing impact gains energy") {
   }
 }
 
+// The linear law at the angles where LAMMPS gained.
+TEST_CASE("no grazing impact on springs and dashpots gains energy, nor one of two spheres") {
+  for (const double degrees : {70.0, 75.0, 80.0, 85.0}) {
+    for (const double mu : {0.1, 0.3, 1.0}) {
+      for (const ContactLaw& law : {ContactLaw{WaltonBraun{.friction = mu}},
+                                    ContactLaw{LinearSpringDashpot{.friction = mu}}}) {
+        CAPTURE(degrees, mu, law.index());
+        const double angle = degrees * std::numbers::pi / 180, speed = 2;
+        const Vec3 velocity = {speed * std::sin(angle), 0, -speed * std::cos(angle)};
+        const ReducedSettings units = settings(law);
+        const double gap = 0.3 * speed * std::cos(angle) * units.time_step;
+        GrainLoop floor = loop_of(box, units, {grain({5, 5, 0.5 + gap}, velocity)});
+        GrainLoop pair = loop_of(box, units, {grain({5, 5, 6 + gap}, velocity), grain({5, 5, 5})});
+        for (GrainLoop* loop : {&floor, &pair}) {
+          const double before = loop->kinetic_energy();
+          run_contact(*loop, units);
+          CHECK(loop->kinetic_energy() < before);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("two spheres of opposite spin part as mirror images, none made to slide backwards") {
+  for (const ContactLaw& law : {ContactLaw{WaltonBraun{.friction = 0.3}},
+                                ContactLaw{LinearSpringDashpot{.friction = 0.3}}}) {
+    for (const double spin : {0.1, 1.0, 10.0, 100.0}) {
+      CAPTURE(law.index(), spin);
+      const ReducedSettings units = settings(law);
+      // Opposite spins, equal surface velocities: nothing rubs, and spins stay.
+      GrainLoop rolling = loop_of(box, units,
+                                  {grain({5, 5, 6.001}, {0, 0, -0.5}, {0, spin, 0}),
+                                   grain({5, 5, 5}, {0, 0, 0.5}, {0, -spin, 0})});
+      run_contact(rolling, units);
+      const auto rolled = rolling.state().grains;
+      REQUIRE(rolled[0].velocity.z > 0.3);
+      CHECK(rolled[0].spin.y == spin);
+      CHECK(rolled[1].spin.y == -spin);
+      CHECK(rolled[0].velocity.x == 0);
+      // Equal spins: surfaces rub at spin x d.
+      GrainLoop rubbing = loop_of(box, units,
+                                  {grain({5, 5, 6.001}, {0, 0, -0.5}, {0, spin, 0}),
+                                   grain({5, 5, 5}, {0, 0, 0.5}, {0, spin, 0})});
+      run_contact(rubbing, units);
+      const auto rubbed = rubbing.state().grains;
+      CHECK(rubbed[0].velocity.x == Approx(-rubbed[1].velocity.x).epsilon(1e-12));
+      CHECK(rubbed[0].velocity.z == Approx(-rubbed[1].velocity.z).epsilon(1e-12));
+      CHECK(rubbed[0].spin.y == Approx(rubbed[1].spin.y).epsilon(1e-12));
+      CHECK(rubbed[0].spin.y < spin);
+      // What slides throughout still slides the same way; what sticks swings back by less.
+      const double before = -spin;  // of the upper surface along x, less the lower
+      const double after =
+          rubbed[0].velocity.x - rubbed[1].velocity.x - 0.5 * (rubbed[0].spin.y + rubbed[1].spin.y);
+      CHECK(std::abs(after) < std::abs(before));
+      if (spin >= 10) CHECK(after * before > 0);  // 3.5 mu (1 + e) v_n = 2
+    }
+  }
+}
+
+// The error of a head-on impact, over where in a step it begins, goes with the square of the step.
+TEST_CASE("half the step makes a quarter of the error of a latched spring") {
+  const double e = 0.9, speed = 0.5;
+  const auto error = [&](double finer) {
+    constexpr int phases = 24;
+    double sum = 0;
+    for (int k = 0; k < phases; ++k) {
+      const ReducedSettings units =
+          settings(WaltonBraun{.restitution = e, .friction = 0}, 0, finer);
+      const double gap = (2 + k / double(phases)) * finer * units.time_step * speed;
+      GrainLoop loop =
+          loop_of(box, units, {grain({5, 5, 6 + gap}, {0, 0, -speed}), grain({5, 5, 5})});
+      run_contact(loop, units);
+      const auto after = loop.state().grains;
+      const double found = (after[0].velocity.z - after[1].velocity.z) / speed;
+      sum += (found - e) * (found - e);
+    }
+    return std::sqrt(sum / phases);
+  };
+  const double whole = error(1), half = error(2), quarter = error(4), eighth = error(8);
+  CAPTURE(whole, half, quarter, eighth);
+  CHECK(whole < 1e-3);
+  CHECK(whole / quarter > 8);
+  CHECK(half / eighth > 8);
+}
+
+// The cube root of the tangential law has no slope where sliding begins, dashpots begin and end
+// with a jump: first order.
+TEST_CASE("half the step makes half the error of an impact that sticks") {
+  for (const ContactLaw& law : {ContactLaw{WaltonBraun{.friction = 0.3}},
+                                ContactLaw{LinearSpringDashpot{.friction = 0.3}}}) {
+    const auto parted = [&](double finer, double begins) {
+      const ReducedSettings units = settings(law, 0, finer);
+      const double speed = 0.5, gap = (2 + begins) * finer * units.time_step * speed;
+      const double across = law.index() == 0 ? 0.3 * speed : 3 * speed;
+      GrainLoop loop =
+          loop_of(box, units, {grain({5, 5, 6 + gap}, {across, 0, -speed}), grain({5, 5, 5})});
+      run_contact(loop, units);
+      return loop.state().grains[0];
+    };
+    constexpr int phases = 10;
+    double whole = 0, quarter = 0;
+    for (int k = 0; k < phases; ++k) {
+      const double begins = k / double(phases);
+      const GrainState exact = parted(64, begins);
+      whole += norm_squared(parted(1, begins).velocity - exact.velocity);
+      quarter += norm_squared(parted(4, begins).velocity - exact.velocity);
+    }
+    CAPTURE(law.index(), whole, quarter);
+    CHECK(std::sqrt(whole / phases) < 5e-3);
+    CHECK(std::sqrt(whole / quarter) > 2.5);
+  }
+}
+
 TEST_CASE("an impact keeps momentum and angular momentum to rounding") {
   const ReducedSettings units = settings(WaltonBraun{.friction = 0.4});
   GrainLoop loop = loop_of(box, units,

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 using namespace jostle;
 
@@ -55,6 +56,39 @@ TEST_CASE("the latched spring loads, unloads and reloads along its lines") {
   CHECK(force(0.001) == Approx(40));
 }
 
+// What a path takes is the area that it runs around: never negative, and of a whole contact
+// 1/2 K1 (1 - e^2) x (greatest overlap)^2 whatever lies between.
+TEST_CASE("the latched spring loses the area of its loop, whatever path it takes") {
+  for (const std::vector<double>& turns :
+       {std::vector{0.003}, std::vector{0.001, 0.0008, 0.003}, std::vector{0.003, 0.0029, 0.00295},
+        std::vector{0.001, 0.0002, 0.002, 0.0001, 0.0015, 0.0012, 0.003, 0.00059, 0.001}}) {
+    WaltonBraunLaw<double, false> law{};
+    constexpr int parts = 4000;
+    double at = 0, work = 0, before = 0, lost = 0, greatest = 0;
+    const auto go_to = [&](double to) {
+      const double from = at;
+      for (int k = 1; k <= parts; ++k) {
+        at = from + (to - from) * k / parts;
+        const auto act = law(pressed(at, 0), constants);
+        work += 0.5 * (before + act.force.z) * (to - from) / parts;  // on the spring
+        before = act.force.z;
+        lost += act.dissipated_normally;
+        CHECK(act.force.z >= 0);
+        CHECK(act.force.z <= constants.stiffness * std::max(0.0, at) * (1 + 1e-12));
+      }
+      greatest = std::max(greatest, to);
+    };
+    for (const double turn : turns) {
+      go_to(turn);
+      CHECK(work > 0);
+    }
+    go_to(-1e-9);
+    const double area = 0.5 * constants.stiffness * constants.latched * greatest * greatest;
+    CHECK(work == Approx(area).epsilon(1e-3));
+    CHECK(lost == Approx(area).epsilon(1e-9));
+  }
+}
+
 // K_T = K0 u^(1/3) integrates to u^(2/3) falling along a line: T of a displacement in closed form.
 TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a constant normal force") {
   Law law{};
@@ -77,6 +111,57 @@ TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a consta
   CHECK(end == Approx(limit - curve(room, again)).epsilon(2e-3));
   // And until it slides.
   CHECK(sheared(law, overlap, 3 * loaded) == Approx(limit));
+}
+
+// N changes along the path: Walton & Braun's increment with T* that follows mu N, as an equation of
+// the displacement, against a Runge-Kutta method that knows nothing of steps or vectors.
+TEST_CASE("the tangential force follows its equation while the normal force grows and falls") {
+  const double k0 = constants.tangential, k1 = constants.stiffness, mu = constants.friction;
+  struct Leg {
+    double displacement, overlap_from, overlap_to;
+  };
+  // Along K1 all the while: the overlap grows; or it stays on the line of K2 below its greatest.
+  for (const std::vector<Leg>& path :
+       {std::vector<Leg>{{4e-4, 0.001, 0.003}},
+        std::vector<Leg>{{3e-4, 0.001, 0.002}, {-4e-4, 0.002, 0.003}},
+        std::vector<Leg>{{5e-4, 0.002, 0.002}, {-2e-4, 0.002, 0.0018}, {3e-4, 0.0018, 0.002}}}) {
+    Law law{};
+    double force = 0, at_reversal = 0, direction = 1, greatest = 0;  // T, T* / (mu N), sign
+    for (const Leg& leg : path) {
+      constexpr int steps = 40'000;
+      const auto normal = [&](double overlap) {
+        const double a0 = constants.latched * std::max(greatest, overlap);
+        return std::min(k1 * overlap, constants.unloading * (overlap - a0));
+      };
+      const double overlap_rate = (leg.overlap_to - leg.overlap_from) / steps;
+      const double towards = leg.displacement > 0 ? 1 : -1;
+      if (towards != direction) at_reversal = force / (mu * normal(leg.overlap_from));
+      direction = towards;
+      // K_T = K0 ((mu N -+ T) / (mu N -+ T*))^(1/3).
+      const auto slope = [&](double overlap, double t) {
+        const double limit = mu * normal(overlap);
+        const double left = (limit - direction * t) / (limit * (1 - direction * at_reversal));
+        return k0 * std::cbrt(std::clamp(left, 0.0, 1.0));
+      };
+      const double ds = leg.displacement / steps;
+      for (int k = 0; k < steps; ++k) {
+        const double overlap = leg.overlap_from + overlap_rate * k;
+        greatest = std::max(greatest, overlap);
+        const double s1 = slope(overlap, force);
+        const double s2 = slope(overlap + 0.5 * overlap_rate, force + 0.5 * ds * s1);
+        const double s3 = slope(overlap + 0.5 * overlap_rate, force + 0.5 * ds * s2);
+        const double s4 = slope(overlap + overlap_rate, force + ds * s3);
+        force += ds * (s1 + 2 * s2 + 2 * s3 + s4) / 6;
+        const double limit = mu * normal(overlap + overlap_rate);
+        force = std::clamp(force, -limit, limit);
+        law(pressed(overlap + overlap_rate, ds / constants.time_step), constants);
+      }
+      greatest = std::max(greatest, leg.overlap_to);
+      CAPTURE(leg.displacement, leg.overlap_from, leg.overlap_to);
+      CHECK(-law.tangential.x == Approx(force).epsilon(3e-3));
+      CHECK(std::abs(law.tangential.y) + std::abs(law.tangential.z) < 1e-12);
+    }
+  }
 }
 
 TEST_CASE("as the normal force falls the tangential one is cut to mu N") {
