@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -35,9 +36,12 @@ inline Records run_records(const Plan& plan, std::uint32_t n) {
   Progress progress;
   const RunSummary summary = run_ensemble({&plan, 1}, ids, {.threads = 2}, sink, progress);
   if (summary.done != n) throw std::runtime_error("a realization failed");
+  const std::vector<Column> recorded = columns(plan.engine);
+  const auto capped = std::ranges::find(recorded, "capped", &Column::name) - recorded.begin();
   for (const auto& [id, record] : sink.records()) {
     for (const TapRow& row : record.rows) {
-      if (diagnostic(row, "capped") != 0) throw std::runtime_error("a relaxation met its cap");
+      if (row.diagnostics.at(static_cast<std::size_t>(capped)) != 0)
+        throw std::runtime_error("a relaxation met its cap");
     }
   }
   return sink.records();
