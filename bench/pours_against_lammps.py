@@ -1,0 +1,200 @@
+"""Beds poured by discrete elements and by LAMMPS (gran/hooke/history) from the same columns, with the
+same law and step: python3 pours_against_lammps.py JOSTLE FOLDER [--friction MU] [--pours N]
+[--spheres N]. Both fall for the same time; what comes out is measured by the same lines below.
+
+LAMMPS takes some two minutes a pour of 3456 spheres. A pour that is in FOLDER is not made again."""
+import argparse
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+from scipy.spatial import cKDTree
+
+WIDTH, COLUMN = 12.0, 0.2  # diameters; solids fraction of the columns
+SECONDS = 1.6  # of fall and rest
+DIAMETER, DENSITY, GRAVITY = 0.02, 1200.0, 9.81
+STIFFNESS, RESTITUTION, STEPS_PER_CONTACT = 1e5, 0.9, 40
+STANDARD_ERRORS = 3.0
+
+
+class Law:
+    """The linear law in reduced units (lengths in diameters, masses in sphere masses, gravity 1)."""
+
+    def __init__(self):
+        mass = DENSITY * math.pi / 6 * DIAMETER**3
+        self.stiffness = STIFFNESS / (mass * GRAVITY / DIAMETER)
+        self.loss = -math.log(RESTITUTION)
+        self.unit_seconds = math.sqrt(DIAMETER / GRAVITY)
+        # Half a period of the damped oscillation of two spheres, and of their tangential spring.
+        damped = 0.5 * self.damping(0.5)
+        normal = math.pi / math.sqrt(self.stiffness / 0.5 - damped**2)
+        self.step = min(normal, math.pi * math.sqrt(0.5 / self.stiffness)) / STEPS_PER_CONTACT
+
+    def damping(self, mass):
+        """Of two bodies of this mass together: LAMMPS' gamma_n is this rate."""
+        return 2 * self.loss * math.sqrt(self.stiffness / mass / (math.pi**2 + self.loss**2))
+
+    def for_lammps(self, mass, friction):
+        rate = self.damping(mass)
+        return (f"{self.stiffness!r} {2 / 7 * self.stiffness!r} {rate!r} {0.5 * rate!r} "
+                f"{friction!r} 1")
+
+
+def column(n, seed):
+    """[n, 3]: random points, one by one, none nearer than a diameter to another."""
+    random = np.random.default_rng(seed)
+    height = n * math.pi / 6 / (COLUMN * WIDTH**2)
+    cells, centres = {}, []
+    while len(centres) < n:
+        point = random.uniform([0, 0, 0.5], [WIDTH, WIDTH, 0.5 + height])
+        place = np.floor(point).astype(int)
+        around = [((place[0] + i) % int(WIDTH), (place[1] + j) % int(WIDTH), place[2] + k)
+                  for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
+        near = [other for cell in around for other in cells.get(cell, [])]
+        if near:
+            between = np.array(near) - point
+            between[:, :2] -= WIDTH * np.round(between[:, :2] / WIDTH)
+            if ((between**2).sum(axis=1) < 1).any():
+                continue
+        centres.append(point)
+        cells.setdefault(tuple(place), []).append(point)
+    return np.array(centres)
+
+
+def by_jostle(jostle, folder, columns, friction):
+    """[pour]: centres, velocities and spins at the end, in reduced units."""
+    name = f"jostle-{len(columns)}x{len(columns[0])}-{friction:g}"
+    with open(folder / f"{name}.xyz", "w") as file:
+        for centres in columns:
+            file.write(f'{len(centres)}\nLattice="{WIDTH} 0 0 0 {WIDTH} 0 0 0 200" '
+                       'Properties=species:S:1:pos:R:3 pbc="T T F"\n')
+            file.writelines(f"A {x!r} {y!r} {z!r}\n" for x, y, z in centres.tolist())
+    contact = {"stiffness": STIFFNESS, "restitution": RESTITUTION, "friction": friction}
+    scene = {
+        "seed": 1, "container": {"sides": "periodic", "width": WIDTH}, "spheres": len(columns[0]),
+        "start": {"file": {"path": f"{name}.xyz", "frame": 0}}, "protocol": [],
+        "engine": {"discrete_element": {
+            "diameter": DIAMETER, "density": DENSITY, "gravity": GRAVITY,
+            "contact": {"linear_spring_dashpot": contact}, "steps_per_contact": STEPS_PER_CONTACT,
+            "rest": {"timed": {"seconds": SECONDS}}, "most_seconds": 2 * SECONDS}},
+        "observe": ["mean_height"],
+        "snapshots": {"taps": [0], "keep": ["positions", "velocities"]},
+        "sweep": {"/start/file/frame": list(range(len(columns)))}}
+    path, result = folder / f"{name}.json", folder / f"{name}.h5"
+    path.write_text(json.dumps(scene))
+    subprocess.run(["nice", "-n", "19", jostle, "run", path, "-o", result, "--resume", "--quiet"],
+                   check=True)
+    unit = Law().unit_seconds
+    with h5py.File(result) as file:
+        groups = [file[f"particles/point_{pour:04}_realization_00000"] for pour in range(len(columns))]
+        return [(group["position/value"][-1], group["velocity/value"][-1] * unit,
+                 group["spin/value"][-1] * unit) for group in groups]
+
+
+def by_lammps(lammps, folder, centres, friction, pour):
+    """The same of one pour by LAMMPS."""
+    law, n = Law(), len(centres)
+    name = f"lammps-{n}-{friction:g}-{pour}"
+    result = folder / f"{name}.npy"
+    if not result.exists():
+        top = math.ceil(centres[:, 2].max()) + 5
+        rows = [f"{i + 1} 1 1.0 {6 / math.pi!r} {x!r} {y!r} {z!r}"
+                for i, (x, y, z) in enumerate(centres.tolist())]
+        (folder / f"{name}.data").write_text(
+            f"a column\n\n{n} atoms\n1 atom types\n0 {WIDTH} xlo xhi\n0 {WIDTH} ylo yhi\n"
+            f"0 {top} zlo zhi\n\nAtoms # sphere\n\n" + "\n".join(rows) + "\n")
+        steps = round(SECONDS / law.unit_seconds / law.step)
+        (folder / f"{name}.in").write_text(
+            "units lj\natom_style sphere\nboundary p p f\nnewton off\ncomm_modify vel yes\n"
+            f"read_data {name}.data\n"
+            f"pair_style gran/hooke/history {law.for_lammps(0.5, friction)}\npair_coeff * *\n"
+            "neighbor 0.1 bin\nneigh_modify delay 0 every 1 check yes\nfix 1 all nve/sphere\n"
+            "fix 2 all gravity 1.0 vector 0 0 -1\n"
+            f"fix 3 all wall/gran hooke/history {law.for_lammps(1.0, friction)} zplane 0.0 NULL\n"
+            f"timestep {law.step!r}\nthermo {steps}\nrun {steps}\n"
+            f"write_dump all custom {name}.dump id x y z vx vy vz omegax omegay omegaz "
+            "modify sort id format float %.17g\n")
+        subprocess.run(["nice", "-n", "19", lammps, "-in", f"{name}.in", "-log", "none"], cwd=folder,
+                       check=True, stdout=subprocess.DEVNULL)
+        np.save(result, np.loadtxt(folder / f"{name}.dump", skiprows=9)[:, 1:])
+    rows = np.load(result)
+    return rows[:, :3], rows[:, 3:6], rows[:, 6:9]
+
+
+def slab_share(centres, low, high):
+    """Volume of the spheres between two heights / that of the slab."""
+    def below(z):  # of each sphere, below height z
+        h = np.clip(z - centres[:, 2] + 0.5, 0, 1)
+        return math.pi * h**2 * (1.5 - h) / 3
+    return float((below(high) - below(low)).sum() / (WIDTH**2 * (high - low)))
+
+
+def measured(bed):
+    """What is compared, by name."""
+    centres, velocities, spins = bed
+    n, low, high = len(centres), 1.5, 2 * centres[:, 2].mean() - 3
+    inside = centres.copy()
+    inside[:, :2] %= WIDTH
+    tree = cKDTree(inside, boxsize=[WIDTH, WIDTH, 1e3])
+    pairs = tree.query_pairs(1.0, output_type="ndarray")
+    between = inside[pairs[:, 0]] - inside[pairs[:, 1]]
+    between[:, :2] -= WIDTH * np.round(between[:, :2] / WIDTH)
+    overlaps = 1 - np.linalg.norm(between, axis=1)
+    on_floor = np.maximum(0, 0.5 - centres[:, 2])
+    kinetic = 0.5 * ((velocities**2).sum() + 0.1 * (spins**2).sum()) / n
+    elastic = 0.5 * Law().stiffness * ((overlaps**2).sum() + (on_floor**2).sum()) / n
+    return {"solids fraction from 1.5 d to 1.5 d below the top": slab_share(centres, low, high),
+            "mean height (potential energy), d": float(centres[:, 2].mean()),
+            "elastic energy of the normal springs, 1e-3 m g d a sphere": 1e3 * elastic,
+            "contacts a sphere": (2 * len(pairs) + int((on_floor > 0).sum())) / n,
+            "log10 of the kinetic energy a sphere, m g d": math.log10(kinetic)}
+
+
+def compared(ours, theirs):
+    """The table, and whether all lie within STANDARD_ERRORS of each other."""
+    print(f"{'':58}{'jostle':>20}{'LAMMPS':>20}   apart")
+    agree = True
+    for name in ours[0]:
+        samples = [np.array([one[name] for one in beds]) for beds in (ours, theirs)]
+        means = [sample.mean() for sample in samples]
+        errors = [sample.std(ddof=1) / math.sqrt(sample.size) for sample in samples]
+        apart = abs(means[0] - means[1]) / math.hypot(*errors)
+        agree = agree and apart <= STANDARD_ERRORS
+        print(f"{name:58}" + "".join(f"{f'{mean:.5f} +- {error:.5f}':>20}"
+                                     for mean, error in zip(means, errors)) +
+              f"   {apart:.1f} standard errors")
+    return agree
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev bench pours", allow_abbrev=False)
+    for path in ("jostle", "folder"):
+        parser.add_argument(path, type=pathlib.Path, help=argparse.SUPPRESS)
+    parser.add_argument("--friction", type=float, default=0.1, metavar="MU")
+    parser.add_argument("--pours", type=int, default=5, metavar="N", help="at least 2")
+    parser.add_argument("--spheres", type=int, default=3456, metavar="N", help="at least 1000")
+    asked = parser.parse_args()
+    if asked.pours < 2 or asked.spheres < 1000:
+        parser.error("at least 2 pours of at least 1000 spheres")
+    lammps = shutil.which("lmp")
+    if not lammps:
+        print("skipped: LAMMPS is not here: apt-get install lammps")
+        return
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    columns = [column(asked.spheres, pour) for pour in range(asked.pours)]
+    ours = by_jostle(asked.jostle.resolve(), asked.folder, columns, asked.friction)
+    theirs = [by_lammps(lammps, asked.folder, centres, asked.friction, pour)
+              for pour, centres in enumerate(columns)]
+    print(f"{asked.pours} pours of {asked.spheres} spheres, linear_spring_dashpot, friction "
+          f"{asked.friction:g}, after {SECONDS:g} s; mean +- standard error")
+    if not compared([measured(bed) for bed in ours], [measured(bed) for bed in theirs]):
+        sys.exit("they differ by more than three standard errors")
+
+
+if __name__ == "__main__":
+    main()
