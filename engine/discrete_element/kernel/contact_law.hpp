@@ -12,6 +12,12 @@ namespace jostle::inline engine {
 
 #define JOSTLE_INLINE [[gnu::always_inline]] inline
 
+// The upper half of 1.33 times the bits of 1: what a guess of x^(-1/3) takes a third of x's from.
+inline constexpr std::int64_t inverse_cube_root_bits = 0x553ef0ff;
+
+// A tangential force shorter than this, whose square has no inverse, counts as none.
+inline constexpr double least_force = 1e-140;
+
 // What Wide has, too, for one number.
 JOSTLE_INLINE double select(bool mask, double yes, double no) {
   return mask ? yes : no;
@@ -19,13 +25,19 @@ JOSTLE_INLINE double select(bool mask, double yes, double no) {
 JOSTLE_INLINE bool any_of(bool mask) {
   return mask;
 }
+JOSTLE_INLINE double lesser(double a, double b) {
+  return a < b ? a : b;
+}
+JOSTLE_INLINE double greater(double a, double b) {
+  return a > b ? a : b;
+}
 JOSTLE_INLINE double square_root(double x) {
   return __builtin_sqrt(x);
 }
-/// A third of the exponent, and of what follows it: within 6 % of the cube root of x > 0.
-JOSTLE_INLINE double cube_root_guess(double x) {
+/// Less a third of the exponent, and of what follows it: within 5 % of x^(-1/3), x > 0.
+JOSTLE_INLINE double inverse_cube_root_guess(double x) {
   const std::int64_t high = __builtin_bit_cast(std::int64_t, x) >> 32;
-  return __builtin_bit_cast(double, (((high * 0x55555556) >> 32) + 715094163) << 32);
+  return __builtin_bit_cast(double, (inverse_cube_root_bits - ((high * 0x55555556) >> 32)) << 32);
 }
 
 template <class N>
@@ -61,24 +73,22 @@ JOSTLE_INLINE Vector3<N> masked(const Mask& mask, const Vector3<N>& a) {
   return {select(mask, a.x, zero), select(mask, a.y, zero), select(mask, a.z, zero)};
 }
 
+/// (1 + u)^(-1/2) to 0.3 u^4, for u near 0.
 template <class N>
-JOSTLE_INLINE N lesser(const N& a, const N& b) {
-  return select(a < b, a, b);
-}
-template <class N>
-JOSTLE_INLINE N greater(const N& a, const N& b) {
-  return select(a > b, a, b);
+JOSTLE_INLINE N inverse_root_by_series(const N& u) {
+  return 1.0 - u * (0.5 - u * (0.375 - u * 0.3125));
 }
 
-/// The cube root of x in [1e-300, 1] to 1e-14: Halley's method, from a guess good to 6 %.
+/// The cube root of x in [1e-300, 1] to 1e-14: Householder's method of the fourth order for
+/// x^(-1/3), which needs no division.
 template <class N>
 JOSTLE_INLINE N cube_root_of(const N& x) {
-  N root = cube_root_guess(x);
+  N inverse = inverse_cube_root_guess(x);
   for (int step = 0; step < 2; ++step) {
-    const N cube = root * root * root;
-    root = root * ((cube + 2.0 * x) / (2.0 * cube + x));
+    const N miss = 1.0 - x * inverse * inverse * inverse;
+    inverse = inverse + inverse * miss * (1.0 / 3.0 + miss * (2.0 / 9.0 + miss * (14.0 / 81.0)));
   }
-  return root;
+  return x * inverse * inverse;
 }
 
 /// Where two bodies meet: sphere i, and sphere j or a side.
@@ -99,11 +109,29 @@ struct ContactAction {
   N dissipated_by_friction, dissipated_normally;
 };
 
-/// The relative velocity of the surfaces where they meet, along the tangent plane.
+/// The relative velocity of the surfaces where they meet, along the tangent plane; `speed` is that
+/// of the centres along the normal, in which spins have no part.
 template <class N>
-JOSTLE_INLINE Vector3<N> sliding_velocity(const Meeting<N>& at) {
-  const Vector3<N> surface = at.velocity - cross(at.spin, at.arm);
-  return surface - scaled(dot(surface, at.normal), at.normal);
+JOSTLE_INLINE Vector3<N> sliding_velocity(const Meeting<N>& at, const N& speed) {
+  return at.velocity - scaled(speed, at.normal) - cross(at.spin, at.arm);
+}
+
+/// A force which lay in the tangent plane of the step before, turned with the pair: by the mean
+/// spin about the normal, then by projection into the present plane. Its length is sqrt(1 + change)
+/// of what it was; `inverse2` is one over the square of that, or anything where there is no force.
+template <class N>
+struct Projected {
+  Vector3<N> force;
+  N change;
+};
+template <class N>
+JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2, const Meeting<N>& at,
+                                     double time_step) {
+  const N twist = (0.5 * time_step) * dot(at.spin, at.normal);
+  const N out = dot(old, at.normal);  // of the plane
+  const N twist2 = twist * twist, tilt2 = out * out * inverse2;
+  return {old + scaled(twist, cross(at.normal, old)) - scaled(out, at.normal),
+          lesser(twist2 - tilt2 * (1.0 + twist2), N(1.0))};
 }
 
 /// A force in the tangent plane, by its length and direction; without any, the direction is 0.
@@ -113,26 +141,16 @@ struct TangentialForce {
   N length;
 };
 
-/// The force `old`, which lay in the tangent plane of the step before, turned with the pair: by the
-/// mean spin about the normal, then by projection into the present plane, which shortens it.
-template <class N>
-JOSTLE_INLINE Vector3<N> projected(const Vector3<N>& old, const Meeting<N>& at, double time_step) {
-  const N twist = (0.5 * time_step) * dot(at.spin, at.normal);
-  const Vector3<N> spun = old + scaled(twist, cross(at.normal, old));
-  return spun - scaled(dot(spun, at.normal), at.normal);
-}
-
-/// The same, with the length that it had.
+/// The force `old` in the present plane, with the length that it had.
 template <class N>
 JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const Meeting<N>& at,
                                         double time_step) {
   const N zero{};
   const N length = square_root(dot(old, old));
-  const Vector3<N> plane = projected(old, at, time_step);
-  const N plane2 = dot(plane, plane);
-  const N inverse = 1.0 / square_root(select(plane2 > zero, plane2, zero + 1.0));
-  const Vector3<N> along = scaled(inverse, plane);
-  return {scaled(length, along), along, length};
+  const N inverse = 1.0 / select(length > zero + least_force, length, zero + 1.0);
+  const auto [plane, change] = projected(old, inverse * inverse, at, time_step);
+  const Vector3<N> force = scaled(inverse_root_by_series(change), plane);
+  return {force, scaled(inverse, force), length};
 }
 
 /// The partially latched spring of Walton & Braun, J. Rheol. 30, 949 (1986): loading along K1,
@@ -190,9 +208,11 @@ struct WaltonBraunLaw {
                            ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
     const auto touching = at.overlap > zero;
-    const N lost = (0.5 / law.tangential) * dot(tangential, tangential);  // if it opens
-    const Vector3<N> step = scaled(zero + law.time_step, sliding_velocity(at));
     const auto [start, along, length] = turned(tangential, at, law.time_step);
+    const N before2 = length * length;
+    const N lost = (0.5 / law.tangential) * before2;  // if it opens
+    const N speed = dot(at.velocity, at.normal);
+    const Vector3<N> step = scaled(zero + law.time_step, sliding_velocity(at, speed));
     const N growth = zero - dot(step, along);  // the displacement that makes the force grow
     const N limit = law.friction * normal_force;
 
@@ -204,8 +224,8 @@ struct WaltonBraunLaw {
     reversal = select(towards * direction < zero, at_reversal, reversal);
     direction = towards;
 
-    const N room = limit - direction * length;
-    const N whole = limit * (1.0 - direction * reversal);
+    const N room = 1.0 - direction * share;  // shares of mu N
+    const N whole = 1.0 - direction * reversal;
     const N rest = room / select(whole > zero, whole, one);
     const N left = select(whole > zero, greater(lesser(rest, one), zero), zero);
     const N floor = zero + 1e-30;
@@ -216,16 +236,18 @@ struct WaltonBraunLaw {
     const auto flipped = dot(end, along) < zero;
     reversal = select(flipped, zero - reversal, reversal);
     direction = select(flipped, zero - direction, direction);
-    const N end2 = dot(end, end);
-    const auto slides = end2 > limit * limit;
+    N end2 = dot(end, end);
+    const N limit2 = limit * limit;
+    const auto slides = end2 > limit2;
     if (any_of(slides)) {
       const N cut = limit / square_root(select(slides, end2, one));
       end = scaled(select(slides, cut, one), end);
+      end2 = lesser(end2, limit2);
     }
 
     // Work on the contact in this step, less what its spring K0 then holds.
     const N work = zero - 0.5 * dot(start + end, step);
-    const N slip = work - (0.5 / law.tangential) * (dot(end, end) - length * length);
+    const N slip = work - (0.5 / law.tangential) * (end2 - before2);
     act.dissipated_by_friction = select(touching, slip, lost);
     tangential = masked(touching, end);
     reversal = select(touching, reversal, zero);
@@ -269,23 +291,22 @@ struct LinearLaw {
     act.force = scaled(normal_force, at.normal);
     act.torque = {zero, zero, zero};
     act.dissipated_by_friction = zero;
-    if constexpr (friction) shear(at, law, normal_force, act);
+    if constexpr (friction) shear(at, law, speed, normal_force, act);
     return act;
   }
 
  private:
-  JOSTLE_INLINE void shear(const Meeting<N>& at, const LawConstants& law, const N& normal_force,
-                           ContactAction<N>& act) {
+  JOSTLE_INLINE void shear(const Meeting<N>& at, const LawConstants& law, const N& speed,
+                           const N& normal_force, ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
     const auto touching = at.overlap > zero;
     const N spring2 = dot(spring, spring);
     const N held = (0.5 / law.tangential) * spring2;
-    const Vector3<N> velocity = sliding_velocity(at);
+    const Vector3<N> velocity = sliding_velocity(at, speed);
     const N stretch = zero + law.tangential * law.time_step;
-    const Vector3<N> plane = projected(spring, at, law.time_step);
-    const N plane2 = dot(plane, plane);
-    const N longer = square_root(spring2 / select(plane2 > zero, plane2, one));
-    const Vector3<N> start = scaled(longer, plane);  // as long as it was
+    const N inverse2 = 1.0 / select(spring2 > zero + least_force * least_force, spring2, one);
+    const auto [plane, change] = projected(spring, inverse2, at, law.time_step);
+    const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // as long as it was
     const Vector3<N> trial = start + scaled(stretch, velocity);
     // Half the last displacement comes after this step's positions.
     const N ahead = zero + (law.shear_damping - 0.5 * law.tangential * law.time_step);
@@ -301,7 +322,7 @@ struct LinearLaw {
     const Vector3<N> kept = acting - scaled(ahead, velocity);
     // Work on the contact in this step, less what its spring then holds.
     const N work = law.time_step * dot(acting, velocity);
-    const N rubbed = work - (0.5 / law.tangential) * (dot(kept, kept) - dot(start, start));
+    const N rubbed = work - (0.5 / law.tangential) * (dot(kept, kept) - spring2);
     act.dissipated_by_friction = select(touching, rubbed, held);
     spring = masked(touching, kept);
     const Vector3<N> force = masked(touching, scaled(zero - 1.0, acting));

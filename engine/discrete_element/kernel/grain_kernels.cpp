@@ -64,10 +64,11 @@ template <bool spin>
       const double* a = spheres.rows[contacts.first[at + lane]].of;
       const double* b = spheres.rows[contacts.second[at + lane]].of;
       for (std::uint32_t k = 0; k < per_row; ++k) {
-        Lanes sign = Lanes{} + 1.0;
+        LaneBits minus{};  // of what is added: spins
         for (std::uint32_t l = 0; l < n_lanes; ++l)
-          if (spin && (k * n_lanes + l) % 4 == 3) sign[l] = -1;
-        m[lane * per_row + k] = lanes_at(a + k * n_lanes) - sign * lanes_at(b + k * n_lanes);
+          if (spin && (k * n_lanes + l) % 4 == 3) minus[l] = std::int64_t{1} << 63;
+        m[lane * per_row + k] =
+            lanes_at(a + k * n_lanes) - (Lanes)((LaneBits)lanes_at(b + k * n_lanes) ^ minus);
       }
       if constexpr (spin)
         out.spin_z.part[p][lane] =

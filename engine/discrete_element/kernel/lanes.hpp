@@ -109,12 +109,40 @@ JOSTLE_INLINE Wide square_root(Wide x) {
 }
 
 // As that of one number.
-JOSTLE_INLINE Wide cube_root_guess(Wide x) {
+JOSTLE_INLINE Wide inverse_cube_root_guess(Wide x) {
   for (Lanes& one : x.part) {
     const LaneBits high = (LaneBits)one >> 32;
-    one = (Lanes)((((high * 0x55555556) >> 32) + 715094163) << 32);
+    one = (Lanes)((inverse_cube_root_bits - ((high * 0x55555556) >> 32)) << 32);
   }
   return x;
+}
+
+// a < b ? a : b and a > b ? a : b, which is what the instructions do.
+JOSTLE_INLINE Wide lesser(const Wide& a, const Wide& b) {
+  Wide c;
+  for (std::uint32_t p = 0; p < n_parts; ++p) {
+#if defined(__AVX512F__)
+    c.part[p] = (Lanes)_mm512_min_pd((__m512d)a.part[p], (__m512d)b.part[p]);
+#elif defined(__AVX2__)
+    c.part[p] = (Lanes)_mm256_min_pd((__m256d)a.part[p], (__m256d)b.part[p]);
+#else
+    c.part[p] = (Lanes)_mm_min_pd((__m128d)a.part[p], (__m128d)b.part[p]);
+#endif
+  }
+  return c;
+}
+JOSTLE_INLINE Wide greater(const Wide& a, const Wide& b) {
+  Wide c;
+  for (std::uint32_t p = 0; p < n_parts; ++p) {
+#if defined(__AVX512F__)
+    c.part[p] = (Lanes)_mm512_max_pd((__m512d)a.part[p], (__m512d)b.part[p]);
+#elif defined(__AVX2__)
+    c.part[p] = (Lanes)_mm256_max_pd((__m256d)a.part[p], (__m256d)b.part[p]);
+#else
+    c.part[p] = (Lanes)_mm_max_pd((__m128d)a.part[p], (__m128d)b.part[p]);
+#endif
+  }
+  return c;
 }
 
 // Turns rows [n_lanes][8] into columns [8][n_lanes], both given as eight Lanes, and back.

@@ -210,6 +210,23 @@ TEST_CASE("the tangential force keeps its length and plane while the pair turns 
   CHECK(std::sqrt(dot(law.tangential, law.tangential)) == Approx(before).epsilon(1e-9));
 }
 
+TEST_CASE("a tangential force too small to be squared stays a number") {
+  for (const double tiny : {1e-135, 1e-145, 1e-155, 1e-160, 1e-200, 1e-310}) {
+    CAPTURE(tiny);
+    Meeting<double> at = pressed(0.002, 0);
+    at.spin = {1, 1, 1};
+    Law latched{};
+    latched.tangential = {tiny, 0, tiny};
+    LinearLaw<double, true> linear{{tiny, 0, tiny}};
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::isfinite(dot(latched(at, constants).force, at.normal)));
+      CHECK(std::isfinite(dot(linear(at, constants).force, at.normal)));
+      CHECK(std::isfinite(dot(latched.tangential, latched.tangential)));
+      CHECK(std::isfinite(dot(linear.spring, linear.spring)));
+    }
+  }
+}
+
 TEST_CASE("the cube root is good to 1e-13") {
   for (double x = 1e-30; x <= 1; x *= 1.37)
     CHECK(cube_root_of(x) == Approx(std::cbrt(x)).epsilon(1e-13));
