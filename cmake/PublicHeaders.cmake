@@ -36,6 +36,7 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/analyses.hpp
     ensemble/analysis/histogram_fit.hpp
     ensemble/analysis/hysteresis.hpp
+    ensemble/analysis/memory/memory.hpp
     ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/spectra/spectra.hpp
     ensemble/analysis/steady_state.hpp
@@ -43,6 +44,8 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/structure_tables.hpp
     ensemble/analysis/sweeps/sweep_curve.hpp
     ensemble/analysis/table.hpp
+    ensemble/analysis/volumes/compactivity.hpp
+    ensemble/analysis/volumes/volume_table.hpp
     ensemble/fitting_report.hpp
     ensemble/fold.hpp
     ensemble/moments.hpp
@@ -90,6 +93,7 @@ set(JOSTLE_PUBLIC_HEADERS
     structure/observables.hpp
     structure/region.hpp
     structure/voids/bernal_holes.hpp
+    structure/voids/clusters.hpp
     structure/voids/pores.hpp
     structure/voids/voronoi.hpp
     study/available_cpus.hpp

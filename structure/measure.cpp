@@ -89,6 +89,7 @@ StructureSettings all_structure() {
   all.pair_correlation.emplace();
   all.order.emplace();
   all.voronoi.emplace();
+  all.clusters.emplace();
   all.pores.emplace();
   all.void_probability.emplace();
   all.holes.emplace();
@@ -117,6 +118,7 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
   add_part("pair_correlation", in, settings.pair_correlation, false, all);
   add_part("order", in, settings.order, true, all);
   add_part("voronoi", in, settings.voronoi, true, all);
+  add_part("clusters", in, settings.clusters, true, all);
   add_part("pores", in, settings.pores, true, all);
   add_part("void_probability", in, settings.void_probability, true, all);
   add_part("holes", in, settings.holes, true, all);

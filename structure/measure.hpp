@@ -63,6 +63,12 @@ struct VoronoiSettings {
   bool operator==(const VoronoiSettings&) const = default;
 };
 
+/// Volumes of clusters of cells.
+struct ClustersSettings {
+  std::uint64_t largest = 64;  // cells
+  bool operator==(const ClustersSettings&) const = default;
+};
+
 struct PoresSettings {
   double bin_width = 0.02, largest = 1.5;  // of xi
   double merge = 1e-6;                     // diameters
@@ -94,6 +100,7 @@ struct StructureSettings {
   std::optional<PairsSettings> pair_correlation = std::nullopt;
   std::optional<OrderSettings> order = std::nullopt;
   std::optional<VoronoiSettings> voronoi = std::nullopt;
+  std::optional<ClustersSettings> clusters = std::nullopt;
   std::optional<PoresSettings> pores = std::nullopt;
   std::optional<VoidSettings> void_probability = std::nullopt;
   std::optional<HolesSettings> holes = std::nullopt;

@@ -31,6 +31,7 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
 Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings);
+Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings);

@@ -34,7 +34,7 @@ struct AnalyseArguments {
   std::string window = "hann", detrend = "mean", band;
   std::vector<std::uint64_t> waiting_times, lags;
   std::string quantity = "value", against;
-  std::optional<double> reference;
+  std::optional<double> reference, spheres;
 };
 
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
@@ -150,8 +150,8 @@ std::string file_or_kind_fault(const std::string& text) {
   std::error_code unreadable;
   if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
     return {};
-  const std::vector<std::string> kinds{"steady",     "spectrum", "ageing",
-                                       "hysteresis", "motion",   "sweep"};
+  const std::vector<std::string> kinds{"steady", "spectrum", "ageing",  "hysteresis",
+                                       "motion", "sweep",    "volumes", "memory"};
   if (std::ranges::find(kinds, text) != kinds.end())
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
   return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
@@ -305,11 +305,44 @@ void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
 }
 
+void add_volumes(Kinds& kinds, AnalyseArguments& a, int& code) {
+  Command kind = kinds.add(
+      "volumes", "Variance of steady states over strengths, compactivity by two estimators",
+      [&code](AnalyseArguments& arguments) {
+        VolumesSettings settings{.against = arguments.against, .spheres = arguments.spheres};
+        if (arguments.last > 0) settings.last = arguments.last;
+        if (settings.spheres && !(*settings.spheres > 0))
+          throw BadInput(fmt::format("--spheres {}: a number above 0", *settings.spheres));
+        Analyses analyses;
+        analyses.volumes = requests(arguments, settings);
+        code = run_analyses(arguments, analyses);
+      });
+  kinds.add_last(kind, "Taps at the end (default: a quarter)");
+  kinds.add_option(kind, "--against", a.against,
+                   "What is swept: its name, or JSON pointer into the scene (default: the first)");
+  kinds.add_option(kind, "--spheres", a.spheres,
+                   "Whose volume it is (default: those of the observable's window)");
+}
+
+void add_memory(Kinds& kinds, AnalyseArguments& a, int& code) {
+  Command kind = kinds.add(
+      "memory", "Whether what follows a common value depends on how it was reached",
+      [&code](AnalyseArguments& arguments) {
+        Analyses analyses;
+        analyses.memory = requests(arguments, MemorySettings{ascending("--lags", arguments.lags)});
+        code = run_analyses(arguments, analyses);
+      });
+  kinds.add_option(kind, "--lags", a.lags,
+                   "Last taps of windows after the switch, separated by commas (default: 1, 3, "
+                   "10, 30, ...)",
+                   [](Option option) { option.separated_by(',').between(1, 1000000000); });
+}
+
 }  // namespace
 
 void add_analyse(Command& app, int& code) {
   Command command = app.add_command(
-      "analyse", "Steady states, spectra, ageing, hysteresis, motion and sweeps of results");
+      "analyse", "Steady states, spectra, ageing, hysteresis, motion, sweeps, volumes, memory");
   auto arguments = std::make_shared<AnalyseArguments>();
   AnalyseArguments& a = *arguments;
   command.add_option("input", a.inputs, "Results, one file or several")
@@ -328,6 +361,8 @@ void add_analyse(Command& app, int& code) {
   add_hysteresis(kinds, code);
   add_motion(kinds, code);
   add_sweep(kinds, a, code);
+  add_volumes(kinds, a, code);
+  add_memory(kinds, a, code);
   command.footer(
       "Examples:\n"
       "  jostle analyse quickstart.h5 steady --observable mean_height --last 50\n"
@@ -335,6 +370,8 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99\n"
       "  jostle analyse fig4.h5 hysteresis --observable bulk_fraction\n"
       "  jostle analyse motion.h5 motion\n"
+      "  jostle analyse bell.h5 volumes --observable mean_height --last 1000\n"
+      "  jostle analyse memory.h5 memory --observable corrected_fraction\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"

@@ -58,6 +58,26 @@ void read_settings(const Reader& in, SweepSettings& settings) {
     settings.reference = reference->number(between(-1e9, 1e9));
 }
 
+void read_settings(const Reader& in, VolumesSettings& settings) {
+  read_optional(in, "last", SteadyStateTest::fewest_taps, settings.last);
+  if (const auto against = in.find("against")) settings.against = against->text().value_or("");
+  if (const auto spheres = in.find("spheres")) settings.spheres = spheres->number(above(0, 1e9));
+}
+
+void read_settings(const Reader& in, MemorySettings& settings) {
+  if (const auto taps = in.find("lags")) settings.lags = chosen_taps(read_taps(*taps));
+}
+
+const std::vector<std::string>& keys(const VolumesSettings&) {
+  static const std::vector<std::string> names = {"observable", "last", "against", "spheres"};
+  return names;
+}
+
+const std::vector<std::string>& keys(const MemorySettings&) {
+  static const std::vector<std::string> names = {"observable", "lags"};
+  return names;
+}
+
 const std::vector<std::string>& keys(const AgeingSettings&) {
   static const std::vector<std::string> names = {"observable", "waiting_times", "lags"};
   return names;
@@ -141,6 +161,18 @@ Json written(const SweepSettings& settings) {
   return out;
 }
 
+Json written(const VolumesSettings& settings) {
+  Json out = Json::object();
+  if (settings.last) out["last"] = *settings.last;
+  if (!settings.against.empty()) out["against"] = settings.against;
+  if (settings.spheres) out["spheres"] = plain_number(*settings.spheres);
+  return out;
+}
+
+Json written(const MemorySettings& settings) {
+  return {{"lags", settings.lags}};
+}
+
 template <class Settings>
 Json written(const std::vector<AnalysisRequest<Settings>>& requests) {
   Json list = Json::array();
@@ -156,21 +188,29 @@ Json written(const std::vector<AnalysisRequest<Settings>>& requests) {
 
 Analyses read_analyses(const Reader& in) {
   Analyses analyses;
-  if (!in.is_object_of({"steady", "spectrum", "ageing", "hysteresis", "sweep"})) return analyses;
+  if (!in.is_object_of(
+          {"steady", "spectrum", "ageing", "hysteresis", "sweep", "volumes", "memory"}))
+    return analyses;
   read_requests(in, "steady", analyses.steady);
   read_requests(in, "spectrum", analyses.spectrum);
   read_requests(in, "ageing", analyses.ageing);
   read_requests(in, "hysteresis", analyses.hysteresis);
   read_requests(in, "sweep", analyses.sweep);
+  read_requests(in, "volumes", analyses.volumes);
+  read_requests(in, "memory", analyses.memory);
   return analyses;
 }
 
 Json written(const Analyses& analyses) {
-  return {{"steady", written(analyses.steady)},
-          {"spectrum", written(analyses.spectrum)},
-          {"ageing", written(analyses.ageing)},
-          {"hysteresis", written(analyses.hysteresis)},
-          {"sweep", written(analyses.sweep)}};
+  Json out = {{"steady", written(analyses.steady)},
+              {"spectrum", written(analyses.spectrum)},
+              {"ageing", written(analyses.ageing)},
+              {"hysteresis", written(analyses.hysteresis)},
+              {"sweep", written(analyses.sweep)}};
+  // Left out where there are none, so that runs of earlier versions can be resumed.
+  if (!analyses.volumes.empty()) out["volumes"] = written(analyses.volumes);
+  if (!analyses.memory.empty()) out["memory"] = written(analyses.memory);
+  return out;
 }
 
 }  // namespace jostle::inline config

@@ -93,6 +93,25 @@ class AnalysisCheck {
     check_last(place, settings.last, 1);
   }
 
+  void check(const std::string& place, const VolumesSettings& settings) {
+    check_last(place, settings.last, SteadyStateTest::fewest_taps);
+  }
+
+  void check(const std::string& place, const MemorySettings& settings) {
+    const std::vector<Stage> steps = stages(scene_.protocol);
+    if (steps.size() < 2) {
+      note(place, "",
+           "needs a protocol of at least two stages: ways of reaching a packing fraction, "
+           "then a common one");
+    } else if (!settings.lags.empty() && settings.lags.front() == 0) {
+      note(place, "/lags", "a lag is at least 1 tap");
+    } else if (!settings.lags.empty() && settings.lags.back() > steps.back().count) {
+      note(place, "/lags",
+           fmt::format("{}, but the last stage has {}", counted(settings.lags.back(), "tap"),
+                       steps.back().count));
+    }
+  }
+
   void check_last(const std::string& place, const std::optional<std::uint64_t>& last,
                   std::uint64_t least) {
     if (last && *last > taps_) {
@@ -151,6 +170,8 @@ void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
   check("ageing", scene.analyse.ageing);
   check("hysteresis", scene.analyse.hysteresis);
   check("sweep", scene.analyse.sweep);
+  check("volumes", scene.analyse.volumes);
+  check("memory", scene.analyse.memory);
 }
 
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults) {

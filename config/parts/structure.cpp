@@ -179,6 +179,14 @@ Json written_settings(const VoidSettings& settings) {
   return out;
 }
 
+void read_settings(const Reader& in, ClustersSettings& settings) {
+  if (!in.is_object_of({"largest"})) return;
+  in.read_whole("largest", settings.largest, 1, 10'000);
+}
+Json written_settings(const ClustersSettings& settings) {
+  return {{"largest", settings.largest}};
+}
+
 void read_settings(const Reader& in, HolesSettings& settings) {
   BondLengths& bonds = settings.bonds;
   if (!has_keys<BondLengths>(in)) return;
@@ -216,6 +224,7 @@ void for_each_part(Settings& settings, Act&& act) {
   act("pair_correlation", settings.pair_correlation);
   act("order", settings.order);
   act("voronoi", settings.voronoi);
+  act("clusters", settings.clusters);
   act("pores", settings.pores);
   act("void_probability", settings.void_probability);
   act("holes", settings.holes);

@@ -63,6 +63,21 @@ struct SweepSettings {
   bool operator==(const SweepSettings&) const = default;
 };
 
+/// What is drawn of volumes and compactivities, over the points of a sweep.
+struct VolumesSettings {
+  std::optional<std::uint64_t> last = std::nullopt;  // absent: the last quarter
+  std::string against;                               // as for sweeps
+  /// Whose volume it is; absent: those of the observable's window.
+  std::optional<double> spheres = std::nullopt;
+  bool operator==(const VolumesSettings&) const = default;
+};
+
+/// At which lags after the last stage has begun histories are compared.
+struct MemorySettings {
+  std::vector<std::uint64_t> lags;  // last ones of windows, ascending, at least 1; empty: all
+  bool operator==(const MemorySettings&) const = default;
+};
+
 /// The fewest taps that a spectrum is estimated from.
 inline constexpr std::uint64_t fewest_spectrum_taps = 32;
 

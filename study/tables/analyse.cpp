@@ -13,6 +13,7 @@
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/scenes/point_scenes.hpp"
+#include "study/tables/over_points.hpp"
 
 namespace jostle::inline study {
 
@@ -125,6 +126,12 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
     add_tables(around, "ageing", analyses.ageing, tables);
     add_tables(around, "hysteresis", analyses.hysteresis, tables);
   }
+  if (!analyses.volumes.empty())
+    std::ranges::move(volume_tables(file, scenes(), points, analyses.volumes),
+                      std::back_inserter(tables));
+  if (!analyses.memory.empty())
+    std::ranges::move(memory_tables(file, scenes(), points, analyses.memory),
+                      std::back_inserter(tables));
   return tables;
 }
 

@@ -329,6 +329,13 @@ std::string table_name(const AnalysisRequest<SweepSettings>& request) {
 
 }  // namespace
 
+SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
+                       const std::string& against) {
+  Member member;
+  set_x(member, swept, scenes, point, against);
+  return {member.x, member.swept.name, member.swept.units, member.others};
+}
+
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
   for (const Quantity& axis : fit.axes) {
     const auto* names = std::get_if<std::vector<std::string>>(&axis.values);

@@ -12,6 +12,8 @@
 
 namespace jostle::inline study {
 
+class PointScenes;
+
 /// Tables just made of a file, not yet stored in it.
 struct MadeTables {
   std::vector<Table> fits = {}, analyses = {};
@@ -27,6 +29,18 @@ struct ParameterPoint {
 /// A value where the 95 % interval is closed; what has no limit on one side is no point of a curve.
 /// None of a table that has no such parameter.
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name);
+
+/// Where a sweep point stands on a curve.
+struct SweptPlace {
+  double x = 0;
+  std::string name, units;  // of x: a strength of taps as its control parameter
+  std::string others;       // values of the sweep that do not vary with it
+};
+
+/// `against`: JSON pointer, or the name of what is swept; empty: the first of the sweep, the
+/// strength of the taps without one. Throws BadInput.
+SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
+                       const std::string& against);
 
 /// Quantities against the swept value, sweep/<observable>/<quantity> with '_' for '/': over the
 /// points of all files together, each file with its own sweep or none. A strength of taps is drawn

@@ -33,6 +33,8 @@ LOW = {"/protocol/0/tap/dilate": [0.01, 0.02]}
 HIGH = {"/protocol/0/tap/dilate": [0.05, 0.1, 0.2]}
 UP_AND_DOWN = [{"ramp": {"dilate": {"sqrt_from": 0.1, "sqrt_to": 0.5, "sqrt_step": 0.1}}, "count": 60},
                {"ramp": {"dilate": {"sqrt_from": 0.5, "sqrt_to": 0.1, "sqrt_step": 0.1}}, "count": 60}]
+THEN_COMMON = [{"tap": {"dilate": 0.05}, "count": 9}, {"tap": {"dilate": 0.02}, "count": 100}]
+TWO_WAYS = {"zip": {"/protocol/0/tap/dilate": [0.05, 0.1], "/protocol/0/count": [9, 5]}}
 
 # What a test has no time or no place for, and what stands for it.
 INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed --json":
@@ -60,7 +62,7 @@ INSTEAD_IN_DOCS = {
     "jostle analyse file.h5 hysteresis --observable bulk_fraction --last 1000":
         "jostle analyse fig4.h5 hysteresis --observable bulk_fraction",
 }
-RESULTS_OF_DOCS = {"file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5"}
+RESULTS_OF_DOCS = {"volumes": "bell", "file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5"}
 
 
 def documented(page):
@@ -97,7 +99,8 @@ class Examples(Case):
         self.jostle("run", "small.json", "--quiet")
         runs = {"fig5": LONG, "fig9": QUICK, "fig10": LONG, "bell": changed(LONG, sweep=HIGH),
                 "low": changed(QUICK, sweep=LOW), "high": changed(QUICK, sweep=HIGH),
-                "fig4": changed(LONG, protocol=UP_AND_DOWN), "motion": changed(QUICK, motion={})}
+                "fig4": changed(LONG, protocol=UP_AND_DOWN), "motion": changed(QUICK, motion={}),
+                "memory": changed(LONG, protocol=THEN_COMMON, sweep=TWO_WAYS)}
         for name, scene in runs.items():
             self.write(scene, "of.json")
             self.jostle("run", "of.json", "--quiet", "-o", f"{name}.h5")

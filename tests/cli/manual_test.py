@@ -10,7 +10,7 @@ import unittest
 from support import Case
 
 MANUAL = pathlib.Path(os.environ["BUILD"]) / "manual"
-KINDS = ("steady", "spectrum", "ageing", "hysteresis", "sweep")
+KINDS = ("steady", "spectrum", "ageing", "hysteresis", "sweep", "volumes", "memory")
 
 
 def plain(page):
@@ -129,7 +129,8 @@ class Zsh(Case):
                 self.assertRegex(specs, rf"(?m)^(\(.*\)|\*)?{option}\[", command)
         self.assertIn('scene:_files -g "*.(json)"', self.specs("run"))
         self.assertIn(":value:(jackknife bootstrap none)", self.specs("fit"))
-        self.assertIn("compadd steady spectrum ageing hysteresis sweep", self.specs("analyse"))
+        self.assertIn("compadd steady spectrum ageing hysteresis motion sweep volumes memory",
+                      self.specs("analyse"))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import numpy as np
 
 from support import BAD_INPUT, FAILED, TINY, Case, changed
 
-PARTS = ["coordination", "holes", "layers", "order", "pair_correlation", "pores", "profile", "sides",
+PARTS = ["clusters", "coordination", "holes", "layers", "order", "pair_correlation", "pores", "profile", "sides",
          "void_probability", "voronoi"]
 SMALL = {"profile": {}, "coordination": {"cut": 1.1}, "pores": {"largest": 2},
          "region": {"heights": [0.6, 1.5], "from_sides": 0}}

@@ -92,6 +92,8 @@ const std::vector<std::string> cross_field_messages{
     "is empty: the first tap must be the lower",
     "is not observed (observed:",
     "hysteresis needs a ramp",
+    "a protocol of at least two stages",
+    "but the last stage has",
     "after the last one,",
     "the lowest frequency comes first",
     "but the protocol has",

@@ -44,7 +44,7 @@ export function precisionSection(chapter) {
 }
 
 const drawn = {fits: () => true, analysis: (table) => ["steady", "spectrum", "ageing", "hysteresis", "cost"].includes(table.path[0]) ||
-  table.point === null, structure: (table) => ["profile", "sides", "layers", "coordination", "pair_correlation", "order", "voronoi", "pores",
+  ["sweep", "target_precision"].includes(table.path[0]), structure: (table) => ["profile", "sides", "layers", "coordination", "pair_correlation", "order", "voronoi", "pores",
                                                 "void_probability", "holes"].includes(table.path[0])};
 
 /// Of a later version, or another program.

@@ -1,0 +1,139 @@
+#include "ensemble/analysis/memory/memory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/moments.hpp"
+#include "ensemble/statistics/jackknife.hpp"
+
+namespace jostle::inline ensemble {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The intercept at 0 of a straight line through (x, y), with its error by the scatter about it;
+/// the mean where x is 0 throughout. None where x is one other value.
+void fit_intercept(std::span<const double> x, std::span<const double> y, AlignedDifference& into) {
+  Moments x_all, y_all;
+  for (const double value : x) x_all.add(value);
+  for (const double value : y) y_all.add(value);
+  const auto n = static_cast<double>(x.size());
+  const double s_xx = n * x_all.sigma() * x_all.sigma();
+  const bool varies = s_xx > 0;
+  double s_xy = 0, squares = 0;
+  for (std::size_t r = 0; r < x.size(); ++r) s_xy += (x[r] - x_all.mean()) * (y[r] - y_all.mean());
+  const double slope = varies ? s_xy / s_xx : 0;
+  into.value = y_all.mean() - slope * x_all.mean();
+  if (!varies && x_all.mean() != 0) into.value = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t r = 0; r < x.size(); ++r) {
+    const double left = y[r] - y_all.mean() - slope * (x[r] - x_all.mean());
+    squares += left * left;
+  }
+  const double dof = n - (varies ? 2 : 1);
+  if (!(dof >= 1)) return;
+  const double leverage = 1 / n + (varies ? x_all.mean() * x_all.mean() / s_xx : 0);
+  into.error = {std::sqrt(squares / dof * leverage), dof};
+}
+
+}  // namespace
+
+std::vector<LagWindow> lag_windows(std::uint64_t last) {
+  std::vector<std::uint64_t> ends;
+  for (std::uint64_t decade = 1; decade < last; decade *= 10) {
+    ends.push_back(decade);
+    if (3 * decade < last) ends.push_back(3 * decade);
+  }
+  ends.push_back(last);
+  return lag_windows(ends);
+}
+
+std::vector<LagWindow> lag_windows(std::span<const std::uint64_t> ends) {
+  std::vector<LagWindow> windows;
+  for (const std::uint64_t end : ends)
+    windows.push_back({windows.empty() ? 1 : windows.back().last + 1, end});
+  return windows;
+}
+
+MemoryTest memory_test(std::span<const History> histories, std::vector<LagWindow> windows) {
+  assert(histories.size() >= 2);
+  const std::size_t realizations = histories.front().at_switch.size();
+  MemoryTest test;
+  test.windows = std::move(windows);
+  test.realizations = realizations;
+  const auto response = [&](const History& history, std::size_t w, std::size_t r) {
+    return history.after[w * realizations + r] - history.at_switch[r];
+  };
+  for (std::size_t i = 0; i < histories.size(); ++i) {
+    for (std::size_t w = 0; w < test.windows.size(); ++w) {
+      Moments mean;
+      for (std::size_t r = 0; r < realizations; ++r) mean.add(response(histories[i], w, r));
+      test.response = std::max(test.response, std::abs(mean.mean()));
+    }
+    for (std::size_t j = i + 1; j < histories.size(); ++j) {
+      std::vector<double> x(realizations), y(realizations);
+      for (std::size_t w = 0; w < test.windows.size(); ++w) {
+        for (std::size_t r = 0; r < realizations; ++r) {
+          x[r] = histories[j].at_switch[r] - histories[i].at_switch[r];
+          y[r] = response(histories[j], w, r) - response(histories[i], w, r);
+        }
+        AlignedDifference& found =
+            test.differences.emplace_back(AlignedDifference{.first = i, .second = j, .window = w});
+        fit_intercept(x, y, found);
+        found.p = p_value(found.value, found.error);
+      }
+    }
+  }
+  std::vector<double> p;
+  for (const AlignedDifference& found : test.differences) p.push_back(found.p);
+  p = corrected_for_number(p);
+  const double level = MemoryTest::level / static_cast<double>(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    AlignedDifference& found = test.differences[i];
+    found.corrected = p[i];
+    found.detectable = found.error.known() && !std::isnan(found.value)
+                           ? found.error.error * smallest_effect_found(level, found.error.dof)
+                           : infinity;
+  }
+  return test;
+}
+
+double MemoryTest::detectable() const {
+  return std::ranges::max(differences, {}, &AlignedDifference::detectable).detectable;
+}
+
+std::string MemoryTest::statement(const std::string& observable) const {
+  if (realizations < 3)
+    return fmt::format("cannot decide with {} realization{}: errors need three", realizations,
+                       realizations == 1 ? "" : "s");
+  const auto key = [](const AlignedDifference& d) {
+    return std::isnan(d.corrected) ? 2 : d.corrected;
+  };
+  const AlignedDifference& found = *std::ranges::min_element(differences, {}, key);
+  if (found.corrected < level) {
+    const LagWindow& at = windows[found.window];
+    return fmt::format(
+        "{} alone is not the state: histories {} and {} differ by {:+.2g} +- {:.1g} at lags "
+        "{} to {} (p = {:.2g}, {} tests together, {} realizations)",
+        observable, found.first, found.second, found.value,
+        student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
+        at.first, at.last, found.corrected, differences.size(), realizations);
+  }
+  const double seen = detectable();
+  if (!(seen <= response)) {
+    return fmt::format(
+        "cannot decide with {} realizations: p = {:.2g}, but only a difference of {:.2g} "
+        "would have been found with 80 % at all lags, and the whole response is {:.2g}",
+        realizations, found.corrected, seen, response);
+  }
+  return fmt::format(
+      "no memory found: p = {:.2g} ({} tests together, {} realizations); a difference of {:.2g} "
+      "would have been found with 80 % at any lag, the whole response is {:.2g}",
+      found.corrected, differences.size(), realizations, seen, response);
+}
+
+}  // namespace jostle::inline ensemble

@@ -1,0 +1,190 @@
+#include "ensemble/analysis/volumes/volume_table.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ensemble/statistics/jackknife.hpp"
+
+namespace jostle::inline ensemble {
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* nowak = "Nowak et al. 1998, doi:10.1103/PhysRevE.57.1971";
+constexpr const char* dean = "Dean & Lefevre 2003, doi:10.1103/PhysRevLett.90.198301";
+
+/// Columns of a table along one axis.
+class ColumnsAlong {
+ public:
+  ColumnsAlong(Table& table, std::string axis) : table_(table), axis_(std::move(axis)) {}
+
+  void add(const std::string& name, auto values, const std::string& units,
+           const std::string& meaning, const char* source = "") {
+    table_.quantities.push_back({name, {axis_}, std::move(values), units, meaning, source});
+  }
+  /// With its error, degrees of freedom and 95 % interval.
+  void add(const std::string& name, const std::vector<Jackknifed>& values, const std::string& units,
+           const std::string& meaning, const char* source = "") {
+    std::vector<double> value, error, dof, low, high;
+    for (const Jackknifed& one : values) {
+      value.push_back(one.value);
+      error.push_back(error_or_nan(one.error));
+      dof.push_back(one.error.dof);
+      const double half = student_half_width(
+          error.back(), one.error.known() ? static_cast<std::size_t>(one.error.dof) + 1 : 0,
+          interval_levels[1]);
+      low.push_back(one.value - half);
+      high.push_back(one.value + half);
+    }
+    add(name, std::move(value), units, meaning, source);
+    add(name + "_error", std::move(error), units, "standard error, jackknife over realizations");
+    add(name + "_dof", std::move(dof), "1", "its degrees of freedom");
+    add(name + "_low_95", std::move(low), units, "95 % interval, Student's t");
+    add(name + "_high_95", std::move(high), units, "95 % interval, Student's t");
+  }
+  /// Variances, whose logarithm has the error.
+  void add_variances(const std::string& name, const std::vector<LogEstimate>& values,
+                     const std::string& units, const std::string& meaning) {
+    std::vector<double> value, error, low, high;
+    for (const LogEstimate& one : values) {
+      value.push_back(one.value);
+      error.push_back(one.error);
+      low.push_back(one.low_95);
+      high.push_back(one.high_95);
+    }
+    add(name, std::move(value), units, meaning, nowak);
+    add(name + "_error", std::move(error), units, "standard error, jackknife of the logarithm");
+    add(name + "_low_95", std::move(low), units, "95 % interval, Student's t");
+    add(name + "_high_95", std::move(high), units, "95 % interval, Student's t");
+  }
+
+ private:
+  Table& table_;
+  std::string axis_;
+};
+
+Jackknifed mean_of(const SteadyVolumes& state) {
+  Replicates means{state.mean(state.realizations()), {}};
+  for (std::size_t r = 0; state.realizations() > 1 && r < state.realizations(); ++r)
+    means.left_out.push_back(state.mean(r));
+  return jackknifed(means);
+}
+
+LogEstimate scaled(const LogEstimate& one, double factor) {
+  return {one.value * factor,   one.error * factor,  one.low_68 * factor,
+          one.high_68 * factor, one.low_95 * factor, one.high_95 * factor};
+}
+
+void add_states(const Column& observable, const std::string& control, const std::string& units,
+                const VolumeOf& volume_of, std::span<const VolumeState> states, Table& table) {
+  ColumnsAlong out(table, "state");
+  std::vector<std::uint64_t> index, first, last;
+  std::vector<double> strengths;
+  std::vector<std::string> steady;
+  std::vector<Jackknifed> means, volumes;
+  std::vector<LogEstimate> variances, volume_variances;
+  for (const VolumeState& state : states) {
+    index.push_back(index.size());
+    first.push_back(state.first_tap);
+    last.push_back(state.last_tap);
+    strengths.push_back(state.strength);
+    steady.push_back(state.steady.statement());
+    means.push_back(mean_of(state.observable));
+    variances.push_back(variance_of(state.observable));
+    Jackknifed volume = mean_of(state.volumes);
+    volume.value /= volume_of.spheres;
+    volume.error.error /= volume_of.spheres;
+    volumes.push_back(volume);
+    volume_variances.push_back(scaled(variance_of(state.volumes), 1 / volume_of.spheres));
+  }
+  table.axes.push_back({"state", {"state"}, std::move(index), "1", "steady state", ""});
+  out.add(control, std::move(strengths), units, "strength of the taps");
+  out.add("first_tap", std::move(first), "taps", "first tap of the state");
+  out.add("last_tap", std::move(last), "taps", "last tap of the state");
+  out.add("steady", std::move(steady), "1", "verdict on the steady state");
+  out.add(observable.name, means, observable.units, observable.long_name);
+  const std::string squared = observable.units == "1" ? "1" : observable.units + "^2";
+  out.add_variances("variance", variances, squared, "variance of single taps");
+  out.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
+  out.add_variances("volume_variance", volume_variances, "sphere volumes^2",
+                    "variance of V over N, which does not depend on N where parts of a bed "
+                    "are independent");
+}
+
+void add_steps(std::span<const CompactivityStep> steps, std::span<const std::size_t> used,
+               Table& table) {
+  ColumnsAlong out(table, "neighbours");
+  std::vector<std::uint64_t> index, from, to;
+  std::vector<double> separation, overlap;
+  std::vector<Jackknifed> fluctuations, histograms, difference, bend;
+  for (const CompactivityStep& step : steps) {
+    index.push_back(index.size());
+    from.push_back(used[step.from]);
+    to.push_back(used[step.to]);
+    separation.push_back(step.separation);
+    overlap.push_back(step.overlap);
+    fluctuations.push_back(jackknifed(step.fluctuations));
+    const Jackknifed none{not_a_number, {}};
+    histograms.push_back(step.overlaps ? jackknifed(step.histograms) : none);
+    difference.push_back(step.overlaps ? jackknifed(difference_of(step)) : none);
+    bend.push_back(step.overlaps ? jackknifed(step.curvature) : none);
+  }
+  const std::string per_volume = "1/sphere volumes";
+  table.axes.push_back({"neighbours", {"neighbours"}, std::move(index), "1", "two states", ""});
+  out.add("from_state", std::move(from), "1", "the first of the two");
+  out.add("to_state", std::move(to), "1", "the second");
+  out.add("separation", std::move(separation), "1", "of their mean volumes, in deviations");
+  out.add("overlap", std::move(overlap), "1", "what their histograms share", dean);
+  out.add("step_fluctuations", fluctuations, per_volume, "change of 1/X, -dV/var(V)", nowak);
+  out.add("step_histograms", histograms, per_volume, "change of 1/X, slope of ln P_1/P_2", dean);
+  out.add("step_difference", difference, per_volume, "histograms less fluctuations");
+  out.add("bend", bend, per_volume,
+          "change of the slope of ln P_1/P_2 over a deviation; 0 with one density of states", dean);
+}
+
+}  // namespace
+
+Table volume_table(std::string name, const Column& observable, const std::string& control,
+                   const std::string& units, const VolumeOf& volume_of,
+                   std::span<const VolumeState> states, const VolumeBins& bins) {
+  Table table{.name = std::move(name)};
+  add_states(observable, control, units, volume_of, states, table);
+  std::vector<SteadyVolumes> steady;
+  std::vector<std::size_t> used;
+  std::string left_out;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].used()) {
+      steady.push_back(states[i].volumes);
+      used.push_back(i);
+    } else {
+      left_out += fmt::format("{}{:.4g}", left_out.empty() ? "" : ", ", states[i].strength);
+    }
+  }
+  const std::vector<CompactivityStep> steps = compactivity_steps(steady, bins);
+  ColumnsAlong out(table, "state");
+  const auto inverse_x = [&](const char* suffix, Replicates CompactivityStep::*estimator,
+                             const char* meaning, const char* source) {
+    std::vector<Jackknifed> all(states.size(), {not_a_number, {}});
+    const std::vector<Jackknifed> found = inverse_compactivity(steps, estimator);
+    for (std::size_t i = 0; i < used.size(); ++i) all[used[i]] = found[i];
+    out.add(std::string("inverse_x_") + suffix, all, "1/sphere volumes", meaning, source);
+  };
+  inverse_x("fluctuations", &CompactivityStep::fluctuations,
+            "1/X less that of the first steady state, by the integral of -dV/var(V)", nowak);
+  inverse_x("histograms", &CompactivityStep::histograms,
+            "1/X less that of the first steady state, by overlapping histograms", dean);
+  add_steps(steps, used, table);
+  table.notes = {{"observable", observable.name},
+                 {"spheres", fmt::format("{:.6g}", volume_of.spheres)},
+                 {"realizations", std::to_string(states.front().volumes.realizations())}};
+  if (!left_out.empty())
+    table.notes.emplace_back("left_out", "not steady, at " + control + " " + left_out);
+  table.notes.emplace_back("verdict", used.size() < 2
+                                          ? "cannot decide: fewer than two states are steady"
+                                          : compactivity_verdict(steps).statement);
+  return table;
+}
+
+}  // namespace jostle::inline ensemble

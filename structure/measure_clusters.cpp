@@ -1,0 +1,63 @@
+#include <limits>
+#include <stdexcept>
+
+#include "structure/measure_parts.hpp"
+#include "structure/voids/clusters.hpp"
+
+namespace jostle::inline structure {
+
+Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) {
+  const VoronoiCells& cells = in.voronoi();
+  const ClusterVolumes found =
+      cluster_volumes(in.packing, cells, static_cast<std::uint32_t>(settings.largest),
+                      [&](std::uint32_t i) { return in.in_region(i); });
+  if (found.clusters.empty() || found.clusters.front() < 2)
+    throw std::invalid_argument("fewer than two whole cells lie in the region");
+  std::vector<double> n, per_cell, relative, chi, clusters;
+  const double free = found.mean.front() - 1 - least_free_volume, of_one = found.variance.front();
+  for (std::size_t k = 0; k < found.cells.size(); ++k) {
+    n.push_back(found.cells[k]);
+    per_cell.push_back(found.variance[k] / n.back());
+    relative.push_back(per_cell.back() / of_one);
+    chi.push_back(per_cell.back() / free);
+    clusters.push_back(static_cast<double>(found.clusters[k]));
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Measurement out;
+  out.places = {{"cells", n, "1", "cells of a cluster"}};
+  out.quantities = {
+      {.name = "variance",
+       .places = "cells",
+       .values = per_cell,
+       .units = "sphere volumes^2",
+       .long_name = "variance of the volume of a cluster over its cells; the same for all sizes "
+                    "where cells are independent",
+       .source = "Lechenault et al. 2006, doi:10.1088/1742-5468/2006/07/P07009",
+       .beyond = nan,
+       .with_change = true},
+      {.name = "relative_variance",
+       .places = "cells",
+       .values = relative,
+       .long_name = "the same over that of single cells, 1 where they are independent",
+       .beyond = nan},
+      {.name = "chi",
+       .places = "cells",
+       .values = chi,
+       .units = "sphere volumes",
+       .long_name = "compactivity (mean - least) / k of cells and clusters, k by moments: variance "
+                    "over mean less least",
+       .source = "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309",
+       .beyond = nan,
+       .with_change = true},
+      {.name = "n_clusters",
+       .places = "cells",
+       .values = clusters,
+       .long_name = "clusters all of whose cells are whole"},
+      {.name = "mean_volume",
+       .values = {found.mean.front()},
+       .units = "sphere volumes",
+       .long_name = "volume of a whole cell"}};
+  return out;
+}
+
+}  // namespace jostle::inline structure

@@ -1,0 +1,83 @@
+#include "structure/voids/clusters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "structure/order/neighbours.hpp"
+
+namespace jostle::inline structure {
+
+namespace {
+
+/// 1, 2, 3, 4, 6, 8, 12, ...: doublings, and halfway between them.
+std::vector<std::uint32_t> sizes(std::uint32_t largest) {
+  std::vector<std::uint32_t> all = {1, 2};
+  for (std::uint32_t n = 2; n <= largest / 2; n *= 2) {
+    all.push_back(n + n / 2);
+    all.push_back(2 * n);
+  }
+  if (const std::uint32_t next = all.back() + all.back() / 2; next <= largest) all.push_back(next);
+  while (!all.empty() && all.back() > largest) all.pop_back();
+  return all;
+}
+
+/// A distance within which a whole cluster lies, unless the surface is near.
+double reach(const VoronoiCells& cells, std::uint32_t largest) {
+  double volume = 0, whole = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.cut[i] != 0) continue;
+    volume += cells.volumes[i];
+    whole += 1;
+  }
+  if (whole == 0) return 1;
+  return 1.5 * std::cbrt(3 * largest * (volume / whole) / (4 * std::numbers::pi)) + 1;
+}
+
+}  // namespace
+
+ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells,
+                               std::uint32_t largest,
+                               const std::function<bool(std::uint32_t)>& around) {
+  largest = std::min(largest, static_cast<std::uint32_t>(cells.size() / 2));
+  ClusterVolumes found{.cells = sizes(largest), .mean = {}, .variance = {}, .clusters = {}};
+  const std::size_t n_sizes = found.cells.size();
+  std::vector<std::vector<double>> volumes(n_sizes);
+  const NeighbourFinder finder(packing, reach(cells, largest));
+  std::vector<std::uint32_t> member_of(cells.size(), 0);  // the last cluster's number
+  std::vector<std::pair<double, std::uint32_t>> near;     // distance squared, sphere
+  std::uint32_t number = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    if (!around(i)) continue;
+    ++number;
+    near = {{0, i}};
+    finder.around(i, [&](std::uint32_t j, Vec3, double squared) { near.emplace_back(squared, j); });
+    const std::size_t n = std::min<std::size_t>(near.size(), largest);
+    std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(n));
+    double volume = 0;
+    std::size_t size = 0;
+    for (std::size_t k = 0; k < n && size < n_sizes; ++k) {
+      const std::uint32_t j = near[k].second;
+      if (cells.cut[j] != 0 || member_of[j] == number) break;
+      member_of[j] = number;
+      volume += cells.volumes[j] / sphere_volume;
+      if (k + 1 == found.cells[size]) volumes[size++].push_back(volume);
+    }
+  }
+  for (const std::vector<double>& of_size : volumes) {
+    const auto n = static_cast<double>(of_size.size());
+    double sum = 0, squares = 0;
+    for (const double volume : of_size) sum += volume;
+    for (const double volume : of_size) squares += (volume - sum / n) * (volume - sum / n);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    found.mean.push_back(n > 0 ? sum / n : none);
+    found.variance.push_back(n > 1 ? squares / (n - 1) : none);
+    found.clusters.push_back(of_size.size());
+  }
+  return found;
+}
+
+}  // namespace jostle::inline structure

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "results/results_file.hpp"
+#include "study/scenes/point_scenes.hpp"
+
+// Analyses over the sweep points of one file together. What is not possible gives a table with the
+// note "refused" alone. Throw BadArgument for an observable that there is not.
+namespace jostle::inline study {
+
+/// volumes/<observable>, over strengths; of points whose own protocol goes through several
+/// strengths point_PPPP/volumes/<observable>, over the steps of its last branch. With other values
+/// swept too, one table for every combination, numbered.
+std::vector<Table> volume_tables(const ResultsFile& file, const PointScenes& scenes,
+                                 std::span<const std::uint32_t> points,
+                                 std::span<const AnalysisRequest<VolumesSettings>> requests);
+
+/// memory/<observable>: the points are ways of reaching a value, the last stage of their protocols
+/// is common to all.
+std::vector<Table> memory_tables(const ResultsFile& file, const PointScenes& scenes,
+                                 std::span<const std::uint32_t> points,
+                                 std::span<const AnalysisRequest<MemorySettings>> requests);
+
+}  // namespace jostle::inline study

@@ -1,0 +1,279 @@
+#include "ensemble/analysis/volumes/compactivity.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "ensemble/analysis/volumes/log_ratio.hpp"
+#include "fitting/fit.hpp"
+#include "fitting/intervals/distributions.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
+
+// Volumes with known 1/X: their intervals, and how often the verdict is wrong.
+
+using namespace jostle;
+
+namespace {
+
+constexpr std::size_t n_states = 3;
+
+/// Which volumes: normal ones of constant variance and k-gamma ones have one density of states for
+/// all strengths, so that 1/X is known; the others have not.
+enum class Kind { normal, gamma, widths, skewed };
+
+struct Setting {
+  std::size_t realizations, n_taps;
+  double rho;
+};
+
+/// Of unit variance.
+std::vector<double> memory(const Setting& setting, double rho, std::uint64_t seed,
+                           std::uint64_t stream) {
+  std::vector<double> series = synthetic::autoregressive(rho, setting.n_taps, seed, stream);
+  for (double& x : series) x *= std::sqrt(1 - rho * rho);
+  return series;
+}
+
+/// Normal: D is normal, mean 100 - 1/X, variance 1. Gamma: D(V) = V^3, scale X, the sum of eight
+/// squares.
+std::vector<double> volumes(Kind kind, std::size_t state, const Setting& setting,
+                            std::uint64_t seed, std::uint64_t stream) {
+  const auto i = static_cast<double>(state);
+  const double shrinks = std::pow(1.5, -i);
+  std::vector<double> series(setting.n_taps, kind == Kind::gamma ? 0 : 100 - i);
+  const std::size_t terms = kind == Kind::gamma ? 8 : 1;
+  for (std::size_t k = 0; k < terms; ++k) {
+    const double rho = kind == Kind::gamma ? std::sqrt(setting.rho) : setting.rho;
+    const std::vector<double> x = memory(setting, rho, seed, 1000 * stream + k);
+    for (std::size_t t = 0; t < series.size(); ++t) {
+      series[t] += kind == Kind::gamma    ? 0.5 * shrinks * x[t] * x[t]
+                   : kind == Kind::widths ? shrinks * x[t]
+                   : kind == Kind::skewed ? std::exp(0.6 * x[t]) - 1
+                                          : x[t];
+    }
+  }
+  return series;
+}
+
+struct Ensemble {
+  std::vector<SteadyVolumes> states;
+  VolumeBins bins;
+};
+
+Ensemble ensemble(Kind kind, const Setting& setting, std::uint64_t seed) {
+  Ensemble made{std::vector<SteadyVolumes>(n_states), {}};
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < n_states; ++i) {
+    for (std::size_t r = 0; r < setting.realizations; ++r) {
+      all.push_back(volumes(kind, i, setting, seed, i * setting.realizations + r));
+      made.states[i].add(all.back());
+    }
+  }
+  made.bins = volume_bins(made.states);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    made.states[k / setting.realizations].count(all[k], made.bins);
+  return made;
+}
+
+/// How many intervals of 68 and of 95 % hold the truth.
+struct Coverage {
+  std::size_t held_68 = 0, held_95 = 0;
+  void add(const Jackknifed& found, double truth) {
+    const double off = std::abs(found.value - truth) / found.error.error;
+    held_68 += off < student_two_sided(interval_levels[0], found.error.dof);
+    held_95 += off < student_two_sided(interval_levels[1], found.error.dof);
+  }
+  void add(const LogEstimate& found, double truth) {
+    held_68 += found.low_68 < truth && truth < found.high_68;
+    held_95 += found.low_95 < truth && truth < found.high_95;
+  }
+};
+
+struct Counts {
+  Coverage fluctuations{}, histograms{}, variance{};
+  std::size_t disagree = 0, agree = 0;
+};
+
+Counts calibrated(Kind kind, const Setting& setting, std::size_t ensembles) {
+  Counts counts;
+  const double truth = kind == Kind::gamma ? 1.25 : 2;
+  const double variance = kind == Kind::gamma ? 4 / 2.25 : 1;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    const Ensemble made = ensemble(kind, setting, 19890157 + e);
+    const auto steps = compactivity_steps(made.states, made.bins);
+    counts.fluctuations.add(inverse_compactivity(steps, &CompactivityStep::fluctuations).back(),
+                            truth);
+    counts.histograms.add(inverse_compactivity(steps, &CompactivityStep::histograms).back(), truth);
+    counts.variance.add(variance_of(made.states[1]), variance);
+    const std::string statement = compactivity_verdict(steps).statement;
+    counts.disagree += statement.starts_with("disagree");
+    counts.agree += statement.starts_with("agree");
+  }
+  return counts;
+}
+
+double deviation(double share, std::size_t n) {
+  return std::sqrt(share * (1 - share) / static_cast<double>(n));
+}
+
+void check_coverage(const Coverage& coverage, std::size_t n) {
+  const auto of = static_cast<double>(n);
+  CHECK(static_cast<double>(coverage.held_68) / of >= 0.6 - 3 * deviation(0.6, n));
+  CHECK(static_cast<double>(coverage.held_68) / of <= 0.78 + 3 * deviation(0.78, n));
+  CHECK(static_cast<double>(coverage.held_95) / of >= 0.9 - 3 * deviation(0.9, n));
+}
+
+void check(const std::vector<Setting>& settings, std::size_t ensembles) {
+  fmt::print("{:>7} {:>3} {:>5} {:>5} | {:>11} | {:>11} | {:>11} | disagree agree\n", "volumes",
+             "M", "taps", "rho", "fluct.", "histograms", "variance");
+  const char* const names[] = {"normal", "gamma", "widths", "skewed"};
+  for (const Kind kind : {Kind::normal, Kind::gamma, Kind::widths, Kind::skewed}) {
+    for (const Setting& setting : settings) {
+      const Counts counts = calibrated(kind, setting, ensembles);
+      const auto percent = [&](std::size_t n) {
+        return 100 * static_cast<double>(n) / static_cast<double>(ensembles);
+      };
+      const bool true_form = kind == Kind::normal || kind == Kind::gamma;
+      fmt::print("{:>7} {:>3} {:>5} {:>5} |", names[static_cast<int>(kind)], setting.realizations,
+                 setting.n_taps, setting.rho);
+      for (const Coverage* of : {&counts.fluctuations, &counts.histograms, &counts.variance}) {
+        if (true_form)
+          fmt::print(" {:5.1f} {:5.1f} |", percent(of->held_68), percent(of->held_95));
+        else
+          fmt::print(" {:>11} |", "");
+      }
+      fmt::print(" {:8.1f} {:5.1f}\n", percent(counts.disagree), percent(counts.agree));
+      CAPTURE(names[static_cast<int>(kind)], setting.realizations, setting.n_taps, setting.rho);
+      if (true_form) {
+        check_coverage(counts.fluctuations, ensembles);
+        check_coverage(counts.histograms, ensembles);
+        check_coverage(counts.variance, ensembles);
+        CHECK(percent(counts.disagree) <=
+              100 * (CompactivityVerdict::level +
+                     3 * deviation(CompactivityVerdict::level, ensembles)));
+      } else {
+        // Where it is said, it would have been found in at least 80 %.
+        CHECK(percent(counts.agree) <= 100 * (0.2 + 3 * deviation(0.2, ensembles)));
+      }
+    }
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+TEST_CASE("The jackknife takes the bias of a variance about the mean of realizations away") {
+  SteadyVolumes state;
+  for (const double mean : {1.0, 2.0, 6.0}) state.add(std::vector{mean - 0.5, mean + 0.5});
+  // Of single values: within 1/4 and between 14/3 of the means about theirs.
+  CHECK(state.mean(3) == Approx(3).epsilon(1e-14));
+  CHECK(state.variance(3) == Approx(0.25 + 14.0 / 3).epsilon(1e-14));
+  CHECK(state.variance(2) == Approx(0.25 + 0.25).epsilon(1e-14));
+  Replicates variance{state.variance(3), {}};
+  for (std::size_t r = 0; r < 3; ++r) variance.left_out.push_back(state.variance(r));
+  // Unbiased: 1/4 and 1/(M - 1) of the squares between.
+  CHECK(jackknifed(variance).value == Approx(0.25 + 7).epsilon(1e-13));
+  CHECK(jackknifed(variance).error.dof == 2);
+}
+
+TEST_CASE("ln P_2/P_1 of histograms that are tilts of one another is the tilt, whatever D is") {
+  const VolumeBins bins{.first = 0, .width = 0.1, .count = 80};
+  std::vector<double> first(80), second(80);
+  double sum_1 = 0, sum_2 = 0;
+  for (std::size_t k = 0; k < 80; ++k) {
+    const double v = bins.middle(k), states = 1 + std::pow(std::sin(3 * v), 2) * v;
+    first[k] = states * std::exp(-0.5 * v);
+    second[k] = states * std::exp(-1.2 * v);
+    sum_1 += first[k];
+    sum_2 += second[k];
+  }
+  for (double& share : first) share /= sum_1;
+  for (double& share : second) share /= sum_2;
+  const LogRatio found = log_ratio(first, second, bins, 2, 1.5);
+  CHECK(found.slope == Approx(-0.7).epsilon(1e-8));
+  CHECK(std::abs(found.slope_change) < 1e-7);
+  CHECK(shared(first, first) == Approx(1).epsilon(1e-12));
+}
+
+TEST_CASE("ln P_2/P_1 of normal laws of two widths bends by what their variances say") {
+  const VolumeBins bins{.first = -12, .width = 0.05, .count = 480};
+  std::vector<double> first(480), second(480);
+  for (std::size_t k = 0; k < 480; ++k) {
+    const double v = bins.middle(k);
+    first[k] = std::exp(-0.5 * v * v) * 0.05 / std::sqrt(2 * M_PI);
+    second[k] = std::exp(-0.5 * (v - 1) * (v - 1) / 1.44) * 0.05 / std::sqrt(2 * M_PI * 1.44);
+  }
+  // d^2 ln(P_2/P_1) / dV^2 = 1 - 1/1.44, over a scale of 2.
+  CHECK(log_ratio(first, second, bins, 0.5, 2).slope_change ==
+        Approx(2 * (1 - 1 / 1.44)).epsilon(1e-6));
+}
+
+TEST_CASE("States that do not vary or do not overlap are told") {
+  std::vector<SteadyVolumes> still(2);
+  for (SteadyVolumes& state : still) state.add(std::vector{1.0, 1.0});
+  CHECK_THROWS_AS(volume_bins(still), std::invalid_argument);
+  std::vector<SteadyVolumes> apart(2);
+  const Setting setting{4, 100, 0};
+  VolumeBins bins;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t r = 0; r < 4; ++r) {
+        std::vector<double> series = memory(setting, 0, 1, 10 * i + r);
+        for (double& x : series) x += 50 * static_cast<double>(i);
+        if (pass == 0)
+          apart[i].add(series);
+        else
+          apart[i].count(series, bins);
+      }
+    }
+    if (pass == 0) bins = volume_bins(apart);
+  }
+  const auto steps = compactivity_steps(apart, bins);
+  CHECK_FALSE(steps[0].overlaps);
+  CHECK(std::isnan(inverse_compactivity(steps, &CompactivityStep::histograms)[1].value));
+  CHECK(inverse_compactivity(steps, &CompactivityStep::fluctuations)[1].value < -40);
+  CHECK(compactivity_verdict(steps).statement.starts_with("cannot decide"));
+}
+
+TEST_CASE("Neighbours that lie close are told to agree whatever they are: no verdict") {
+  const Setting setting{10, 1000, 0};
+  std::vector<SteadyVolumes> states(2);
+  VolumeBins bins;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t r = 0; r < 10; ++r) {
+        std::vector<double> series = memory(setting, 0, 2, 100 * i + r);
+        for (double& x : series) x = std::exp(0.6 * x) + 0.2 * static_cast<double>(i);
+        if (pass == 0)
+          states[i].add(series);
+        else
+          states[i].count(series, bins);
+      }
+    }
+    if (pass == 0) bins = volume_bins(states);
+  }
+  const CompactivityVerdict verdict = compactivity_verdict(compactivity_steps(states, bins));
+  CHECK(verdict.separation < CompactivityVerdict::least_separation);
+  CHECK_FALSE(verdict.statement.starts_with("agree"));
+}
+
+TEST_CASE("Compactivities and their verdict are calibrated", "[statistics]") {
+  check({{3, 1000, 0.9}, {4, 1000, 0.99}, {10, 1000, 0}, {20, 1000, 0.99}}, 100);
+}
+
+TEST_CASE("Compactivities and their verdict are calibrated in many ensembles", "[nightly]") {
+  check({{3, 1000, 0},
+         {3, 1000, 0.9},
+         {3, 1000, 0.99},
+         {4, 1000, 0},
+         {4, 1000, 0.99},
+         {10, 1000, 0},
+         {10, 1000, 0.9},
+         {10, 1000, 0.99},
+         {20, 1000, 0},
+         {20, 1000, 0.99}},
+        500);
+}

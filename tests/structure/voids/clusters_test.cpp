@@ -1,0 +1,107 @@
+#include "structure/voids/clusters.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "engine/bed/boundary.hpp"
+#include "engine/bed/random.hpp"
+#include "tests/structure/reference_deposit.hpp"
+#include "tests/structure/voids/voronoi_points.hpp"
+
+using namespace jostle;
+
+namespace {
+
+struct Statistics {
+  double mean = 0, variance = 0;
+  std::uint64_t n = 0;
+};
+
+/// Every centre and all of its images beside it, sorted by distance, cluster by cluster.
+Statistics brute_force(const Packing& packing, const VoronoiCells& cells, std::uint32_t n,
+                       std::uint32_t every) {
+  const Boundary boundary(packing.container);
+  const bool all_round = boundary.periodic_z;
+  std::vector<double> volumes;
+  for (std::uint32_t i = 0; i < cells.size(); i += every) {
+    std::vector<std::pair<double, std::uint32_t>> near;
+    for (std::uint32_t j = 0; j < cells.size(); ++j) {
+      for (int a = -1; a <= 1; ++a) {
+        for (int b = -1; b <= 1; ++b) {
+          for (int c = all_round ? -1 : 0; c <= (all_round ? 1 : 0); ++c) {
+            const Vec3 way = (packing.centres[j] - packing.centres[i]) +
+                             Vec3{a * boundary.width_x, b * boundary.width_y,
+                                  all_round ? c * boundary.height : 0};
+            near.emplace_back(norm_squared(way), j);
+          }
+        }
+      }
+    }
+    std::ranges::sort(near);
+    double volume = 0;
+    std::set<std::uint32_t> members;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (cells.cut[near[k].second] != 0) break;
+      if (!members.insert(near[k].second).second) break;
+      volume += cells.volumes[near[k].second] / sphere_volume;
+    }
+    if (members.size() == n) volumes.push_back(volume);
+  }
+  Statistics found{0, 0, volumes.size()};
+  for (const double volume : volumes) found.mean += volume / static_cast<double>(found.n);
+  for (const double volume : volumes) {
+    found.variance += std::pow(volume - found.mean, 2) / (static_cast<double>(found.n) - 1);
+  }
+  return found;
+}
+
+void check_twin(const Packing& packing, std::uint32_t every) {
+  const VoronoiCells cells = voronoi_cells(packing);
+  const ClusterVolumes found =
+      cluster_volumes(packing, cells, 24, [&](std::uint32_t i) { return i % every == 0; });
+  REQUIRE(found.cells == std::vector<std::uint32_t>{1, 2, 3, 4, 6, 8, 12, 16, 24});
+  for (std::size_t k = 0; k < found.cells.size(); k += 2) {
+    const Statistics twin = brute_force(packing, cells, found.cells[k], every);
+    CAPTURE(found.cells[k]);
+    REQUIRE(twin.n > 10);
+    CHECK(found.clusters[k] == twin.n);
+    CHECK(found.mean[k] == Approx(twin.mean).epsilon(1e-12));
+    CHECK(found.variance[k] == Approx(twin.variance).epsilon(1e-10));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Clusters of cells are those that a search through all centres and images finds") {
+  check_twin(poisson_points(), 40);
+  check_twin(reference_deposit(), 40);
+}
+
+TEST_CASE("The variance of clusters of independent cells grows as their number") {
+  const Packing packing = poisson_points();
+  VoronoiCells cells = voronoi_cells(packing);
+  RandomStream random(stream_key(20129734, 0, 0, Purpose::resampling));
+  // Uniform volumes: variance 1/12 of the width squared, here 1 sphere volume squared.
+  for (double& volume : cells.volumes)
+    volume = sphere_volume * (2 + std::sqrt(12.0) * random.uniform());
+  const ClusterVolumes found =
+      cluster_volumes(packing, cells, 32, [](std::uint32_t) { return true; });
+  for (std::size_t k = 0; k < found.cells.size(); ++k) {
+    const double n = found.cells[k];
+    // Of clusters that share cells about N/n are independent: error (2 n / N)^(1/2).
+    const double error = std::sqrt(2 * n / static_cast<double>(cells.size()));
+    CAPTURE(n, found.variance[k]);
+    CHECK(std::abs(found.variance[k] / n - 1) < 3 * error);
+  }
+}
+
+TEST_CASE("Clusters stop at half of all spheres") {
+  const Packing packing = poisson_points();
+  const VoronoiCells cells = voronoi_cells(packing);
+  const ClusterVolumes found =
+      cluster_volumes(packing, cells, 1'000'000, [](std::uint32_t i) { return i < 3; });
+  CHECK(found.cells.back() <= cells.size() / 2);
+  CHECK(found.cells.back() > cells.size() / 4);
+}
