@@ -37,6 +37,8 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/histogram_fit.hpp
     ensemble/analysis/hysteresis.hpp
     ensemble/analysis/memory/memory.hpp
+    ensemble/analysis/motion/motion_curves.hpp
+    ensemble/analysis/motion/motion_tables.hpp
     ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/spectra/spectra.hpp
     ensemble/analysis/steady_state.hpp
@@ -49,6 +51,8 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/fitting_report.hpp
     ensemble/fold.hpp
     ensemble/moments.hpp
+    ensemble/motion/motion.hpp
+    ensemble/motion/motion_records.hpp
     ensemble/plan.hpp
     ensemble/protocol_steps.hpp
     ensemble/realization.hpp
@@ -120,6 +124,7 @@ set(JOSTLE_PUBLIC_HEADERS
     study/tables/fit_source.hpp
     study/tables/fits.hpp
     study/tables/half_widths.hpp
+    study/tables/motion.hpp
     study/tables/own_law.hpp
     study/tables/structure.hpp
     study/tables/sweep.hpp
