@@ -39,6 +39,10 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/analysis/memory/memory.hpp
     ensemble/analysis/motion/motion_curves.hpp
     ensemble/analysis/motion/motion_tables.hpp
+    ensemble/analysis/ordering/log_rank.hpp
+    ensemble/analysis/ordering/ordering_table.hpp
+    ensemble/analysis/ordering/times.hpp
+    ensemble/analysis/ordering/weibull.hpp
     ensemble/analysis/spectra/ensemble_spectrum.hpp
     ensemble/analysis/spectra/spectra.hpp
     ensemble/analysis/steady_state.hpp
@@ -95,6 +99,7 @@ set(JOSTLE_PUBLIC_HEADERS
     structure/measure.hpp
     structure/measurement.hpp
     structure/observables.hpp
+    structure/order/structure_factor.hpp
     structure/region.hpp
     structure/voids/bernal_holes.hpp
     structure/voids/clusters.hpp

@@ -122,9 +122,10 @@ struct Analyses {
   std::vector<AnalysisRequest<SpectrumSettings>> spectrum;
   std::vector<AnalysisRequest<AgeingSettings>> ageing;
   std::vector<AnalysisRequest<HysteresisSettings>> hysteresis;
-  std::vector<AnalysisRequest<SweepSettings>> sweep;      // over the points
-  std::vector<AnalysisRequest<VolumesSettings>> volumes;  // likewise
-  std::vector<AnalysisRequest<MemorySettings>> memory;    // likewise
+  std::vector<AnalysisRequest<OrderingSettings>> ordering;  // also over the points
+  std::vector<AnalysisRequest<SweepSettings>> sweep;        // over the points
+  std::vector<AnalysisRequest<VolumesSettings>> volumes;    // likewise
+  std::vector<AnalysisRequest<MemorySettings>> memory;      // likewise
   bool operator==(const Analyses&) const = default;
   bool empty() const { return *this == Analyses{}; }
 };

@@ -88,6 +88,8 @@ StructureSettings all_structure() {
   all.coordination.emplace();
   all.pair_correlation.emplace();
   all.order.emplace();
+  all.gaps.emplace();
+  all.structure_factor.emplace();
   all.voronoi.emplace();
   all.clusters.emplace();
   all.pores.emplace();
@@ -117,6 +119,8 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
   add_part("coordination", in, settings.coordination, true, all);
   add_part("pair_correlation", in, settings.pair_correlation, false, all);
   add_part("order", in, settings.order, true, all);
+  add_part("gaps", in, settings.gaps, true, all);
+  add_part("structure_factor", in, settings.structure_factor, true, all);
   add_part("voronoi", in, settings.voronoi, true, all);
   add_part("clusters", in, settings.clusters, true, all);
   add_part("pores", in, settings.pores, true, all);

@@ -8,6 +8,7 @@
 #include "engine/bed/window.hpp"
 #include "structure/density/layers.hpp"
 #include "structure/measurement.hpp"
+#include "structure/order/structure_factor.hpp"
 #include "structure/region.hpp"
 #include "structure/voids/bernal_holes.hpp"
 
@@ -56,6 +57,15 @@ struct OrderSettings {
   bool operator==(const OrderSettings&) const = default;
 };
 
+/// Gaps between neighbours, contacts, rattlers.
+struct GapsSettings {
+  double largest = 0.5;              // gap that is counted
+  double tolerance = 1e-3;           // gap of a contact, of the single values
+  std::uint64_t least_contacts = 4;  // of a sphere that is no rattler
+  HeightWindow window{0.01, 0.2};    // gaps whose exponent is sought
+  bool operator==(const GapsSettings&) const = default;
+};
+
 struct VoronoiSettings {
   double least_area = 1e-3;  // of a face that counts, in surfaces of its cell
   double bin_width = 0.02;   // of free volumes, in volumes of a sphere
@@ -99,6 +109,8 @@ struct StructureSettings {
   std::optional<CoordinationSettings> coordination = std::nullopt;
   std::optional<PairsSettings> pair_correlation = std::nullopt;
   std::optional<OrderSettings> order = std::nullopt;
+  std::optional<GapsSettings> gaps = std::nullopt;
+  std::optional<StructureFactorSettings> structure_factor = std::nullopt;
   std::optional<VoronoiSettings> voronoi = std::nullopt;
   std::optional<ClustersSettings> clusters = std::nullopt;
   std::optional<PoresSettings> pores = std::nullopt;

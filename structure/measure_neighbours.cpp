@@ -1,10 +1,12 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/order/bond_order.hpp"
 #include "structure/order/crystal_order.hpp"
+#include "structure/order/ordered_front.hpp"
 #include "structure/order/pair_correlation.hpp"
 #include "structure/snapshot_statistics.hpp"
 
@@ -145,6 +147,14 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                               .beyond = nan});
     out.quantities.push_back(
         {.name = name, .values = of_region[c].values(), .long_name = long_name, .source = source});
+  }
+  if (Boundary(in.packing.container).floor) {
+    out.quantities.push_back(
+        {.name = "ordered_height",
+         .values = {ordered_height(in.packing, orders)},
+         .units = "diameter",
+         .long_name = "height up to which half of the spheres, layer by layer, are fcc or hcp",
+         .source = stukowski});
   }
   return out;
 }

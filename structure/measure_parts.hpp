@@ -30,6 +30,8 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings);
+Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings);
+Measurement measure_part(MeasuredPacking& in, const StructureFactorSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings);

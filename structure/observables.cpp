@@ -5,6 +5,9 @@
 #include <utility>
 
 #include "engine/bed/slab.hpp"
+#include "structure/density/layers.hpp"
+#include "structure/measure.hpp"
+#include "structure/order/ordered_front.hpp"
 
 namespace jostle::inline structure {
 
@@ -28,6 +31,19 @@ struct Label {
     return {bulk.name, "1", "solids fraction of the bulk, between two heights fixed for the run",
             "Rosato et al. 2010, sec. II"};
   }
+  Column operator()(const CrystallineFraction&) const {
+    return {"crystalline_fraction", "1", "fraction of fcc and hcp spheres in the bulk",
+            "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
+  }
+  Column operator()(const GrownLayers&) const {
+    return {"grown_layers", "1", "ordered layers from the floor up to the first that is not",
+            "Rosato et al. 2010, fig. 6"};
+  }
+  Column operator()(const OrderedHeight&) const {
+    return {"ordered_height", "diameter",
+            "height up to which half of the spheres, layer by layer, are fcc or hcp",
+            "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
+  }
 };
 
 // The window an observable keeps for the whole run; {0, 0} where it needs none.
@@ -36,9 +52,25 @@ HeightWindow fixed_window(const Observable& observable, const Packing& start) {
   return bulk != nullptr ? resolve(bulk->window, start) : HeightWindow{0, 0};
 }
 
+/// Common-neighbour analysis is made once where several observables need it.
+class Orders {
+ public:
+  explicit Orders(const Packing& packing) : packing_(packing) {}
+
+  const std::vector<CrystalOrder>& operator()() {
+    if (orders_.empty()) orders_ = crystal_order(packing_);
+    return orders_;
+  }
+
+ private:
+  const Packing& packing_;
+  std::vector<CrystalOrder> orders_;
+};
+
 struct Measure {
   const Packing& packing;
   HeightWindow window;
+  Orders& orders;
 
   double operator()(const MeanHeight&) const { return mean_height(packing); }
 
@@ -58,6 +90,14 @@ struct Measure {
   double operator()(const BulkFraction& bulk) const {
     return tapered_solids_fraction(packing, window, bulk.taper);
   }
+
+  double operator()(const CrystallineFraction&) const {
+    return crystalline_fraction(packing, orders(), bulk_of(packing));
+  }
+
+  double operator()(const GrownLayers&) const { return static_cast<double>(grown_layers(packing)); }
+
+  double operator()(const OrderedHeight&) const { return ordered_height(packing, orders()); }
 };
 
 }  // namespace
@@ -90,8 +130,9 @@ Observer::Observer(const std::vector<Observable>& observables, std::vector<Heigh
 std::vector<double> Observer::operator()(const Packing& packing) const {
   std::vector<double> values;
   values.reserve(observables_.size());
+  Orders orders(packing);
   for (std::size_t i = 0; i < observables_.size(); ++i) {
-    values.push_back(std::visit(Measure{packing, windows_[i]}, observables_[i]));
+    values.push_back(std::visit(Measure{packing, windows_[i], orders}, observables_[i]));
   }
   return values;
 }

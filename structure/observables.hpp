@@ -44,7 +44,25 @@ struct BulkFraction {
   bool operator==(const BulkFraction&) const = default;
 };
 
-using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction>;
+/// Share of fcc and hcp spheres in the bulk (bulk_of() in measure.hpp): what structure's part
+/// "order" gives as fcc + hcp where no region is set. In [0, 1]; NaN where no sphere lies there.
+struct CrystallineFraction {
+  bool operator==(const CrystallineFraction&) const = default;
+};
+
+/// Number of ordered layers from the floor up: structure's `grown_layers`, by the same rule with
+/// its default settings (density/layers.hpp).
+struct GrownLayers {
+  bool operator==(const GrownLayers&) const = default;
+};
+
+/// Height of the ordered front, diameters: structure's `ordered_height` (order/ordered_front.hpp).
+struct OrderedHeight {
+  bool operator==(const OrderedHeight&) const = default;
+};
+
+using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction,
+                                CrystallineFraction, GrownLayers, OrderedHeight>;
 
 /// Why it cannot be measured in the container; nothing if it can. All are measured from a floor.
 std::optional<std::string> observable_fault(const Observable& observable,

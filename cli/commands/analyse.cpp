@@ -34,7 +34,9 @@ struct AnalyseArguments {
   std::string window = "hann", detrend = "mean", band;
   std::vector<std::uint64_t> waiting_times, lags;
   std::string quantity = "value", against;
-  std::optional<double> reference, spheres;
+  std::optional<double> reference, spheres, threshold;
+  std::uint64_t hold = OrderingSettings{}.hold;
+  std::string equilibrium;
 };
 
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
@@ -150,8 +152,8 @@ std::string file_or_kind_fault(const std::string& text) {
   std::error_code unreadable;
   if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
     return {};
-  const std::vector<std::string> kinds{"steady", "spectrum", "ageing",  "hysteresis",
-                                       "motion", "sweep",    "volumes", "memory"};
+  const std::vector<std::string> kinds{"steady",   "spectrum", "ageing",  "hysteresis", "motion",
+                                       "ordering", "sweep",    "volumes", "memory"};
   if (std::ranges::find(kinds, text) != kinds.end())
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
   return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
@@ -291,6 +293,30 @@ void add_motion(Kinds& kinds, int& code) {
                    [&code](AnalyseArguments& arguments) { code = run_each(arguments, motion_of); });
 }
 
+void add_ordering(Kinds& kinds, AnalyseArguments& a, int& code) {
+  Command kind = kinds.add(
+      "ordering", "Time to order, its law, growth; which point orders first, which ends highest",
+      [&code](AnalyseArguments& arguments) {
+        if (!arguments.threshold) {
+          throw BadInput("--threshold is required: the value from which a packing is ordered");
+        }
+        OrderingSettings settings{.threshold = *arguments.threshold,
+                                  .hold = arguments.hold,
+                                  .equilibrium = arguments.equilibrium};
+        if (arguments.last > 0) settings.last = arguments.last;
+        Analyses analyses;
+        analyses.ordering = requests(arguments, settings);
+        code = run_analyses(arguments, analyses);
+      });
+  kinds.add_option(kind, "--threshold", a.threshold,
+                   "The value of the observable from which a packing counts as ordered");
+  kinds.add_option(kind, "--hold", a.hold, "Taps running that it must be there (default: 10)",
+                   [](Option option) { option.between(1, 1000000000); });
+  kinds.add_option(kind, "--equilibrium", a.equilibrium,
+                   "The observable whose last taps are compared (default: the same)");
+  kinds.add_last(kind, "Taps at the end that are compared (default: a quarter)");
+}
+
 void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "sweep", "A quantity against the swept value, its maximum, differences; all files together",
@@ -342,7 +368,8 @@ void add_memory(Kinds& kinds, AnalyseArguments& a, int& code) {
 
 void add_analyse(Command& app, int& code) {
   Command command = app.add_command(
-      "analyse", "Steady states, spectra, ageing, hysteresis, motion, sweeps, volumes, memory");
+      "analyse",
+      "Steady states, spectra, ageing, hysteresis, motion, ordering, sweeps, volumes, memory");
   auto arguments = std::make_shared<AnalyseArguments>();
   AnalyseArguments& a = *arguments;
   command.add_option("input", a.inputs, "Results, one file or several")
@@ -360,6 +387,7 @@ void add_analyse(Command& app, int& code) {
   add_ageing(kinds, a, code);
   add_hysteresis(kinds, code);
   add_motion(kinds, code);
+  add_ordering(kinds, a, code);
   add_sweep(kinds, a, code);
   add_volumes(kinds, a, code);
   add_memory(kinds, a, code);
@@ -372,6 +400,7 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse motion.h5 motion\n"
       "  jostle analyse bell.h5 volumes --observable mean_height --last 1000\n"
       "  jostle analyse memory.h5 memory --observable corrected_fraction\n"
+      "  jostle analyse lifts.h5 ordering --observable crystalline_fraction --threshold 0.2\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"

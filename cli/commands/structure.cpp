@@ -124,8 +124,8 @@ void add_structure(Command& app, int& code) {
   command
       .add_option("--part", a.parts,
                   "What to measure, separated by commas (default: what the scene names, else all): "
-                  "profile, sides, layers, coordination, pair_correlation, order, voronoi, "
-                  "clusters, pores, "
+                  "profile, sides, layers, coordination, pair_correlation, order, gaps, "
+                  "structure_factor, voronoi, clusters, pores, "
                   "void_probability, holes")
       .separated_by(',');
   command.add_option("--settings", a.settings,

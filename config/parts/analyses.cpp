@@ -50,6 +50,18 @@ void read_settings(const Reader& in, HysteresisSettings& settings) {
   read_optional(in, "last", 1, settings.last);
 }
 
+void read_settings(const Reader& in, OrderingSettings& settings) {
+  constexpr double any = 1e9;
+  if (const auto threshold = in.find("threshold")) {
+    settings.threshold = threshold->number(between(-any, any)).value_or(0);
+  } else {
+    in.missing("threshold", "the value of the observable at which a packing counts as ordered");
+  }
+  in.read_whole("hold", settings.hold, 1, most_taps);
+  if (const auto name = in.find("equilibrium")) settings.equilibrium = name->text().value_or("");
+  read_optional(in, "last", 1, settings.last);
+}
+
 void read_settings(const Reader& in, SweepSettings& settings) {
   if (const auto quantity = in.find("quantity")) settings.quantity = quantity->text().value_or("");
   read_optional(in, "last", 1, settings.last);
@@ -85,6 +97,12 @@ const std::vector<std::string>& keys(const AgeingSettings&) {
 
 const std::vector<std::string>& keys(const HysteresisSettings&) {
   static const std::vector<std::string> names = {"observable", "last"};
+  return names;
+}
+
+const std::vector<std::string>& keys(const OrderingSettings&) {
+  static const std::vector<std::string> names = {"observable", "threshold", "hold", "equilibrium",
+                                                 "last"};
   return names;
 }
 
@@ -153,6 +171,13 @@ Json written(const HysteresisSettings& settings) {
   return out;
 }
 
+Json written(const OrderingSettings& settings) {
+  Json out = {{"threshold", plain_number(settings.threshold)}, {"hold", settings.hold}};
+  if (!settings.equilibrium.empty()) out["equilibrium"] = settings.equilibrium;
+  if (settings.last) out["last"] = *settings.last;
+  return out;
+}
+
 Json written(const SweepSettings& settings) {
   Json out = {{"quantity", settings.quantity}};
   if (settings.last) out["last"] = *settings.last;
@@ -189,12 +214,13 @@ Json written(const std::vector<AnalysisRequest<Settings>>& requests) {
 Analyses read_analyses(const Reader& in) {
   Analyses analyses;
   if (!in.is_object_of(
-          {"steady", "spectrum", "ageing", "hysteresis", "sweep", "volumes", "memory"}))
+          {"steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes", "memory"}))
     return analyses;
   read_requests(in, "steady", analyses.steady);
   read_requests(in, "spectrum", analyses.spectrum);
   read_requests(in, "ageing", analyses.ageing);
   read_requests(in, "hysteresis", analyses.hysteresis);
+  read_requests(in, "ordering", analyses.ordering);
   read_requests(in, "sweep", analyses.sweep);
   read_requests(in, "volumes", analyses.volumes);
   read_requests(in, "memory", analyses.memory);
@@ -208,6 +234,7 @@ Json written(const Analyses& analyses) {
               {"hysteresis", written(analyses.hysteresis)},
               {"sweep", written(analyses.sweep)}};
   // Left out where there are none, so that runs of earlier versions can be resumed.
+  if (!analyses.ordering.empty()) out["ordering"] = written(analyses.ordering);
   if (!analyses.volumes.empty()) out["volumes"] = written(analyses.volumes);
   if (!analyses.memory.empty()) out["memory"] = written(analyses.memory);
   return out;

@@ -89,6 +89,21 @@ class AnalysisCheck {
     }
   }
 
+  void check(const std::string& place, const OrderingSettings& settings) {
+    const std::string& other = settings.equilibrium;
+    if (!other.empty() && observables_sound_ &&
+        std::ranges::find(observed_, other) == observed_.end()) {
+      note(place, "/equilibrium",
+           fmt::format("\"{}\" is not observed (observed: {}).{}", other, listed(observed_),
+                       did_you_mean(other, observed_)));
+    }
+    if (settings.hold > taps_) {
+      note(place, "/hold",
+           fmt::format("{}, but the protocol has {}", counted(settings.hold, "tap"), taps_));
+    }
+    check_last(place, settings.last, 1);
+  }
+
   void check(const std::string& place, const SweepSettings& settings) {
     check_last(place, settings.last, 1);
   }
@@ -150,6 +165,7 @@ std::vector<std::string> made_of(const Scene& scene, const std::string& observab
   add("steady", scene.analyse.steady);
   add("spectrum", scene.analyse.spectrum);
   add("ageing", scene.analyse.ageing);
+  add("ordering", scene.analyse.ordering);
   for (const FitRequest& fit : scene.fits) {
     if (fit.observable != observable) continue;
     const std::vector<std::string> all = relaxation_laws();
@@ -169,6 +185,7 @@ void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
   check("spectrum", scene.analyse.spectrum);
   check("ageing", scene.analyse.ageing);
   check("hysteresis", scene.analyse.hysteresis);
+  check("ordering", scene.analyse.ordering);
   check("sweep", scene.analyse.sweep);
   check("volumes", scene.analyse.volumes);
   check("memory", scene.analyse.memory);

@@ -102,7 +102,10 @@ constexpr Kinds<Observable> kinds{
     {"mean_height", read_plain<MeanHeight>, written_plain<MeanHeight>},
     {"bottom_fraction", read_plain<BottomFraction>, written_plain<BottomFraction>},
     {"corrected_fraction", read_corrected_fraction, written_corrected_fraction},
-    {"bulk_fraction", read_bulk_fraction, written_bulk_fraction}};
+    {"bulk_fraction", read_bulk_fraction, written_bulk_fraction},
+    {"crystalline_fraction", read_plain<CrystallineFraction>, written_plain<CrystallineFraction>},
+    {"grown_layers", read_plain<GrownLayers>, written_plain<GrownLayers>},
+    {"ordered_height", read_plain<OrderedHeight>, written_plain<OrderedHeight>}};
 
 Observable read_observable(const Reader& in) {
   const auto choice = in.named_choice(names_of(kinds));

@@ -52,6 +52,15 @@ template <>
 const std::vector<NumberKey<OrderSettings>> number_keys<OrderSettings> = {
     {"bin_width", &OrderSettings::bin_width, between(0.1, 1000)}};
 template <>
+const std::vector<NumberKey<GapsSettings>> number_keys<GapsSettings> = {
+    {"largest", &GapsSettings::largest, between(0.01, 2)},
+    {"tolerance", &GapsSettings::tolerance, between(0, 0.2)}};
+template <>
+const std::vector<NumberKey<StructureFactorSettings>> number_keys<StructureFactorSettings> = {
+    {"k_max", &StructureFactorSettings::k_max, between(0.5, 50)},
+    {"bin_width", &StructureFactorSettings::bin_width, between(0.01, 10)},
+    {"fit_to", &StructureFactorSettings::fit_to, between(0.1, 50)}};
+template <>
 const std::vector<NumberKey<VoronoiSettings>> number_keys<VoronoiSettings> = {
     {"least_area", &VoronoiSettings::least_area, between(0, 0.1)},
     {"bin_width", &VoronoiSettings::bin_width, between(0.001, 1)}};
@@ -168,6 +177,34 @@ Json written_settings(const VoronoiSettings& settings) {
   return out;
 }
 
+void read_settings(const Reader& in, GapsSettings& settings) {
+  if (!has_keys<GapsSettings>(in, {"least_contacts", "window"})) return;
+  read_numbers(in, settings);
+  in.read_whole("least_contacts", settings.least_contacts, 1, 12);
+  if (const auto window = in.find("window")) {
+    settings.window = read_heights(*window);
+    if (window->sound() && settings.window.low <= 0)
+      window->fault("gaps of 0 have no logarithm: begin above 0");
+  }
+}
+Json written_settings(const GapsSettings& settings) {
+  Json out = written_numbers(settings);
+  out["least_contacts"] = settings.least_contacts;
+  out["window"] = written_bounds(settings.window.low, settings.window.high);
+  return out;
+}
+
+void read_settings(const Reader& in, StructureFactorSettings& settings) {
+  if (!has_keys<StructureFactorSettings>(in, {"modes"})) return;
+  read_numbers(in, settings);
+  in.read_whole("modes", settings.modes, 1, 1'000'000);
+}
+Json written_settings(const StructureFactorSettings& settings) {
+  Json out = written_numbers(settings);
+  out["modes"] = settings.modes;
+  return out;
+}
+
 void read_settings(const Reader& in, VoidSettings& settings) {
   if (!has_keys<VoidSettings>(in, {"points"})) return;
   read_numbers(in, settings);
@@ -223,6 +260,8 @@ void for_each_part(Settings& settings, Act&& act) {
   act("coordination", settings.coordination);
   act("pair_correlation", settings.pair_correlation);
   act("order", settings.order);
+  act("gaps", settings.gaps);
+  act("structure_factor", settings.structure_factor);
   act("voronoi", settings.voronoi);
   act("clusters", settings.clusters);
   act("pores", settings.pores);

@@ -172,10 +172,11 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
             observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None = None,
             waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
             quantity: str | None = None, against: str | None = None, reference: float | None = None,
-            spheres: float | None = None, segment: int | None = None, window: str | None = None,
-            detrend: str | None = None, band: str | None = None, threads: int | None = None,
-            store: bool = True, live: bool = False, program: Path | None = None) -> list[Table]:
-    """what: "steady", "spectrum", "ageing", "hysteresis", "sweep", "volumes" or "memory" of observables, or
+             spheres: float | None = None, segment: int | None = None, window: str | None = None,
+             detrend: str | None = None, band: str | None = None, threshold: float | None = None,
+             hold: int | None = None, equilibrium: str | None = None, threads: int | None = None,
+             store: bool = True, live: bool = False, program: Path | None = None) -> list[Table]:
+    """what: "steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes" or "memory" of observables, or
     "motion", which is of none; docs/analysis.md and docs/volumes.md have the equations.
 
     Kept in the files under /analysis unless store=False.
@@ -184,7 +185,8 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
     done = call(["analyse", *_paths(results), what, "--json", *(["--observable", *names] if names else []),
                  *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
                            quantity=quantity, against=against, reference=reference, spheres=spheres,
-                           segment=segment, window=window, detrend=detrend, band=band, threads=threads,
+                           segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
+                           hold=hold, equilibrium=equilibrium, threads=threads,
                            no_store=not store, live=_live(results, live))], program)
     return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
 

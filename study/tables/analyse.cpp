@@ -13,6 +13,7 @@
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/scenes/point_scenes.hpp"
+#include "study/tables/ordering.hpp"
 #include "study/tables/over_points.hpp"
 
 namespace jostle::inline study {
@@ -88,6 +89,11 @@ Table make_table(const ObservableSeries& series, const HysteresisSettings& setti
   return hysteresis_table("", series.label(), steps, values, series.n_realizations());
 }
 
+Table make_table(const ObservableSeries& series, const OrderingSettings& settings,
+                 const Surroundings&) {
+  return ordering_of(series, settings).table();
+}
+
 template <class Settings>
 void add_tables(const Surroundings& around, const char* kind,
                 const std::vector<AnalysisRequest<Settings>>& requests,
@@ -125,6 +131,13 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
     add_tables(around, "spectrum", analyses.spectrum, tables);
     add_tables(around, "ageing", analyses.ageing, tables);
     add_tables(around, "hysteresis", analyses.hysteresis, tables);
+    add_tables(around, "ordering", analyses.ordering, tables);
+  }
+  if (points.size() > 1 && !analyses.ordering.empty()) {
+    const Scene& scene = scenes().scene();
+    for (const auto& request : analyses.ordering) {
+      tables.push_back(ordering_over_points(file, points, request, scene.streams));
+    }
   }
   if (!analyses.volumes.empty())
     std::ranges::move(volume_tables(file, scenes(), points, analyses.volumes),

@@ -14,10 +14,11 @@
 namespace jostle::inline study {
 
 /// The tables of all analyses at the given sweep points, point_PPPP/<analysis>/<observable>, as
-/// results files keep them, then those over all of these points (over_points.hpp); sweep curves are
-/// not made here. An analysis that is
-/// not possible gives a table with the note "refused" alone. The tables do not depend on the number
-/// of threads. Throws BadArgument for an observable that there is not.
+/// results files keep them, then those over all of these points (over_points.hpp; and
+/// ordering/<observable>, which compares them where there are several); curves against what is
+/// swept are not made here. An analysis that is not possible gives a table with the note "refused"
+/// alone. The tables do not depend on the number of threads. Throws BadArgument for an observable
+/// that there is not.
 std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_t> points,
                            const Analyses& analyses, int threads);
 

@@ -10,7 +10,7 @@ import unittest
 from support import Case
 
 MANUAL = pathlib.Path(os.environ["BUILD"]) / "manual"
-KINDS = ("steady", "spectrum", "ageing", "hysteresis", "sweep", "volumes", "memory")
+KINDS = ("steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes", "memory")
 
 
 def plain(page):
@@ -129,7 +129,7 @@ class Zsh(Case):
                 self.assertRegex(specs, rf"(?m)^(\(.*\)|\*)?{option}\[", command)
         self.assertIn('scene:_files -g "*.(json)"', self.specs("run"))
         self.assertIn(":value:(jackknife bootstrap none)", self.specs("fit"))
-        self.assertIn("compadd steady spectrum ageing hysteresis motion sweep volumes memory",
+        self.assertIn("compadd steady spectrum ageing hysteresis motion ordering sweep volumes memory",
                       self.specs("analyse"))
 
 

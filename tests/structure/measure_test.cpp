@@ -63,7 +63,7 @@ Packing fcc() {
 
 TEST_CASE("Every quantity of every part stands on its places and is finite where it must be") {
   const std::vector<Measurement> all = measure(reference_deposit(), all_structure(), points);
-  CHECK(all.size() == 10);
+  CHECK(all.size() == 12);
   for (const Measurement& measurement : all) {
     INFO(measurement.part);
     CHECK(measurement.refused.empty());
@@ -78,7 +78,9 @@ TEST_CASE("Every quantity of every part stands on its places and is finite where
         n = found->size();
       }
       CHECK(quantity.values.size() == n);
-      const bool may_lack = quantity.name.ends_with("_at_height");  // a bin without a sphere
+      // A bin without a sphere or a wave vector, and few gaps of a deposit that touches exactly.
+      const bool may_lack = quantity.name.ends_with("_at_height") ||
+                            quantity.name == "exponent_from_gap" || quantity.name == "s";
       for (const double value : quantity.values) CHECK((may_lack || std::isfinite(value)));
     }
   }

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ensemble/analysis/ordering/ordering_table.hpp"
+
+namespace jostle::inline ensemble {
+
+namespace {
+
+constexpr const char* hsu = "multiple comparisons with the best, Hsu 1996";
+
+std::vector<std::string> words(const std::vector<bool>& flags) {
+  std::vector<std::string> out;
+  for (const bool flag : flags) out.emplace_back(flag ? "yes" : "no");
+  return out;
+}
+
+std::string labels_of(const std::vector<OrderingPoint>& points, const std::vector<bool>& chosen) {
+  std::string text;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (chosen[k]) text.append(text.empty() ? "" : ", ").append(points[k].label);
+  }
+  return text;
+}
+
+std::size_t largest_of(const std::vector<Growth>& means) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < means.size(); ++k) {
+    if (means[k].value > means[best].value || std::isnan(means[best].value)) best = k;
+  }
+  return best;
+}
+
+std::string steady_word(const OrderingPoint& point) {
+  if (!point.steady) return "too few taps";
+  if (*point.steady == Verdict::reached) return "reached";
+  return *point.steady == Verdict::not_reached ? "not reached" : "cannot decide";
+}
+
+std::string first_statement(const std::vector<OrderingPoint>& points, std::size_t best,
+                            const Candidates& found, bool any) {
+  if (!any) return "cannot decide: no realization ordered";
+  if (!found.could_decide) {
+    return fmt::format(
+        "cannot decide: {} first in these realizations, but they are too few for a permutation "
+        "test of {} points to exclude any; add realizations",
+        points[best].label, points.size());
+  }
+  return fmt::format("{}; may be first: {} (97.5 %, permutation log-rank tests of all pairs)",
+                     points[best].label, labels_of(points, found.may_be));
+}
+
+std::string largest_statement(const std::vector<OrderingPoint>& points, std::size_t best,
+                              const Candidates& found, const ComparedValue& value,
+                              const std::vector<bool>& open) {
+  if (!found.could_decide) return "cannot decide: it needs two realizations of a point";
+  std::string text = fmt::format(
+      "{}; may be largest: {} (97.5 %, t-tests of all pairs of {}, taps {})", points[best].label,
+      labels_of(points, found.may_be), value.observable, value.taps);
+  if (const std::string moving = labels_of(points, open); !moving.empty()) {
+    text.append("; not steady, so never excluded: ").append(moving);
+  }
+  return text;
+}
+
+std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Candidates& first,
+                    const Candidates& largest) {
+  if (!any || !first.could_decide || !largest.could_decide)
+    return "cannot decide whether the points that order first and that end highest are one";
+  std::vector<bool> both(points.size());
+  bool one = false;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    both[k] = first.may_be[k] && largest.may_be[k];
+    one = one || both[k];
+  }
+  if (!one) return "the point that orders first is not the one with the largest value (p < 0.05)";
+  return "not told apart: may be both, " + labels_of(points, both);
+}
+
+struct Comparison {
+  std::vector<Growth> means;
+  std::vector<bool> open;
+  Candidates first, largest;
+};
+
+void add_columns(Table& table, const std::vector<OrderingPoint>& points, const ComparedValue& value,
+                 const Comparison& found) {
+  const std::vector<std::string> along = {"point"};
+  std::vector<std::string> labels, steady;
+  std::vector<std::uint64_t> realizations, ordered;
+  std::vector<double> median, low, high, mean, error, dof;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::vector<OrderingTime> times = points[k].times.known();
+    const Limits limits = median_limits(times, 0.6827);
+    labels.push_back(points[k].label);
+    realizations.push_back(times.size());
+    ordered.push_back(0);
+    for (const OrderingTime& time : times) ordered.back() += time.ordered ? 1 : 0;
+    median.push_back(median_time(times));
+    low.push_back(limits.low);
+    high.push_back(limits.high);
+    mean.push_back(found.means[k].value);
+    error.push_back(error_or_nan(found.means[k].error));
+    dof.push_back(found.means[k].error.dof);
+    steady.push_back(steady_word(points[k]));
+  }
+  table.axes = {{"point", along, labels, "1", "sweep point", ""}};
+  table.quantities = {
+      {"realizations", along, realizations, "1", "realizations", ""},
+      {"ordered", along, ordered, "1", "of them ordered", ""},
+      {"median_time", along, median, "taps", "by which half have ordered; - where fewer have", ""},
+      {"median_time_low_68", along, low, "taps", "lower end of the 68 % interval", ""},
+      {"median_time_high_68", along, high, "taps", "upper end of the 68 % interval", ""},
+      {"later_p", along, found.first.p, "1",
+       "that chance alone lets another point order so much earlier, all pairs together",
+       "log-rank, Peto & Peto 1972, doi:10.2307/2344317"},
+      {"may_order_first", along, words(found.first.may_be), "1", "at 97.5 %", hsu},
+      {"last_value", along, mean, value.units, value.observable + ", mean of the last taps", ""},
+      {"last_value_error", along, error, value.units, "standard error over realizations", ""},
+      {"last_value_dof", along, dof, "1", "its degrees of freedom", ""},
+      {"smaller_p", along, found.largest.p, "1",
+       "that chance alone lets another point end so much higher, all pairs together", ""},
+      {"may_be_largest", along, words(found.largest.may_be), "1", "at 97.5 %", hsu},
+      {"steady", along, steady, "1", "whether these taps are steady, as jostle analyse steady",
+       ""}};
+}
+
+}  // namespace
+
+Table ordering_comparison(const std::string& observable, const OrderingSettings& settings,
+                          const ComparedValue& value, const std::vector<OrderingPoint>& points,
+                          Streams streams) {
+  std::vector<OrderingTimes> times;
+  std::vector<std::vector<double>> values;
+  Comparison found;
+  bool any = false;
+  for (const OrderingPoint& point : points) {
+    times.push_back(point.times);
+    values.push_back(point.last_values);
+    found.means.push_back(mean_of(point.last_values));
+    found.open.push_back(point.steady == Verdict::not_reached);
+    for (const OrderingTime& time : point.times.known()) any = any || time.ordered;
+  }
+  found.first = may_order_first(times, streams);
+  found.largest = may_be_largest(values, streams, found.open);
+  Table table{.name = "ordering/" + observable};
+  add_columns(table, points, value, found);
+  table.notes = {
+      {"observable", observable},
+      {"rule", fmt::format("at or above {} for {} tap{} running", settings.threshold, settings.hold,
+                           settings.hold == 1 ? "" : "s")},
+      {"streams", streams == Streams::matched ? "matched: realizations are paired" : "independent"},
+      {"orders_first", first_statement(points, orders_first(times), found.first, any)},
+      {"largest_value",
+       largest_statement(points, largest_of(found.means), found.largest, value, found.open)},
+      {"verdict", verdict(points, any, found.first, found.largest)}};
+  return table;
+}
+
+}  // namespace jostle::inline ensemble

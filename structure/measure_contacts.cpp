@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+
+#include "structure/measure_parts.hpp"
+#include "structure/order/gaps.hpp"
+#include "structure/order/structure_factor.hpp"
+
+namespace jostle::inline structure {
+
+namespace {
+
+constexpr const char* donev = "Donev et al. 2005, doi:10.1103/PhysRevE.71.011105";
+
+/// 0, and from 1e-6 on five a decade.
+std::vector<double> gap_grid(double largest) {
+  std::vector<double> grid{0};
+  for (int k = 0;; ++k) {
+    const double gap = std::pow(10.0, -6 + k / 5.0);
+    if (gap > largest * (1 + 1e-9)) return grid;
+    grid.push_back(gap);
+  }
+}
+
+/// Over the region's spheres.
+struct Contacts {
+  double all = 0, rattlers = 0, without_rattlers = 0;
+};
+Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, double tolerance,
+                         unsigned least) {
+  const Backbone every = backbone(in.packing, near, tolerance, 0);
+  const Backbone held = backbone(in.packing, near, tolerance, least);
+  double spheres = 0, all = 0, rattlers = 0, contacts = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!in.in_region(i)) continue;
+    spheres += 1;
+    all += every.contacts[i];
+    rattlers += held.rattler[i] ? 1 : 0;
+    contacts += held.contacts[i];
+  }
+  return {all / spheres, rattlers / spheres, contacts / (spheres - rattlers)};
+}
+
+}  // namespace
+
+Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
+  const std::vector<double> grid = gap_grid(settings.largest);
+  const double reach = std::max({settings.largest, settings.tolerance, settings.window.high});
+  const NeighbourTable near = neighbours_within(in.packing, 1 + reach);
+  const auto least = static_cast<unsigned>(settings.least_contacts);
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!in.in_region(i)) continue;
+    for (const Neighbour& neighbour : near.of(i)) {
+      gaps.push_back(std::sqrt(neighbour.distance_squared) - 1);
+    }
+  }
+  std::vector<double> all, rattlers, without, exponents;
+  for (const double gap : grid) {
+    const Contacts found = contacts_within(in, near, gap, least);
+    all.push_back(found.all);
+    rattlers.push_back(found.rattlers);
+    without.push_back(found.without_rattlers);
+    exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
+                            ? gap_exponent(gaps, gap, settings.window.high)
+                            : std::nan(""));
+  }
+  const Contacts found = contacts_within(in, near, settings.tolerance, least);
+  Measurement out;
+  out.places = {{"gap", grid, "diameter", "distance of surfaces up to which spheres touch"}};
+  out.quantities = {
+      {.name = "z_of_gap",
+       .places = "gap",
+       .values = all,
+       .long_name = "mean number of contacts within the gap, over the region",
+       .source = donev},
+      {.name = "rattlers_of_gap",
+       .places = "gap",
+       .values = rattlers,
+       .long_name = "fraction of rattlers if what is within the gap touches",
+       .source = donev},
+      {.name = "backbone_z_of_gap",
+       .places = "gap",
+       .values = without,
+       .long_name = "mean number of contacts without rattlers",
+       .source = donev},
+      {.name = "exponent_from_gap",
+       .places = "gap",
+       .values = exponents,
+       .long_name = "gamma of gaps from this one to the window's end, density as h^-gamma"},
+      {.name = "gap_exponent",
+       .values = {gap_exponent(gaps, settings.window.low, settings.window.high)},
+       .long_name = "gamma of the gaps in the window, density as h^-gamma"},
+      {.name = "contacts",
+       .values = {found.all},
+       .long_name = "mean number of contacts within the tolerance"},
+      {.name = "rattlers",
+       .values = {found.rattlers},
+       .long_name = "fraction of rattlers, taken away one after another",
+       .source = donev},
+      {.name = "backbone_contacts",
+       .values = {found.without_rattlers},
+       .long_name = "mean number of contacts without rattlers, 6 if isostatic without friction",
+       .source = donev}};
+  return out;
+}
+
+Measurement measure_part(MeasuredPacking& in, const StructureFactorSettings& settings) {
+  const StructureFactor found = structure_factor(in.packing, settings, in.region);
+  std::vector<double> modes(found.modes.begin(), found.modes.end());
+  Measurement out;
+  out.places = {{"k", found.k, "1/diameter", "wave number, middle of a bin"}};
+  out.quantities = {{.name = "s",
+                     .places = "k",
+                     .values = found.s,
+                     .long_name = "structure factor S(k)",
+                     .source = "Hansen & McDonald, Theory of Simple Liquids, sec. 4.1"},
+                    {.name = "modes",
+                     .places = "k",
+                     .values = modes,
+                     .long_name = "wave vectors averaged",
+                     .with_error = false},
+                    {.name = "s_0_of_squares",
+                     .values = {found.s_0_of_squares},
+                     .long_name = "S at k = 0 by a straight line in k^2"},
+                    {.name = "s_0_of_line",
+                     .values = {found.s_0_of_line},
+                     .long_name = "S at k = 0 by a straight line in k",
+                     .source = "Donev, Stillinger & Torquato 2005, "
+                               "doi:10.1103/PhysRevLett.95.090604"}};
+  return out;
+}
+
+}  // namespace jostle::inline structure

@@ -1,0 +1,90 @@
+#include "structure/order/gaps.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "engine/bed/boundary.hpp"
+
+namespace jostle::inline structure {
+
+namespace {
+
+unsigned boundary_contacts(const Boundary& boundary, Vec3 r, double tolerance) {
+  const double reach = sphere_radius + tolerance;
+  unsigned contacts = boundary.floor && r.z <= reach ? 1 : 0;
+  if (boundary.sides == Sides::walls) {
+    for (const double gap : {r.x, boundary.width_x - r.x, r.y, boundary.width_y - r.y}) {
+      contacts += gap <= reach ? 1 : 0;
+    }
+  } else if (boundary.sides == Sides::cylinder) {
+    const double axis = boundary.axis();
+    contacts += axis - std::hypot(r.x - axis, r.y - axis) <= reach ? 1 : 0;
+  }
+  return contacts;
+}
+
+/// Mean of x over [0, 1] with a density as exp(a x), less 1/2; odd in a.
+double tilted_mean(double a) {
+  if (std::abs(a) < 1e-3) return a / 12;
+  return 0.5 / std::tanh(0.5 * a) - 1 / a;
+}
+
+}  // namespace
+
+Backbone backbone(const Packing& packing, const NeighbourTable& near, double tolerance,
+                  unsigned least) {
+  const Boundary boundary(packing.container);
+  const double reach = (1 + tolerance) * (1 + tolerance);
+  Backbone found;
+  found.rattler.assign(near.size(), false);
+  std::vector<std::size_t> loose;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    unsigned contacts = boundary_contacts(boundary, packing.centres[i], tolerance);
+    for (const Neighbour& neighbour : near.of(i)) {
+      contacts += neighbour.distance_squared <= reach ? 1 : 0;
+    }
+    found.contacts.push_back(contacts);
+    if (contacts < least) loose.push_back(i);
+  }
+  for (const std::size_t i : loose) found.rattler[i] = true;
+  while (!loose.empty()) {
+    const std::size_t i = loose.back();
+    loose.pop_back();
+    for (const Neighbour& neighbour : near.of(i)) {
+      if (neighbour.distance_squared > reach) continue;
+      const std::size_t j = neighbour.sphere;
+      --found.contacts[j];
+      if (found.rattler[j] || found.contacts[j] >= least) continue;
+      found.rattler[j] = true;
+      loose.push_back(j);
+    }
+  }
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (found.rattler[i]) found.contacts[i] = 0;
+  }
+  return found;
+}
+
+double gap_exponent(std::span<const double> gaps, double low, double high) {
+  constexpr std::size_t fewest = 10;
+  const double range = std::log(high / low);
+  double sum = 0;
+  std::size_t n = 0;
+  for (const double gap : gaps) {
+    if (gap < low || gap > high) continue;
+    sum += std::log(gap / low) / range;
+    ++n;
+  }
+  if (n < fewest) return std::numeric_limits<double>::quiet_NaN();
+  const double mean = sum / static_cast<double>(n) - 0.5;
+  // Of ln h the density is as h^(1 - gamma).
+  constexpr double steepest = 1e4;
+  double below = -steepest, above = steepest;
+  for (int turn = 0; turn < 100; ++turn) {
+    const double middle = 0.5 * (below + above);
+    (tilted_mean(middle) < mean ? below : above) = middle;
+  }
+  return 1 - 0.5 * (below + above) / range;
+}
+
+}  // namespace jostle::inline structure

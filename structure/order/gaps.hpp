@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/bed/packing.hpp"
+#include "structure/order/neighbours.hpp"
+
+// Gaps between near neighbours, contacts and rattlers. Lengths in diameters.
+namespace jostle::inline structure {
+
+/// What a sphere touches within a tolerance, once rattlers are taken away.
+struct Backbone {
+  std::vector<bool> rattler;       // [n]
+  std::vector<unsigned> contacts;  // of the others, with each other, floor and walls; [n]
+};
+
+/// Two spheres touch where their centres are at most 1 + `tolerance` apart, a sphere and the floor
+/// or a wall where the gap is at most `tolerance`. A sphere with fewer than `least` contacts is a
+/// rattler, holds nothing and is taken away, until none is left (Donev, Torquato & Stillinger 2005,
+/// doi:10.1103/PhysRevE.71.011105). `near`: neighbours_within(packing, at least 1 + tolerance).
+Backbone backbone(const Packing& packing, const NeighbourTable& near, double tolerance,
+                  unsigned least);
+
+/// The exponent gamma of gaps h whose number falls as h^-gamma between two limits, 0 < low < high,
+/// by maximum likelihood of those within: where the mean of ln h is the one observed. NaN of fewer
+/// than ten. Gaps need no order.
+double gap_exponent(std::span<const double> gaps, double low, double high);
+
+}  // namespace jostle::inline structure

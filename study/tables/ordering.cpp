@@ -1,0 +1,72 @@
+#include "study/tables/ordering.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "study/bad_input.hpp"
+#include "study/tables/analyse.hpp"
+
+namespace jostle::inline study {
+
+namespace {
+
+void set_last_values(const ObservableSeries& series, const OrderingSettings& settings,
+                     std::size_t n_realizations, OrderingPoint& point, ComparedValue& value) {
+  const AnalysedSeries last = last_taps(series, settings.last, 4, 1);
+  const TapRange range{last.first_tap, last.last_tap + 1};
+  value.units = last.units;
+  value.taps = fmt::format("{} to {}", last.first_tap, last.last_tap);
+  point.last_values.assign(n_realizations, std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> means = series.means(range);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    point.last_values[series.realizations()[i]] = means[i];
+  }
+  if (last.n_taps() < SteadyStateTest::fewest_taps) return;
+  SteadyStateTest test;
+  series.for_each(range, [&](std::span<const double> values) { test.add(values); });
+  point.steady = test.result().verdict();
+}
+
+}  // namespace
+
+OrderingAnalysis ordering_of(const ObservableSeries& series, const OrderingSettings& settings) {
+  if (series.n_rows() < settings.hold) {
+    throw BadInput(fmt::format("{} values cannot show one held for {} taps: take a smaller hold",
+                               series.n_rows(), settings.hold));
+  }
+  OrderingAnalysis analysis({.observable = series.label().name,
+                             .units = series.label().units,
+                             .first_tap = 0,
+                             .last_tap = series.n_rows() - 1},
+                            settings);
+  std::size_t next = 0;
+  series.for_each({0, series.n_rows()}, [&](std::span<const double> values) {
+    analysis.add(series.realizations()[next++], values);
+  });
+  return analysis;
+}
+
+Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_t> points,
+                           const AnalysisRequest<OrderingSettings>& request, Streams streams) {
+  const auto& [observable, settings] = request;
+  const std::size_t n = file.study().realizations;
+  ComparedValue value{settings.equilibrium.empty() ? observable : settings.equilibrium, "", ""};
+  std::vector<OrderingPoint> compared;
+  try {
+    for (const std::uint32_t number : points) {
+      const ObservableSeries series(file, number, observable);
+      const std::string& label = file.study().points[number].label;
+      if (series.n_realizations() == 0) throw BadInput(label + ": no realization with taps");
+      OrderingPoint point{
+          .label = label, .times = ordering_of(series, settings).times(n)};
+      set_last_values(ObservableSeries(file, number, value.observable), settings, n, point, value);
+      compared.push_back(std::move(point));
+    }
+    return ordering_comparison(observable, settings, value, compared, streams);
+  } catch (const BadInput& refusal) {
+    return {.name = "ordering/" + observable, .notes = {{"refused", refusal.what()}}};
+  }
+}
+
+}  // namespace jostle::inline study
