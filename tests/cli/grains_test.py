@@ -216,6 +216,38 @@ class Grains(Case):
         self.jostle("export", "grains.h5", "--format", "vtp", "-o", "out.vtp")
         self.assertIn('Name="velocity" NumberOfComponents="3"', (self.folder / "out.vtp").read_text())
 
+    def test_overlapping_beds_have_one_structure_in_any_file(self):
+        """The numbers of a bed of soft grains, read from results and from its export."""
+        soft = {"discrete_element": {"contact": {"walton_braun": {"stiffness": 3000}}}}
+        self.write(changed(GRAINS, realizations=1, engine=soft, snapshots={"taps": [1]},
+                           protocol=[{"tap": {"lift": 0.1}, "count": 1}]))
+        self.run_scene()
+        self.jostle("export", "grains.h5", "--format", "extxyz", "-o", "bed.xyz")
+
+        def tables(file):
+            parts = [word for part in ("profile", "coordination", "order", "voronoi", "pores", "holes")
+                     for word in ("--part", part)]
+            out = self.jostle("structure", file, *parts, "--no-store", "--json").stdout
+            return {table["name"].split("/")[-1]: repr(table["quantities"])
+                    for table in json.loads(out)["tables"]}
+
+        results, export = tables("grains.h5"), tables("bed.xyz")
+        self.assertEqual(len(results), 6)
+        self.assertEqual([part for part in results if export[part] != results[part]], [])
+        lines = (self.folder / "bed.xyz").read_text().splitlines()
+        first, second = lines[2].split(), lines[3].split()
+        with h5py.File(self.folder / "grains.h5") as file:
+            centres = file["particles/point_0000_realization_00000/position/value"][-1]
+        between = centres[:, None] - centres[None]
+        between[..., :2] -= 4 * np.round(between[..., :2] / 4)
+        squares = (between**2).sum(axis=2) + 9 * np.eye(len(centres))
+        self.assertGreater(1 - squares.min() ** 0.5, 1e-3)
+        for name, z, why in (("deep", float(first[3]) + 0.4, "0.400000 apart, and their diameter is 1"),
+                             ("below", -0.01, "sphere 1 lies outside the container")):
+            moved = [second[0], *first[1:3], str(z), *second[4:]]
+            (self.folder / f"{name}.xyz").write_text("\n".join([*lines[:3], " ".join(moved), *lines[4:]]))
+            self.assertIn(why, self.jostle("structure", f"{name}.xyz", expect=BAD_INPUT).stderr)
+
     def test_check_says_what_the_settings_come_to(self):
         text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
         for part in ("contact time 0.000473 s", "Gamma 1.998", "floor speed 0.416 m/s",
