@@ -1,5 +1,6 @@
 """Sphere steps a second of discrete elements and of LAMMPS (gran/hooke/history, one core) on one
-settled bed of 3456 spheres, in turns: python3 grains_against_lammps.py BENCH_GRAINS [ROUNDS]."""
+settled bed of 3456 spheres, at rest and thrown upwards, in turns; then two beds on two threads, and
+beds of other sizes: python3 grains_against_lammps.py BENCH_GRAINS [ROUNDS]."""
 
 import os
 import pathlib
@@ -11,7 +12,10 @@ import subprocess
 import sys
 import tempfile
 
-SPHERE_STEPS = 3456 * 4000  # of LAMMPS' run
+# LAMMPS' inputs and the steps of their runs.
+RUNS = {"at rest": ("in.rest", 4000), "in flight": ("in.flight", 6000),
+        "thrown": ("in.thrown", 16000)}
+N_SPHERES = 3456
 
 
 def processor_seconds(command, folder):
@@ -32,16 +36,20 @@ def main():
             print(text, end="")
             if not lammps:
                 continue
-            rate = SPHERE_STEPS / processor_seconds([lammps, "-in", "in.lammps", "-log", "none"],
-                                                    folder) / 1e6
-            print(f"{'LAMMPS, the same bed':<26} at rest {rate:6.2f}")
-            for law, ours in re.findall(r"^(\S.*?) +at rest +([\d.]+)", text, re.MULTILINE):
-                ratios.setdefault(law, []).append(float(ours) / rate)
+            for how, (script, steps) in RUNS.items():
+                seconds = processor_seconds([lammps, "-in", script, "-log", "none"], folder)
+                rate = N_SPHERES * steps / seconds / 1e6
+                print(f"{'LAMMPS, the same bed':<26} {how} {rate:6.2f}")
+                for law, ours in re.findall(rf"^(\S.*?)  .*?{how} +([\d.]+)", text, re.MULTILINE):
+                    ratios.setdefault((law, how), []).append(float(ours) / rate)
     if not lammps:
         print("LAMMPS is not here: apt-get install lammps")
-    for law, found in ratios.items():
-        print(f"{law}: {statistics.median(found):.2f} times LAMMPS "
-              f"({min(found):.2f} to {max(found):.2f})")
+    for (law, how), found in ratios.items():
+        print(f"{law}, {how}: {statistics.median(found):.2f} times LAMMPS "
+              f"({min(found):.2f} to {max(found):.2f}, {len(found)} turns)")
+    for what in ("threads", "sizes"):
+        print(subprocess.run([bench, what], check=True, text=True, capture_output=True).stdout,
+              end="")
 
 
 if __name__ == "__main__":
