@@ -129,8 +129,8 @@ set(JOSTLE_PUBLIC_HEADERS
     study/tables/fit_source.hpp
     study/tables/fits.hpp
     study/tables/half_widths.hpp
+    study/tables/laws/own_law.hpp
     study/tables/motion.hpp
-    study/tables/own_law.hpp
     study/tables/structure.hpp
     study/tables/sweep.hpp
     study/tables/target_precision.hpp

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/commands/analyse_kinds.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
@@ -23,21 +24,6 @@
 namespace jostle::inline cli {
 
 namespace {
-
-struct AnalyseArguments {
-  std::vector<std::string> inputs, observables;
-  std::string point;
-  TableOutput output;
-  int threads = 0;
-  // Of single analyses.
-  std::uint64_t last = 0, segment = 0;
-  std::string window = "hann", detrend = "mean", band;
-  std::vector<std::uint64_t> waiting_times, lags;
-  std::string quantity = "value", against;
-  std::optional<double> reference, spheres, threshold;
-  std::uint64_t hold = OrderingSettings{}.hold;
-  std::string equilibrium;
-};
 
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
   SpectrumSettings settings;
@@ -160,73 +146,7 @@ std::string file_or_kind_fault(const std::string& text) {
                      joined(kinds, ", "), did_you_mean(text, kinds));
 }
 
-/// The options of the kinds of analyses: each belongs to its kind, and stands before the kind's
-/// name as well as behind it.
-class Kinds {
- public:
-  Kinds(Command command, std::shared_ptr<AnalyseArguments> arguments)
-      : command_(command), arguments_(std::move(arguments)) {}
-
-  /// `run` is called once the whole command line has been read.
-  Command add(const char* name, const char* description,
-              std::function<void(AnalyseArguments&)> run) {
-    Command kind = add_of_bed(name, description, [run = std::move(run)](AnalyseArguments& given) {
-      if (given.observables.empty()) {
-        throw BadInput("--observable is required: the columns of the results to analyse");
-      }
-      run(given);
-    });
-    add_option(kind, "--observable", arguments_->observables, "Which columns of the results");
-    return kind;
-  }
-
-  /// One that is not of an observable.
-  Command add_of_bed(const char* name, const char* description,
-                     std::function<void(AnalyseArguments&)> run) {
-    Command kind = command_.add_command(name, description);
-    kind.fall_through();
-    kind.run([command = command_, arguments = arguments_, kind, run = std::move(run)] {
-      require_options_of(command, kind);
-      run(*arguments);
-    });
-    return kind;
-  }
-
-  /// `restrict` adds checks to the option at either place.
-  template <class T>
-  void add_option(Command kind, const std::string& name, T& value, const char* description,
-                  const std::function<void(Option)>& restrict = {}) {
-    const Option option = kind.add_option(name, value, description);
-    if (restrict) restrict(option);
-    if (command_.has_option(name)) return;
-    const Option before = command_.add_hidden_option(name, value);
-    if (restrict) restrict(before);
-  }
-
-  void add_last(Command kind, const char* description) {
-    add_option(kind, "--last", arguments_->last, description,
-               [](Option option) { option.whole_from(1); });
-  }
-
- private:
-  /// An option of another kind before the name of this one.
-  static void require_options_of(const Command& command, const Command& kind) {
-    for (const std::string& name : command.hidden_options_given()) {
-      if (!kind.has_option(name)) {
-        throw BadInput(fmt::format("{} has no option {}; jostle analyse {} --help lists them",
-                                   kind.name(), name, kind.name()));
-      }
-      if (kind.count(name) > 0) {
-        throw BadInput(fmt::format("{} is there twice, before and after {}", name, kind.name()));
-      }
-    }
-  }
-
-  Command command_;
-  std::shared_ptr<AnalyseArguments> arguments_;
-};
-
-void add_steady(Kinds& kinds, int& code) {
+void add_steady(AnalysisKinds& kinds, int& code) {
   Command kind = kinds.add("steady", "Value, deviation and memory of the last taps",
                            [&code](AnalyseArguments& arguments) {
                              Analyses analyses;
@@ -236,7 +156,7 @@ void add_steady(Kinds& kinds, int& code) {
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
 }
 
-void add_spectrum(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add("spectrum", "Power spectrum of the last taps, and its slope",
                            [&code](AnalyseArguments& arguments) {
                              Analyses analyses;
@@ -258,7 +178,7 @@ void add_spectrum(Kinds& kinds, AnalyseArguments& a, int& code) {
                    "LOWEST:HIGHEST frequency of the slope, in 1/taps (default: all)");
 }
 
-void add_ageing(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "ageing", "A(t, t_W), V and C, fits of eq. 6, what lays ages on one curve",
       [&code](AnalyseArguments& arguments) {
@@ -275,7 +195,7 @@ void add_ageing(Kinds& kinds, AnalyseArguments& a, int& code) {
                    [](Option option) { option.separated_by(',').between(1, 1000000000); });
 }
 
-void add_hysteresis(Kinds& kinds, int& code) {
+void add_hysteresis(AnalysisKinds& kinds, int& code) {
   Command kind =
       kinds.add("hysteresis", "Steady value of every step of a protocol, branches, areas of loops",
                 [&code](AnalyseArguments& arguments) {
@@ -288,12 +208,12 @@ void add_hysteresis(Kinds& kinds, int& code) {
   kinds.add_last(kind, "Taps at the end of each step (default: a quarter of the shortest)");
 }
 
-void add_motion(Kinds& kinds, int& code) {
+void add_motion(AnalysisKinds& kinds, int& code) {
   kinds.add_of_bed("motion", "How far spheres moved: displacements, overlaps and chi_4, layers",
                    [&code](AnalyseArguments& arguments) { code = run_each(arguments, motion_of); });
 }
 
-void add_ordering(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "ordering", "Time to order, its law, growth; which point orders first, which ends highest",
       [&code](AnalyseArguments& arguments) {
@@ -317,7 +237,7 @@ void add_ordering(Kinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_last(kind, "Taps at the end that are compared (default: a quarter)");
 }
 
-void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_sweep(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "sweep", "A quantity against the swept value, its maximum, differences; all files together",
       [&code](AnalyseArguments& arguments) { code = run_sweep(arguments); });
@@ -331,7 +251,7 @@ void add_sweep(Kinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
 }
 
-void add_volumes(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_volumes(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "volumes", "Variance of steady states over strengths, compactivity by two estimators",
       [&code](AnalyseArguments& arguments) {
@@ -350,7 +270,7 @@ void add_volumes(Kinds& kinds, AnalyseArguments& a, int& code) {
                    "Whose volume it is (default: those of the observable's window)");
 }
 
-void add_memory(Kinds& kinds, AnalyseArguments& a, int& code) {
+void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   Command kind = kinds.add(
       "memory", "Whether what follows a common value depends on how it was reached",
       [&code](AnalyseArguments& arguments) {
@@ -381,7 +301,7 @@ void add_analyse(Command& app, int& code) {
   add_table_output(command, a.output);
   command.add_threads(a.threads);
   command.require_command();
-  Kinds kinds(command, arguments);
+  AnalysisKinds kinds(command, arguments);
   add_steady(kinds, code);
   add_spectrum(kinds, a, code);
   add_ageing(kinds, a, code);

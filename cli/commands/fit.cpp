@@ -22,8 +22,8 @@
 #include "study/tables/curve_file.hpp"
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
-#include "study/tables/law_formula.hpp"
-#include "study/tables/own_law.hpp"
+#include "study/tables/laws/law_formula.hpp"
+#include "study/tables/laws/own_law.hpp"
 
 namespace jostle::inline cli {
 

@@ -54,8 +54,8 @@ struct HysteresisSettings {
 /// When a realization counts as ordered, and what of the end of a run it is compared with.
 struct OrderingSettings {
   double threshold = 0;
-  std::uint64_t hold = 10;           // taps running at or above the threshold
-  std::string equilibrium;           // observable whose last taps are compared; empty: the same
+  std::uint64_t hold = 10;  // taps running at or above the threshold
+  std::string equilibrium;  // observable whose last taps are compared; empty: the same
   std::optional<std::uint64_t> last = std::nullopt;  // of these taps; absent: the last quarter
   bool operator==(const OrderingSettings&) const = default;
 };

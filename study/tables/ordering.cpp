@@ -58,8 +58,7 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
       const ObservableSeries series(file, number, observable);
       const std::string& label = file.study().points[number].label;
       if (series.n_realizations() == 0) throw BadInput(label + ": no realization with taps");
-      OrderingPoint point{
-          .label = label, .times = ordering_of(series, settings).times(n)};
+      OrderingPoint point{.label = label, .times = ordering_of(series, settings).times(n)};
       set_last_values(ObservableSeries(file, number, value.observable), settings, n, point, value);
       compared.push_back(std::move(point));
     }

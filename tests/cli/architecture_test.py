@@ -34,7 +34,7 @@ RESERVED = {
     r"unsupported/Eigen/FFT": {"ensemble/statistics/autocorrelation.cpp",
                                "ensemble/analysis/spectra/spectra.cpp"},
     r"Eigen/(?!Core)": {"fitting/solver/decompositions.cpp"},
-    r"muParser": {"study/tables/law_formula.cpp"},
+    r"muParser": {"study/tables/laws/law_formula.cpp"},
     r"spdlog/": {"cli/terminal/log.cpp", "cli/terminal/version.cpp"},
     r"Random123/": {"engine/bed/philox.hpp"},
     r"thread$|mutex$|atomic$|condition_variable$|future$|pthread": {"ensemble", "bench", "results", "study", "cli"},

@@ -25,7 +25,7 @@ std::string labels_of(const std::vector<OrderingPoint>& points, const std::vecto
   return text;
 }
 
-std::size_t largest_of(const std::vector<Growth>& means) {
+std::size_t largest_of(const std::vector<RealizationMean>& means) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < means.size(); ++k) {
     if (means[k].value > means[best].value || std::isnan(means[best].value)) best = k;
@@ -80,7 +80,7 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
 }
 
 struct Comparison {
-  std::vector<Growth> means;
+  std::vector<RealizationMean> means;
   std::vector<bool> open;
   Candidates first, largest;
 };

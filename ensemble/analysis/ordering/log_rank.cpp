@@ -115,7 +115,7 @@ Candidates best_of(std::size_t k, const std::function<double(std::size_t, std::s
 }
 
 /// One-sided, of a mean difference above 0.
-double upper_tail(const Growth& difference) {
+double upper_tail(const RealizationMean& difference) {
   const double both = p_value(difference.value, difference.error);
   if (std::isnan(both)) return 1;
   return difference.value > 0 ? 0.5 * both : 1 - 0.5 * both;
@@ -130,7 +130,7 @@ double p_of_larger(const std::vector<double>& first, const std::vector<double>& 
     }
     return upper_tail(mean_of(differences));
   }
-  const Growth a = mean_of(first), b = mean_of(second);
+  const RealizationMean a = mean_of(first), b = mean_of(second);
   return upper_tail({a.value - b.value, combined(a.error, b.error)});
 }
 

@@ -34,7 +34,7 @@ void add_limits(Table& table, const std::string& name, const Limits& limits, con
                  fmt::format("upper end of the {} % interval", level), source));
 }
 
-void add_growth(Table& table, const std::string& name, const Growth& growth,
+void add_growth(Table& table, const std::string& name, const RealizationMean& growth,
                 const std::string& units, const std::string& long_name) {
   put(table, one(name, growth.value, units, long_name));
   put(table,

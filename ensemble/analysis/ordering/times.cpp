@@ -130,7 +130,7 @@ GrowthRates GrowthOfSeries::result() const {
   return {mean_of(decades_), mean_of(taps_)};
 }
 
-Growth mean_of(std::span<const double> values) {
+RealizationMean mean_of(std::span<const double> values) {
   Moments moments;
   for (const double value : values) moments.add(value);
   if (moments.count() < 2) return {moments.mean(), {}};

@@ -53,15 +53,15 @@ double median_time(std::span<const OrderingTime> times);
 /// that ordered, set no limit: 95 % needs six, 68 % three.
 Limits median_limits(std::span<const OrderingTime> times, double level);
 
-/// Mean over realizations of the slope of a series, with its error over them.
-struct Growth {
+/// A mean over realizations with its error.
+struct RealizationMean {
   double value = 0;
   ErrorOf error{};
 };
 /// How fast X grows: lines by least squares through taps 1 to n - 1 of each realization. On log10
 /// t, decades weighing alike (1/t a tap), in units of X a decade; and on t, units of X a tap.
 struct GrowthRates {
-  Growth per_decade, per_tap;
+  RealizationMean per_decade, per_tap;
 };
 class GrowthOfSeries {
  public:
@@ -73,6 +73,6 @@ class GrowthOfSeries {
 };
 
 /// Mean of values with its standard error, M - 1 degrees of freedom.
-Growth mean_of(std::span<const double> values);
+RealizationMean mean_of(std::span<const double> values);
 
 }  // namespace jostle::inline ensemble

@@ -214,7 +214,7 @@ TEST_CASE("Growth rates are slopes on t and on its logarithm") {
     on_t.add(line);
     on_decades.add(decades);
   }
-  const Growth a = on_t.result().per_tap, b = on_decades.result().per_decade;
+  const RealizationMean a = on_t.result().per_tap, b = on_decades.result().per_decade;
   CHECK(a.value == Approx(1).epsilon(1e-10));
   CHECK(a.error.error == Approx(0.5 / std::sqrt(3.0)).epsilon(1e-10));
   CHECK(a.error.dof == 2);

@@ -1,4 +1,4 @@
-#include "study/tables/own_law.hpp"
+#include "study/tables/laws/own_law.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

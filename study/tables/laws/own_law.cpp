@@ -1,4 +1,4 @@
-#include "study/tables/own_law.hpp"
+#include "study/tables/laws/own_law.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "fitting/solver/grid.hpp"
 #include "fitting/solver/projection.hpp"
 #include "study/bad_input.hpp"
-#include "study/tables/law_formula.hpp"
-#include "study/tables/law_traits.hpp"
+#include "study/tables/laws/law_formula.hpp"
+#include "study/tables/laws/law_traits.hpp"
 
 namespace jostle::inline study {
 

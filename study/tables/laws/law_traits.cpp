@@ -1,4 +1,4 @@
-#include "study/tables/law_traits.hpp"
+#include "study/tables/laws/law_traits.hpp"
 
 #include <algorithm>
 #include <cmath>

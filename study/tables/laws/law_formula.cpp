@@ -1,4 +1,4 @@
-#include "study/tables/law_formula.hpp"
+#include "study/tables/laws/law_formula.hpp"
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "study/bad_input.hpp"
-#include "study/tables/own_law.hpp"
+#include "study/tables/laws/own_law.hpp"
 
 namespace jostle::inline study {
 
