@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "config/grids.hpp"
@@ -32,7 +33,7 @@ struct Sources {
   std::vector<Source> all;
 };
 
-/// Whose volume an observable is that of; `mean`: its mean.
+/// Whose volume an observable is that of; `mean`: its mean. Nothing of one that measures order.
 struct SpheresOf {
   const Scene& scene;
   double mean;
@@ -41,26 +42,34 @@ struct SpheresOf {
   double area() const { return footprint_area(scene.container); }
   VolumeOf in(double height) const { return {area() * height * mean / sphere_volume}; }
 
-  VolumeOf operator()(const MeanHeight&) const { return {n(), 2 * area() / sphere_volume}; }
-  VolumeOf operator()(const BottomFraction&) const { return in(4 * sphere_radius); }
-  VolumeOf operator()(const CorrectedFraction& corrected) const { return {n() * corrected.depth}; }
-  VolumeOf operator()(const BulkFraction& bulk) const {
+  std::optional<VolumeOf> operator()(const MeanHeight&) const {
+    return VolumeOf{n(), 2 * area() / sphere_volume};
+  }
+  std::optional<VolumeOf> operator()(const BottomFraction&) const { return in(4 * sphere_radius); }
+  std::optional<VolumeOf> operator()(const CorrectedFraction& corrected) const {
+    return VolumeOf{n() * corrected.depth};
+  }
+  std::optional<VolumeOf> operator()(const BulkFraction& bulk) const {
     if (const auto* heights = std::get_if<HeightWindow>(&bulk.window))
       return in(heights->high - heights->low);
     const auto& quantiles = std::get<QuantileWindow>(bulk.window);
-    return {n() * (quantiles.high - quantiles.low)};
+    return VolumeOf{n() * (quantiles.high - quantiles.low)};
   }
+  std::optional<VolumeOf> operator()(const CrystallineFraction&) const { return std::nullopt; }
+  std::optional<VolumeOf> operator()(const GrownLayers&) const { return std::nullopt; }
+  std::optional<VolumeOf> operator()(const OrderedHeight&) const { return std::nullopt; }
 };
 
 VolumeOf volume_of(const Scene& scene, const std::string& observable, double mean,
                    const VolumesSettings& settings) {
   for (const Observable& one : scene.observables) {
     if (label(one).name != observable) continue;
-    VolumeOf found = std::visit(SpheresOf{scene, mean}, one);
-    if (!settings.spheres) return found;
-    if (found.per_height) *found.per_height *= *settings.spheres / found.spheres;
-    found.spheres = *settings.spheres;
-    return found;
+    std::optional<VolumeOf> found = std::visit(SpheresOf{scene, mean}, one);
+    if (!found) break;
+    if (!settings.spheres) return *found;
+    if (found->per_height) *found->per_height *= *settings.spheres / found->spheres;
+    found->spheres = *settings.spheres;
+    return *found;
   }
   throw BadInput(
       fmt::format("{} is no packing fraction and no mean height, so that no volume "
