@@ -103,6 +103,7 @@ TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
   const std::vector<Measurement> all = measure(pressed_fcc(apart), without_floor(), points);
 
   CHECK(single(part(all, "coordination"), "n_c") == 12);
+  CHECK(single(part(all, "gaps"), "contacts") == 12);
   CHECK(single(part(all, "order"), "fcc") == 1);
   CHECK(single(part(all, "order"), "q6") == Approx(0.57452426).epsilon(1e-7));
   const Measurement& cells = part(all, "voronoi");
