@@ -78,9 +78,11 @@ TEST_CASE("Every quantity of every part stands on its places and is finite where
         n = found->size();
       }
       CHECK(quantity.values.size() == n);
-      // A bin without a sphere or a wave vector, and few gaps of a deposit that touches exactly.
+      // A bin without a sphere or a wave vector, few gaps of a deposit that touches exactly, and no
+      // sphere that is held where the tolerance is below its rounding.
       const bool may_lack = quantity.name.ends_with("_at_height") ||
-                            quantity.name == "exponent_from_gap" || quantity.name == "s";
+                            quantity.name == "exponent_from_gap" || quantity.name == "s" ||
+                            quantity.name == "backbone_z_of_gap";
       for (const double value : quantity.values) CHECK((may_lack || std::isfinite(value)));
     }
   }
