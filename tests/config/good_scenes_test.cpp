@@ -67,11 +67,14 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(structure.pores == PoresSettings{0.01, 2, 1e-5, 0.01, 0.2});
   CHECK(structure.void_probability == VoidSettings{1.5, 0.1, 5000});
   CHECK(structure.holes == HolesSettings{{1.25, 1.35, 0.1}});
-  REQUIRE(scene.observables.size() == 6);
+  REQUIRE(scene.observables.size() == 9);
   CHECK(scene.observables[2] == Observable{CorrectedFraction{0.85}});
   CHECK(scene.observables[4] == Observable{BulkFraction{"upper", HeightWindow{10, 15}}});
   CHECK(scene.observables[5] ==
         Observable{BulkFraction{"middle", QuantileWindow{0.4, 0.6}, 0.8165}});
+  CHECK(scene.observables[6] == Observable{CrystallineFraction{}});
+  CHECK(scene.observables[7] == Observable{GrownLayers{}});
+  CHECK(scene.observables[8] == Observable{OrderedHeight{}});
   CHECK(std::get<LogarithmicTaps>(scene.snapshots.taps) == LogarithmicTaps{1, 100, 2, {0, 120}});
   CHECK(scene.snapshots.positions);
   CHECK(scene.snapshots.coordination);

@@ -26,7 +26,7 @@ TEST_CASE("A plan holds what the scene says") {
   CHECK(total_taps(plan) == 100 + 10 + 10 + 2 * 16 + 2 * 4 + 1);
   CHECK(monte_carlo(plan).relax.stop.max_sweeps == 20'000);
   CHECK(monte_carlo(plan).relax.sampler == Sampler::rejection_free);
-  CHECK(plan.observables.size() == 6);
+  CHECK(plan.observables.size() == 9);
   CHECK(plan.snapshots.taps == std::vector<std::uint64_t>{0, 1, 3, 10, 32, 100, 120});
   CHECK_FALSE(plan.snapshots.height_histogram);
   CHECK(plan.snapshots.bin_width == 0.05);
