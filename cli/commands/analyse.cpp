@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -220,6 +221,9 @@ void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
         if (!arguments.threshold) {
           throw BadInput("--threshold is required: the value from which a packing is ordered");
         }
+        if (!(std::abs(*arguments.threshold) <= 1e9)) {
+          throw BadInput("--threshold is a number from -1e9 to 1e9, in units of the observable");
+        }
         OrderingSettings settings{.threshold = *arguments.threshold,
                                   .hold = arguments.hold,
                                   .equilibrium = arguments.equilibrium};
@@ -320,7 +324,7 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse motion.h5 motion\n"
       "  jostle analyse bell.h5 volumes --observable mean_height --last 1000\n"
       "  jostle analyse memory.h5 memory --observable corrected_fraction\n"
-      "  jostle analyse lifts.h5 ordering --observable crystalline_fraction --threshold 0.2\n"
+      "  jostle analyse lifts.h5 ordering --observable grown_layers --threshold 5\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"
