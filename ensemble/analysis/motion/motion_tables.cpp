@@ -239,13 +239,13 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
                         [&](std::size_t o, std::size_t l, std::size_t length) {
                           return four_point_susceptibility(row(o, l, length), records.n_spheres);
                         });
-    table.add_means_of(
-        {kind.independent, "1", "chi_4 of spheres that move independently and alike, Q (1 - Q)", ""},
-        [&](std::size_t o, std::size_t l, std::size_t length) {
-          std::vector<double> values = copy(row(o, l, length));
-          for (double& q : values) q *= 1 - q;
-          return values;
-        });
+    table.add_means_of({kind.independent, "1",
+                        "chi_4 of spheres that move independently and alike, Q (1 - Q)", ""},
+                       [&](std::size_t o, std::size_t l, std::size_t length) {
+                         std::vector<double> values = copy(row(o, l, length));
+                         for (double& q : values) q *= 1 - q;
+                         return values;
+                       });
   }
   table.add_count();
   return table.take();
