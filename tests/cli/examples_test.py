@@ -100,7 +100,7 @@ class Examples(Case):
         runs = {"fig5": LONG, "fig9": QUICK, "fig10": LONG, "bell": changed(LONG, sweep=HIGH),
                 "low": changed(QUICK, sweep=LOW), "high": changed(QUICK, sweep=HIGH),
                 "fig4": changed(LONG, protocol=UP_AND_DOWN), "motion": changed(QUICK, motion={}),
-                "lifts": changed(QUICK, observe=["crystalline_fraction", "grown_layers"],
+                "lifts": changed(QUICK, observe=["mean_height", "crystalline_fraction", "grown_layers"],
                                  sweep=LOW),
                 "memory": changed(LONG, protocol=THEN_COMMON, sweep=TWO_WAYS)}
         for name, scene in runs.items():
