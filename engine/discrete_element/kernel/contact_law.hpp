@@ -18,6 +18,9 @@ inline constexpr std::int64_t inverse_cube_root_bits = 0x553ef0ff;
 // A tangential force shorter than this, whose square has no inverse, counts as none.
 inline constexpr double least_force = 1e-140;
 
+// Of the square of a slip, what may lie across the force while the path counts as straight.
+inline constexpr double one_dimensional = 1e-9;
+
 // What Wide has, too, for one number.
 JOSTLE_INLINE double select(bool mask, double yes, double no) {
   return mask ? yes : no;
@@ -204,6 +207,12 @@ struct WaltonBraunLaw {
   }
 
  private:
+  /// T* / (mu N) of a force that shrank and, at this share of mu N, grows without a reversal: what
+  /// leaves K_T as it is, (mu N - T)/(mu N - T*) = (mu N + T)/(mu N + T* before). At zero: -T*.
+  JOSTLE_INLINE N beyond_zero(const N& share) const {
+    return 1.0 - (1.0 - share) * (1.0 + reversal) / (1.0 + share);
+  }
+
   JOSTLE_INLINE void shear(const Meeting<N>& at, const LawConstants& law, const N& normal_force,
                            ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
@@ -221,7 +230,17 @@ struct WaltonBraunLaw {
     const N towards = select(growth > zero, one, select(growth < zero, zero - one, direction));
     const N share = length / select(limit > zero, limit, one);
     const N at_reversal = lesser(share, one);
-    reversal = select(towards * direction < zero, at_reversal, reversal);
+    N next = at_reversal;
+    const auto grows_again = towards > direction;
+    if (any_of(grows_again)) {
+      // This slip on the force one such step before, T + K0 s: where it shrinks that one, it is the
+      // force that turned, passing zero on one side, and no slip that turned round.
+      const N step2 = dot(step, step), aside2 = (1.0 - one_dimensional) * step2 - growth * growth;
+      const N turned_by = law.tangential * step2 - length * growth;
+      const auto passes_zero = select(grows_again, lesser(turned_by, aside2), zero) > zero;
+      next = select(passes_zero, beyond_zero(at_reversal), at_reversal);
+    }
+    reversal = select(towards * direction < zero, next, reversal);
     direction = towards;
 
     const N room = 1.0 - direction * share;  // shares of mu N

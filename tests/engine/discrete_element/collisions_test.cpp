@@ -28,28 +28,28 @@ double speed_ratio(const ContactLaw& law, double speed, double finer) {
 
 struct Oblique {
   double normal, tangential, spin;  // relative velocities after, of the centres; spin of the first
+  double
+      pressed;  // change of the normal velocity, added up by its size: of a force that pulls, too
 };
 
-/// The first sphere comes at an angle upon the second, which rests.
-Oblique oblique_pair(const ContactLaw& law, double normal, double tangential, double finer) {
+/// The first sphere comes at an angle upon the floor, or upon a second one that rests.
+Oblique oblique(const ContactLaw& law, double normal, double tangential, double finer, bool pair) {
   const ReducedSettings units = settings(law, 0, finer);
-  GrainLoop loop =
-      loop_of(box, units,
-              {grain({5, 5, 6 + 0.3 * normal * units.time_step}, {tangential, 0, -normal}),
-               grain({5, 5, 5})});
-  run_contact(loop, units);
-  const auto after = loop.state().grains;
-  const Vec3 velocity = after[0].velocity - after[1].velocity;
-  return {velocity.z, velocity.x, after[0].spin.y};
-}
-
-Oblique oblique_floor(const ContactLaw& law, double normal, double tangential, double finer) {
-  const ReducedSettings units = settings(law, 0, finer);
-  GrainLoop loop = loop_of(
-      box, units, {grain({5, 5, 0.5 + 0.3 * normal * units.time_step}, {tangential, 0, -normal})});
-  run_contact(loop, units);
-  const auto after = loop.state().grains;
-  return {after[0].velocity.z, after[0].velocity.x, after[0].spin.y};
+  const double gap = 0.3 * normal * units.time_step;
+  std::vector<GrainState> grains = {
+      grain({5, 5, (pair ? 6 : 0.5) + gap}, {tangential, 0, -normal})};
+  if (pair) grains.push_back(grain({5, 5, 5}));
+  GrainLoop loop = loop_of(box, units, grains);
+  Oblique out{-normal, tangential, 0, 0};
+  const double steps = 4 * units.contact_time / units.time_step;
+  for (int k = 0; k < steps; ++k) {
+    loop.run(1);
+    const auto after = loop.grains();
+    const Vec3 velocity = pair ? after[0].velocity - after[1].velocity : after[0].velocity;
+    const double pressed = out.pressed + std::abs(velocity.z - out.normal);
+    out = {velocity.z, velocity.x, after[0].spin.y, pressed};
+  }
+  return out;
 }
 
 }  // namespace
@@ -68,27 +68,37 @@ TEST_CASE("spheres part with the restitution that was asked for, at every speed"
   }
 }
 
-// Rigid bodies that slide all the while: impulse mu (1 + e) v_n; I = m d^2 / 10.
+// Rigid bodies that slide all the while: v_n' = e v_n, v_t' = v_t - mu (1 + e) v_n, omega' = 2.5 mu
+// (1 + e) v_n / r on a plane; of two spheres each takes half the spin. I = m d^2 / 10.
 TEST_CASE("an oblique impact that slides throughout has the impulses of rigid spheres") {
-  const double e = 0.9, mu = 0.1, normal = 0.02;  // so slow that the normal hardly turns
-  const double tangential = 1.5 * 3.5 * mu * (1 + e) * normal * 2;
-  for (const ContactLaw& law :
-       {ContactLaw{WaltonBraun{.restitution = e, .friction = mu}},
-        ContactLaw{LinearSpringDashpot{.restitution = e, .friction = mu}}}) {
-    CAPTURE(law.index());
-    const Oblique floor = oblique_floor(law, normal, tangential, 20);
-    // The damped spring pulls at the end of the contact, where friction goes by the force's size:
-    // of the impulse that is 4 e (ln e / pi)^2 / (1 + e), 2e-3 at e = 0.9.
-    const double tolerance = 1e-3;
-    CHECK(std::abs(floor.normal / normal - e) < 5 * tolerance);
-    const double impulse = mu * (normal + floor.normal);
-    CHECK(std::abs(tangential - floor.tangential - impulse) < tolerance * tangential);
-    CHECK(std::abs(floor.spin - 5 * impulse) < 5 * tolerance * floor.spin);
-    const Oblique pair = oblique_pair(law, normal, tangential, 20);
-    // Each sphere has half: of the relative velocity as much is lost as on the floor.
-    CHECK(std::abs(pair.normal / normal - e) < 5 * tolerance);
-    CHECK(std::abs(tangential - pair.tangential - impulse) < tolerance * tangential);
-    CHECK(std::abs(pair.spin - 2.5 * impulse) < 5 * tolerance * pair.spin);
+  const double normal = 0.002;  // so slow that the normal hardly turns
+  for (const double e : {0.3, 0.9, 0.98}) {
+    for (const double mu : {0.02, 0.1, 0.3}) {
+      const double tangential = 3 * 3.5 * mu * (1 + e) * normal;
+      for (const ContactLaw& law :
+           {ContactLaw{WaltonBraun{.restitution = e, .friction = mu}},
+            ContactLaw{LinearSpringDashpot{.restitution = e, .friction = mu}}}) {
+        for (const bool pair : {false, true}) {
+          for (const double finer : {1.0, 4.0}) {
+            CAPTURE(law.index(), e, mu, pair, finer);
+            const Oblique after = oblique(law, normal, tangential, finer, pair);
+            const double lost = tangential - after.tangential, share = pair ? 2.5 : 5;
+            // Strong dashpots are off by more: their force begins and ends with a jump.
+            const double in_e = law.index() == 1 && e < 0.9 ? 2 : 1;
+            CHECK(std::abs(after.normal / normal - e) < in_e * (finer > 1 ? 1e-3 : 5e-3));
+            // Coulomb's law, of the normal impulse as it is.
+            CHECK(lost == Approx(mu * after.pressed).epsilon(1e-3));
+            CHECK(after.spin == Approx(share * mu * after.pressed).epsilon(1e-3));
+            // The damped spring pulls at the end of the contact: there friction goes by the force's
+            // size, and the impulse is no longer (1 + e) v_n. At e = 0.9 that is 2e-3 of it.
+            if (finer == 1 || (law.index() == 1 && e < 0.98)) continue;
+            const double rigid = mu * (1 + e) * normal;
+            CHECK(lost == Approx(rigid).epsilon(1e-3));
+            CHECK(after.spin == Approx(share * rigid).epsilon(1e-3));
+          }
+        }
+      }
+    }
   }
 }
 
@@ -222,6 +232,59 @@ TEST_CASE("half the step makes half the error of an impact that sticks") {
     CAPTURE(law.index(), whole, quarter);
     CHECK(std::sqrt(whole / phases) < 5e-3);
     CHECK(std::sqrt(whole / quarter) > 2.5);
+  }
+}
+
+// Spins about every axis turn the tangential force in its plane, past zero on one side of it. Where
+// each step told a reversal from that by chance, such impacts differed by 1e-2 at any step.
+TEST_CASE("oblique impacts of spinning spheres converge to one result as the step is refined") {
+  RandomStream random(stream_key(20261125, 0, 0, Purpose::start));
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * random.uniform();
+  };
+  const Vec3 along = {2.0 / 3, 1.0 / 3, 2.0 / 3}, middle = {10, 10, 10};
+  for (const double mu : {0.1, 0.3, 0.5}) {
+    double coarse = 0, fine = 0, finest = 0;
+    constexpr int impacts = 24;
+    for (int k = 0; k < impacts; ++k) {
+      const double normal = 0.5, begins = between(0.1, 0.9);
+      const double slip = std::exp(between(-2.7, 0.7)) * 3.5 * mu * 1.9 * normal;
+      const double angle = between(0, 2 * std::numbers::pi);
+      const auto any_spin = [&] {
+        return 4 * slip * Vec3{between(-1, 1), between(-1, 1), between(-5, 5)};
+      };
+      const Vec3 velocity = {slip * std::cos(angle), slip * std::sin(angle), -normal};
+      const Vec3 spin = any_spin(), other_spin = any_spin();
+      const auto after = [&](double finer) {
+        const ReducedSettings units = settings(WaltonBraun{.friction = mu}, 0, finer);
+        const double gap = begins * normal * units.time_step;
+        const GrainState above = grain({5, 5, 0.5 + gap}, velocity, spin);
+        // As fast along the line of centres, and whatever comes out across it.
+        const Vec3 meets = velocity - (dot(velocity, along) + normal) * along;
+        const GrainState second = grain(middle + (1 + gap) * along, meets, spin);
+        GrainLoop loop = k % 2 == 0 ? loop_of(box, units, {above})
+                                    : loop_of(box, units, {grain(middle, {}, other_spin), second});
+        run_contact(loop, units);
+        const auto grains = loop.state().grains;
+        return std::pair(grains.back().velocity, grains.back().spin);
+      };
+      const auto exact = after(512);
+      const auto error = [&](double finer) {
+        const auto [v, w] = after(finer);
+        return (norm_squared(v - exact.first) + 0.1 * norm_squared(w - exact.second)) /
+               (normal * normal);
+      };
+      coarse += error(4);
+      fine += error(16);
+      const double last = error(64);
+      finest += last;
+      CAPTURE(mu, k, last);
+      CHECK(std::sqrt(last) < 4e-3 * mu);
+    }
+    CAPTURE(mu, coarse, fine, finest);
+    CHECK(std::sqrt(coarse / impacts) < 1.5e-2 * mu);
+    CHECK(std::sqrt(coarse / fine) > 2);
+    CHECK(std::sqrt(fine / finest) > 2.5);
   }
 }
 

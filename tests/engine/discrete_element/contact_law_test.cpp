@@ -36,6 +36,12 @@ double sheared(Law& law, double overlap, double displacement) {
   return -law.tangential.x;  // the force on the first sphere holds it back
 }
 
+void shear_aside(Law& law, double overlap, double displacement) {
+  Meeting<double> at = pressed(overlap, 0);
+  at.velocity.y = displacement / constants.time_step;
+  law(at, constants);
+}
+
 }  // namespace
 
 // Walton & Braun 1986, by hand: along K1, back along K2 to a0, again along K2, on along K1.
@@ -111,6 +117,32 @@ TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a consta
   CHECK(end == Approx(limit - curve(room, again)).epsilon(2e-3));
   // And until it slides.
   CHECK(sheared(law, overlap, 3 * loaded) == Approx(limit));
+}
+
+// What passes zero to one side of it, however near, has not turned round: along the path it is what
+// it is on the straight one.
+TEST_CASE("a path a little to one side of a straight one has nearly its tangential force") {
+  const double overlap = 0.002, limit = constants.friction * 4e4 * overlap;
+  const double loaded = 0.8 * 1.5 * limit / constants.tangential;
+  for (const std::vector<double>& path :
+       {std::vector{1.0, -1.8}, std::vector{1.0, -1.8, 1.6}, std::vector{1.0, -0.3, 0.4},
+        std::vector{0.6, -1.0, 0.2, -0.1}}) {
+    const auto end = [&](double aside) {
+      Law law{};
+      double force = 0;
+      for (const double part : path) {
+        force = sheared(law, overlap, part * loaded);
+        shear_aside(law, overlap, aside * loaded);
+      }
+      return force;
+    };
+    const double straight = end(0);
+    for (const double aside : {1e-2, 1e-3, 1e-4, 1e-6}) {
+      CAPTURE(path, aside);
+      CHECK(std::abs(end(aside) - straight) < (3 * aside + 1e-3) * limit);
+      CHECK(std::abs(end(-aside) - straight) < (3 * aside + 1e-3) * limit);
+    }
+  }
 }
 
 // N changes along the path: Walton & Braun's increment with T* that follows mu N, as an equation of
