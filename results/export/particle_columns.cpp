@@ -34,7 +34,8 @@ Packing wrapped_inside(const Packing& packing) {
     Vec3& r = moved.centres[i];
     r = wrapped(boundary, r);
     const bool within = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
-                        r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height;
+                        r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
+                        boundary_depth(boundary, r) <= sphere_radius;
     if (!within) {
       throw std::invalid_argument(
           fmt::format("sphere {} lies outside the container, at {}, {}, {}", i, r.x, r.y, r.z));

@@ -119,6 +119,15 @@ TEST_CASE("centres a period away are counted where they are, and written as they
                     Contains("sphere 1 lies outside the container"));
 }
 
+TEST_CASE("a centre outside a tube is refused where the square around the tube holds it") {
+  const Cylinder tube{4};
+  CHECK_NOTHROW(wrapped_inside({tube, {{2, 2, 0.5}, {3.41, 3.41, 0.5}, {0, 2, 0.5}}}));
+  CHECK_THROWS_WITH(wrapped_inside({tube, {{2, 2, 0.5}, {3.42, 3.42, 0.5}}}),
+                    Contains("sphere 1 lies outside the container"));
+  CHECK_THROWS_WITH(particle_columns({tube, {{0.1, 3.9, 0.5}, {2, 2, 0.5}}}),
+                    Contains("sphere 0 lies outside the container"));
+}
+
 TEST_CASE("a LAMMPS dump holds a frame a tap, to the last bit") {
   const Packing packing = hard_to_write();
   const std::vector<ExportedFrame> frames = {one_sphere(0),
