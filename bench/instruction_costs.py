@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Counts instructions with callgrind: what an effect that is not used costs (nothing), and what one
-that is used does. instruction_costs.py FOLDER [--all], FOLDER holding the three programs.
+that is used does. instruction_costs.py FOLDER [--all], FOLDER holding the programs cost_*.
 
-Exits with 1 if a trial of a periodic scene, or a tap of a realization that observes nothing, takes
-over 0.5 % more or less than in a program that does nothing else, with 77 where there is no
-valgrind."""
+Exits with 1 if a trial of a periodic scene, a tap of a realization that observes nothing, or a step
+of grains without friction, walls or motion takes over 0.5 % more or less than in a program that
+does nothing else, with 77 where there is no valgrind."""
 import os
 import re
 import shutil
@@ -17,6 +17,10 @@ TRIALS = 200_000
 CALLS = 10
 SCENES = ["periodic", "walls", "cylinder", "periodic_metropolis", "periodic_metropolis_beta_1e6"]
 TAPS = 5
+STEPS = 300
+GRAINS = 1024
+EFFECTS = ["grains", "grains_friction", "grains_walls", "grains_moving_floor",
+           "grains_driven_temperature"]
 MEASUREMENTS = ["mean_height", "bottom_fraction", "corrected_fraction", "bulk_fraction",
                 "coordination", "height_histogram", "voronoi_cells", "cells_and_pores"]
 
@@ -47,21 +51,28 @@ def main():
     if not shutil.which("valgrind") or not has_avx2():
         print("skipped: this needs valgrind and a machine with AVX2")
         sys.exit(77)
-    effect = os.path.join(folder, "cost_of_effect")
+    program = {name: os.path.join(folder, name) for name in
+               ("cost_of_effect", "cost_of_grains", "cost_single_loop", "cost_plain_taps",
+                "cost_plain_grains")}
     within = True
-    for alone, what, unit, count in (("cost_single_loop", "periodic", "trial", TRIALS),
-                                     ("cost_plain_taps", "taps", "tap", TAPS)):
-        full, single = (each([program, what], count)
-                        for program in (effect, os.path.join(folder, alone)))
+    for whole, alone, what, unit, count in (
+            ("cost_of_effect", "cost_single_loop", "periodic", "trial", TRIALS),
+            ("cost_of_effect", "cost_plain_taps", "taps", "tap", TAPS),
+            ("cost_of_grains", "cost_plain_grains", "grains", "time step", STEPS)):
+        full, single = (each([program[name], what], count) for name in (whole, alone))
         within = within and abs(full / single - 1) <= TOLERANCE
         print(f"instructions a {unit}: {full:.2f}; in a program that does nothing else: "
               f"{single:.2f}; difference {100 * (full / single - 1):+.3f} %")
     if "--all" in sys.argv:
         for scene in SCENES:
-            print(f"{scene:<30} {each([effect, scene], TRIALS):8.1f} instructions a trial")
+            cost = each([program["cost_of_effect"], scene], TRIALS)
+            print(f"{scene:<30} {cost:8.1f} instructions a trial")
         for measurement in MEASUREMENTS:
-            cost = each([effect, measurement], CALLS) / 512
+            cost = each([program["cost_of_effect"], measurement], CALLS) / 512
             print(f"{measurement:<30} {cost:8.1f} instructions a sphere and measurement")
+        for effect in EFFECTS:
+            cost = each([program["cost_of_grains"], effect], STEPS) / GRAINS
+            print(f"{effect:<30} {cost:8.1f} instructions a sphere step")
     sys.exit(0 if within else 1)
 
 
