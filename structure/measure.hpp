@@ -59,10 +59,11 @@ struct OrderSettings {
 
 /// Gaps between neighbours, contacts, rattlers.
 struct GapsSettings {
-  double largest = 0.5;              // gap that is counted
-  double tolerance = 1e-3;           // gap of a contact, of the single values
-  std::uint64_t least_contacts = 4;  // of a sphere that is no rattler
-  HeightWindow window{0.01, 0.2};    // gaps whose exponent is sought
+  double largest = 0.5;     // gap that is counted
+  double tolerance = 1e-3;  // gap of a contact, of the single values
+  /// Of a sphere that is no rattler; absent: as least_contacts_of() has it.
+  std::optional<std::uint64_t> least_contacts = std::nullopt;
+  HeightWindow window{0.01, 0.2};  // gaps whose exponent is sought
   bool operator==(const GapsSettings&) const = default;
 };
 

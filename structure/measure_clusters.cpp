@@ -13,11 +13,12 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
                       [&](std::uint32_t i) { return in.in_region(i); });
   if (found.clusters.empty() || found.clusters.front() < 2)
     throw std::invalid_argument("fewer than two whole cells lie in the region");
-  std::vector<double> n, per_cell, relative, chi, clusters;
+  std::vector<double> n, per_cell, relative, chi, independent, clusters;
   const double free = found.mean.front() - 1 - least_free_volume, of_one = found.variance.front();
   for (std::size_t k = 0; k < found.cells.size(); ++k) {
     n.push_back(found.cells[k]);
-    per_cell.push_back(found.variance[k] / n.back());
+    independent.push_back(found.independent[k]);
+    per_cell.push_back(found.variance[k] / n.back() / independent.back());
     relative.push_back(per_cell.back() / of_one);
     chi.push_back(per_cell.back() / free);
     clusters.push_back(static_cast<double>(found.clusters[k]));
@@ -30,8 +31,8 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .places = "cells",
        .values = per_cell,
        .units = "sphere volumes^2",
-       .long_name = "variance of the volume of a cluster over its cells; the same for all sizes "
-                    "where cells are independent",
+       .long_name = "variance of the volume of a cluster over its cells and over "
+                    "shared_cells; the same for all sizes where cells are independent",
        .source = "Lechenault et al. 2006, doi:10.1088/1742-5468/2006/07/P07009",
        .beyond = nan,
        .with_change = true},
@@ -39,6 +40,12 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .places = "cells",
        .values = relative,
        .long_name = "the same over that of single cells, 1 where they are independent",
+       .beyond = nan},
+      {.name = "shared_cells",
+       .places = "cells",
+       .values = independent,
+       .long_name = "what the variance of these clusters is lowered by, because they share cells, "
+                    "where cells are independent",
        .beyond = nan},
       {.name = "chi",
        .places = "cells",

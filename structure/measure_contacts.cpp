@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "structure/measure_parts.hpp"
 #include "structure/order/gaps.hpp"
@@ -46,7 +47,8 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   const std::vector<double> grid = gap_grid(settings.largest);
   const double reach = std::max({settings.largest, settings.tolerance, settings.window.high});
   const NeighbourTable near = neighbours_within(in.packing, 1 + reach);
-  const auto least = static_cast<unsigned>(settings.least_contacts);
+  const auto least = static_cast<unsigned>(
+      settings.least_contacts.value_or(least_contacts_of(in.packing.container)));
   std::vector<double> gaps;
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (!in.in_region(i)) continue;
@@ -81,15 +83,16 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
       {.name = "backbone_z_of_gap",
        .places = "gap",
        .values = without,
-       .long_name = "mean number of contacts without rattlers",
-       .source = donev},
+       .long_name = "mean number of contacts without rattlers, of packings with a backbone",
+       .source = donev,
+       .with_packings = true},
       {.name = "exponent_from_gap",
        .places = "gap",
        .values = exponents,
-       .long_name = "gamma of gaps from this one to the window's end, density as h^-gamma"},
+       .long_name = "gamma of g(1 + h) as h^-gamma, from this gap to the window's end"},
       {.name = "gap_exponent",
        .values = {gap_exponent(gaps, settings.window.low, settings.window.high)},
-       .long_name = "gamma of the gaps in the window, density as h^-gamma"},
+       .long_name = "gamma of g(1 + h) as h^-gamma, gaps in the window"},
       {.name = "contacts",
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},
@@ -99,8 +102,11 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .source = donev},
       {.name = "backbone_contacts",
        .values = {found.without_rattlers},
-       .long_name = "mean number of contacts without rattlers, 6 if isostatic without friction",
-       .source = donev}};
+       .long_name = "mean number of contacts without rattlers, of packings with a backbone; 6 if "
+                    "isostatic without friction",
+       .source = donev,
+       .with_packings = true}};
+  out.notes = {{"least_contacts", std::to_string(least) + " of a sphere that is no rattler"}};
   return out;
 }
 
@@ -126,7 +132,16 @@ Measurement measure_part(MeasuredPacking& in, const StructureFactorSettings& set
                      .values = {found.s_0_of_line},
                      .long_name = "S at k = 0 by a straight line in k",
                      .source = "Donev, Stillinger & Torquato 2005, "
-                               "doi:10.1103/PhysRevLett.95.090604"}};
+                               "doi:10.1103/PhysRevLett.95.090604"},
+                    {.name = "fitted_from",
+                     .values = {found.fitted_from},
+                     .units = "1/diameter",
+                     .long_name = "least k of the wave vectors that these lines go through",
+                     .with_error = false},
+                    {.name = "fitted_modes",
+                     .values = {static_cast<double>(found.fitted_modes)},
+                     .long_name = "how many wave vectors they are",
+                     .with_error = false}};
   return out;
 }
 

@@ -37,6 +37,8 @@ struct MeasuredQuantity {
   bool with_change = false;
   /// Whether its mean over packings has an error: not so where it is itself one, or a constant.
   bool with_error = true;
+  /// Whether the packings that have a value are counted: so where a packing may have none.
+  bool with_packings = false;
 
   double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
 };

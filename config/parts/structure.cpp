@@ -180,7 +180,9 @@ Json written_settings(const VoronoiSettings& settings) {
 void read_settings(const Reader& in, GapsSettings& settings) {
   if (!has_keys<GapsSettings>(in, {"least_contacts", "window"})) return;
   read_numbers(in, settings);
-  in.read_whole("least_contacts", settings.least_contacts, 1, 12);
+  std::uint64_t least = 0;
+  in.read_whole("least_contacts", least, 1, 12);
+  if (least > 0) settings.least_contacts = least;
   if (const auto window = in.find("window")) {
     settings.window = read_heights(*window);
     if (window->sound() && settings.window.low <= 0)
@@ -189,7 +191,7 @@ void read_settings(const Reader& in, GapsSettings& settings) {
 }
 Json written_settings(const GapsSettings& settings) {
   Json out = written_numbers(settings);
-  out["least_contacts"] = settings.least_contacts;
+  if (settings.least_contacts) out["least_contacts"] = *settings.least_contacts;
   out["window"] = written_bounds(settings.window.low, settings.window.high);
   return out;
 }

@@ -1,6 +1,7 @@
 #include "ensemble/analysis/structure_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -75,6 +76,26 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
   name.append("_error");
   table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
                               "standard error over realizations", ""});
+}
+
+/// The packings that have a value, [n_taps, n_places].
+void add_packings_with_value(const PartPackings& part, const MeasuredQuantity& quantity,
+                             std::size_t n_places, Table& table) {
+  std::vector<std::uint64_t> counts;
+  for (const auto& realizations : part) {
+    for (std::size_t place = 0; place < n_places; ++place) {
+      counts.push_back(static_cast<std::uint64_t>(
+          std::ranges::count_if(realizations, [&](const Measurement* one) {
+            const auto* found = one != nullptr ? one->find(quantity.name) : nullptr;
+            return found != nullptr && !std::isnan(found->at(place));
+          })));
+    }
+  }
+  std::vector<std::string> axes = {"tap"};
+  if (!quantity.places.empty()) axes.emplace_back(quantity.places);
+  table.quantities.push_back({std::string(quantity.name) + "_packings", std::move(axes),
+                              std::move(counts), "1", "packings that have it, of realizations",
+                              ""});
 }
 
 Quantity number_of_packings(const PartPackings& part) {
@@ -163,6 +184,7 @@ std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStr
       for (const MeasuredQuantity* quantity : quantities) {
         const std::size_t n = quantity->places.empty() ? 1 : places.at(quantity->places).size();
         add_averages(part, *quantity, n, std::nullopt, table);
+        if (quantity->with_packings) add_packings_with_value(part, *quantity, n, table);
         if (quantity->with_change) {
           add_averages(part, *quantity, n, structure.taps.front(), table);
         }

@@ -1,5 +1,6 @@
 #include "structure/order/gaps.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -29,7 +30,35 @@ double tilted_mean(double a) {
   return 0.5 / std::tanh(0.5 * a) - 1 / a;
 }
 
+/// ln of the integral of exp(a x) over [0, 1].
+double ln_tilted_sum(double a) {
+  if (std::abs(a) < 1e-6) return 0.5 * a;
+  return std::max(a, 0.0) + std::log(-std::expm1(-std::abs(a)) / std::abs(a));
+}
+
+/// Mean of x = ln(h / low) / range, less 1/2, of gaps with a density in x as exp(a x) (1 + h)^2.
+double mean_in_shells(double a, double low, double range) {
+  // (1 + h)^2 = 1 + 2 h + h^2, and h^k is low^k exp(k range x).
+  const double ln_factors[] = {0, std::log(2 * low), 2 * std::log(low)};
+  double terms[3], largest = -std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    terms[k] = ln_factors[k] + ln_tilted_sum(a + k * range);
+    largest = std::max(largest, terms[k]);
+  }
+  double sum = 0, weights = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double weight = std::exp(terms[k] - largest);
+    weights += weight;
+    sum += weight * tilted_mean(a + k * range);
+  }
+  return sum / weights;
+}
+
 }  // namespace
+
+unsigned least_contacts_of(const Container& container) {
+  return has_gravity(container) ? 3 : 4;
+}
 
 Backbone backbone(const Packing& packing, const NeighbourTable& near, double tolerance,
                   unsigned least) {
@@ -77,12 +106,12 @@ double gap_exponent(std::span<const double> gaps, double low, double high) {
   }
   if (n < fewest) return std::numeric_limits<double>::quiet_NaN();
   const double mean = sum / static_cast<double>(n) - 0.5;
-  // Of ln h the density is as h^(1 - gamma).
+  // Of ln h the density is as h^(1 - gamma) (1 + h)^2.
   constexpr double steepest = 1e4;
   double below = -steepest, above = steepest;
   for (int turn = 0; turn < 100; ++turn) {
     const double middle = 0.5 * (below + above);
-    (tilted_mean(middle) < mean ? below : above) = middle;
+    (mean_in_shells(middle, low, range) < mean ? below : above) = middle;
   }
   return 1 - 0.5 * (below + above) / range;
 }

@@ -22,9 +22,14 @@ struct Backbone {
 Backbone backbone(const Packing& packing, const NeighbourTable& near, double tolerance,
                   unsigned least);
 
-/// The exponent gamma of gaps h whose number falls as h^-gamma between two limits, 0 < low < high,
-/// by maximum likelihood of those within: where the mean of ln h is the one observed. NaN of fewer
-/// than ten. Gaps need no order.
+/// What holds a sphere: 3 contacts where there is weight, which three supports below it balance; 4
+/// where there is none, for then forces cancel only around a sphere that contacts enclose.
+unsigned least_contacts_of(const Container& container);
+
+/// The exponent gamma of a g(1 + h) that falls as h^-gamma between two limits, 0 < low < high, of
+/// gaps h: their number falls as h^-gamma (1 + h)^2, the shell's area, and gamma is that of maximum
+/// likelihood of those within, where the mean of ln h is the one observed. NaN of fewer than ten.
+/// Gaps need no order.
 double gap_exponent(std::span<const double> gaps, double low, double high);
 
 }  // namespace jostle::inline structure

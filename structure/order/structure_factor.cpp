@@ -28,6 +28,9 @@ struct Cut {
   double widths[3];
   double low;
   bool tapered;
+
+  /// The least k that the taper resolves.
+  double least_k() const { return tapered ? turn / widths[2] * (1 - 1e-12) : 0; }
 };
 
 Cut cut_of(const Packing& packing, const Region& region) {
@@ -62,7 +65,7 @@ std::vector<std::vector<Mode>> chosen_modes(const Cut& cut, const StructureFacto
       for (int z = upright ? 1 : -most[2]; z <= most[2]; ++z) {
         const double k = turn * std::hypot(x / cut.widths[0], y / cut.widths[1], z / cut.widths[2]);
         const auto bin = static_cast<std::size_t>(k / settings.bin_width);
-        if (bin < n_bins) bins[bin].push_back({x, y, z, k});
+        if (bin < n_bins && k >= cut.least_k()) bins[bin].push_back({x, y, z, k});
       }
     }
   }
@@ -169,6 +172,8 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
   }
   out.s_0_of_squares = of_squares.value();
   out.s_0_of_line = of_line.value();
+  out.fitted_from = small.empty() ? nan : small.front().first;
+  out.fitted_modes = small.size();
   return out;
 }
 

@@ -26,6 +26,8 @@ struct StructureFactor {
   /// k^2, as of fluids and solids with sound, and in k, as of jammed disordered packings. NaN with
   /// fewer than three different k.
   double s_0_of_squares, s_0_of_line;
+  double fitted_from;          // least k of those wave vectors; NaN without any
+  std::uint64_t fitted_modes;  // how many they are
 };
 
 /// S(k) = |sum_j w(z_j) exp(-i k . r_j)|^2 / sum_j w(z_j)^2 (Hansen & McDonald, Theory of Simple
@@ -34,8 +36,8 @@ struct StructureFactor {
 /// w = 1. With a floor the spheres between the region's heights are taken with Hann's taper w =
 /// sin^2(pi (z - low)/(high - low)) and k_z = 2 pi n_z / (high - low), and k_x and k_y are not both
 /// 0: the mean profile of a bed then adds nothing. The taper smears k_z by about 2 pi / (high -
-/// low), the least k that means something. Throws std::invalid_argument where sides are walls or a
-/// cylinder, and where the region holds no sphere.
+/// low): wave vectors shorter than that are left out. Throws std::invalid_argument where sides are
+/// walls or a cylinder, and where the region holds no sphere.
 StructureFactor structure_factor(const Packing& packing, const StructureFactorSettings& settings,
                                  const Region& region);
 

@@ -37,15 +37,32 @@ double reach(const VoronoiCells& cells, std::uint32_t largest) {
   return 1.5 * std::cbrt(3 * largest * (volume / whole) / (4 * std::numbers::pi)) + 1;
 }
 
+/// Sum over clusters of (V - mean V)^2 is v' A' (1 - 1 1'/m) A v with the matrix A of what cells v
+/// the m clusters have: with n cells each its mean is the variance of v times m n - sum of c^2 / m,
+/// where a cell is in c clusters.
+double independent_variance(const std::vector<std::uint32_t>& members, double n) {
+  double sum = 0, squares = 0;
+  for (const double c : members) {
+    sum += c;
+    squares += c * c;
+  }
+  const double clusters = sum / n;
+  const double apart = clusters * clusters * n - squares;
+  return apart > 0 ? apart / (clusters * (clusters - 1) * n)
+                   : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells,
                                std::uint32_t largest,
                                const std::function<bool(std::uint32_t)>& around) {
   largest = std::min(largest, static_cast<std::uint32_t>(cells.size() / 2));
-  ClusterVolumes found{.cells = sizes(largest), .mean = {}, .variance = {}, .clusters = {}};
+  ClusterVolumes found{
+      .cells = sizes(largest), .mean = {}, .variance = {}, .independent = {}, .clusters = {}};
   const std::size_t n_sizes = found.cells.size();
   std::vector<std::vector<double>> volumes(n_sizes);
+  std::vector clusters_of(n_sizes, std::vector<std::uint32_t>(cells.size(), 0));
   const NeighbourFinder finder(packing, reach(cells, largest));
   std::vector<std::uint32_t> member_of(cells.size(), 0);  // the last cluster's number
   std::vector<std::pair<double, std::uint32_t>> near;     // distance squared, sphere
@@ -64,10 +81,13 @@ ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells
       if (cells.cut[j] != 0 || member_of[j] == number) break;
       member_of[j] = number;
       volume += cells.volumes[j] / sphere_volume;
-      if (k + 1 == found.cells[size]) volumes[size++].push_back(volume);
+      if (k + 1 != found.cells[size]) continue;
+      for (std::size_t member = 0; member <= k; ++member) ++clusters_of[size][near[member].second];
+      volumes[size++].push_back(volume);
     }
   }
-  for (const std::vector<double>& of_size : volumes) {
+  for (std::size_t size = 0; size < n_sizes; ++size) {
+    const std::vector<double>& of_size = volumes[size];
     const auto n = static_cast<double>(of_size.size());
     double sum = 0, squares = 0;
     for (const double volume : of_size) sum += volume;
@@ -75,6 +95,7 @@ ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     found.mean.push_back(n > 0 ? sum / n : none);
     found.variance.push_back(n > 1 ? squares / (n - 1) : none);
+    found.independent.push_back(independent_variance(clusters_of[size], found.cells[size]));
     found.clusters.push_back(of_size.size());
   }
   return found;

@@ -11,8 +11,12 @@ namespace jostle::inline structure {
 
 /// Volumes of clusters of n cells, over the cells that they are around.
 struct ClusterVolumes {
-  std::vector<std::uint32_t> cells;     // n, ascending: 1, 2, 3, 4, 6, 8, 12, 16, 24, ...
-  std::vector<double> mean, variance;   // [n_sizes], sphere volumes, and squared
+  std::vector<std::uint32_t> cells;    // n, ascending: 1, 2, 3, 4, 6, 8, 12, 16, 24, ...
+  std::vector<double> mean, variance;  // [n_sizes], sphere volumes, and squared
+  /// What `variance` would be in the mean if volumes of cells were independent of each other, or
+  /// dealt out anew among the cells, over n times the variance of one: 1 but for cells that
+  /// clusters share. [n_sizes], NaN where all clusters are one and the same.
+  std::vector<double> independent;
   std::vector<std::uint64_t> clusters;  // [n_sizes]
 };
 

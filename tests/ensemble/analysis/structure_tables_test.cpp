@@ -62,6 +62,25 @@ EnsembleStructure three_curves(const char* part, const char* places, const char*
 
 }  // namespace
 
+TEST_CASE("A mean says of how many packings it is, where some may have no value") {
+  EnsembleStructure structure{.taps = {0, 10}, .packings = {}};
+  const auto with = [](double value) {
+    Measurement one{.part = "gaps"};
+    one.quantities = {{.name = "z", .values = {value}, .with_packings = true},
+                      {.name = "rattlers", .values = {1}}};
+    return std::vector{one};
+  };
+  structure.packings = {{with(6), with(nan), with(7)}, {with(nan), with(nan), {}}};
+  const Table table = structure_tables("", structure, {}).at(0);
+  CHECK(numbers(table, "z")[0] == 6.5);
+  CHECK(std::isnan(numbers(table, "z")[1]));
+  CHECK(std::get<std::vector<std::uint64_t>>(quantity(table, "z_packings").values) ==
+        std::vector<std::uint64_t>{2, 0});
+  CHECK(std::get<std::vector<std::uint64_t>>(quantity(table, "realizations").values) ==
+        std::vector<std::uint64_t>{3, 2});
+  for (const Quantity& one : table.quantities) CHECK(one.name != "rattlers_packings");
+}
+
 TEST_CASE("Averages over packings of unequal height, with the errors of realizations") {
   EnsembleStructure structure;
   structure.taps = {0, 10};

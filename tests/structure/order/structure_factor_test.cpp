@@ -114,6 +114,32 @@ TEST_CASE("S of random points is 1, also within a taper") {
   }
 }
 
+TEST_CASE("Wave vectors that the taper cannot resolve are left out") {
+  RandomStream random(stream_key(20261125, 3, 0, Purpose::start));
+  const Packing bed = random_points(PeriodicBox{20, 20}, 8, 1600, random);
+  constexpr double depth = 6, least = 2 * pi / depth;  // 1.047; the sides' least is 0.314
+  const StructureFactor found =
+      structure_factor(bed, {.k_max = 4, .bin_width = 0.1, .modes = 1'000'000}, {1, 7, 0});
+  for (std::size_t b = 0; b < 10; ++b) CHECK(found.modes[b] == 0);
+  CHECK(found.fitted_from >= least * (1 - 1e-9));
+  CHECK(found.fitted_from < 1.1 * least);
+  std::uint64_t modes = 0;
+  for (std::size_t b = 0; b < 30; ++b) modes += found.modes[b];
+  CHECK(found.fitted_modes == modes);
+  // Without a taper every wave vector counts.
+  Packing box = bed;
+  box.container = FullyPeriodicBox{20, 20, 8};
+  const StructureFactor whole =
+      structure_factor(box, {.k_max = 4, .bin_width = 0.1, .modes = 1'000'000}, {0, 8, 0});
+  CHECK(whole.fitted_from == Approx(2 * pi / 20));
+  CHECK(whole.modes[3] > 0);
+  // A region so shallow that it resolves nothing up to fit_to.
+  const StructureFactor shallow = structure_factor(bed, {.k_max = 8, .fit_to = 3}, {3, 5, 0});
+  CHECK(shallow.fitted_modes == 0);
+  CHECK(std::isnan(shallow.fitted_from));
+  CHECK(std::isnan(shallow.s_0_of_line));
+}
+
 TEST_CASE("A crystal has Bragg peaks and nothing else") {
   const Packing crystal = stacked_layers("ABCABCABCABC");
   const StructureFactor below =

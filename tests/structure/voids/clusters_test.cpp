@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "engine/bed/boundary.hpp"
@@ -95,6 +96,58 @@ TEST_CASE("The variance of clusters of independent cells grows as their number")
     CAPTURE(n, found.variance[k]);
     CHECK(std::abs(found.variance[k] / n - 1) < 3 * error);
   }
+}
+
+TEST_CASE("Cells dealt out anew have the variance that is given for independent ones") {
+  // The whole of a closed box, and an open region of some 190 cells.
+  const Packing closed = poisson_points(), bed = reference_deposit();
+  const auto everywhere = [](std::uint32_t) { return true; };
+  const auto inside = [&](std::uint32_t i) {
+    const Vec3 r = bed.centres[i];
+    return r.z > 3 && r.z < 8.6 && r.x < 5.6 && r.y < 5.6;
+  };
+  RandomStream random(stream_key(20261125, 4, 0, Purpose::resampling));
+  const auto check = [&](const Packing& packing, const std::function<bool(std::uint32_t)>& around) {
+    VoronoiCells cells = voronoi_cells(packing);
+    std::vector<std::uint32_t> whole;
+    for (std::uint32_t i = 0; i < cells.size(); ++i)
+      if (cells.cut[i] == 0) whole.push_back(i);
+    double sum = 0, squares = 0;  // of all that are dealt out, in sphere volumes
+    for (const std::uint32_t i : whole) sum += cells.volumes[i] / sphere_volume;
+    const double mean = sum / static_cast<double>(whole.size());
+    for (const std::uint32_t i : whole)
+      squares += std::pow(cells.volumes[i] / sphere_volume - mean, 2);
+    const double variance = squares / (static_cast<double>(whole.size()) - 1);
+    constexpr int deals = 100;
+    std::vector<double> sums, sums_of_squares;
+    std::vector<double> expected;
+    for (int deal = 0; deal < deals; ++deal) {
+      for (std::size_t k = whole.size(); k > 1; --k)
+        std::swap(cells.volumes[whole[k - 1]], cells.volumes[whole[random.below(k)]]);
+      const ClusterVolumes found = cluster_volumes(packing, cells, 48, around);
+      expected = found.independent;
+      sums.resize(expected.size());
+      sums_of_squares.resize(expected.size());
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        const double ratio = found.variance[k] / found.cells[k] / variance;
+        sums[k] += ratio;
+        sums_of_squares[k] += ratio * ratio;
+      }
+    }
+    CHECK(expected[0] == Approx(1));
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      const double ratio = sums[k] / deals;
+      const double error = std::sqrt((sums_of_squares[k] / deals - ratio * ratio) / (deals - 1));
+      CAPTURE(k, ratio, error, expected[k]);
+      CHECK(std::abs(ratio - expected[k]) <= 3 * error + 1e-12);
+    }
+    return expected;
+  };
+  const std::vector<double> box = check(closed, everywhere);
+  // n = 32: some n/N less than 1, or more where clusters crowd.
+  CHECK(box[9] == Approx(1 - 32.0 / static_cast<double>(closed.centres.size())).margin(0.03));
+  const std::vector<double> open = check(bed, inside);
+  CHECK(open[7] < 0.97);  // of 16 cells
 }
 
 TEST_CASE("Clusters stop at half of all spheres") {
