@@ -18,10 +18,46 @@ std::array<double, n_directions> along(Vec3 d) {
   return {d.x, d.y, d.z};
 }
 
-/// Sums over the spheres of a layer.
-struct LayerSums {
-  double n = 0, settling = 0;
-  std::array<double, n_directions> squares{};
+/// Sums over the spheres of the bed, or of a layer.
+struct Sums {
+  explicit Sums(std::size_t n_lengths) : lateral_overlap(n_lengths), overlap(n_lengths) {}
+
+  double n = 0, lateral_quartic = 0, vertical_quartic = 0;
+  std::array<double, n_directions> steps{}, squares{};
+  std::vector<double> lateral_overlap, overlap;
+
+  void add(const std::array<double, n_directions>& d, std::span<const double> lengths) {
+    n += 1;
+    for (std::size_t k = 0; k < n_directions; ++k) {
+      steps[k] += d[k];
+      squares[k] += d[k] * d[k];
+    }
+    const double lateral = d[0] * d[0] + d[1] * d[1];
+    lateral_quartic += lateral * lateral;
+    for (std::size_t a = 0; a < lengths.size(); ++a) {
+      const double within = lengths[a] * lengths[a];
+      lateral_overlap[a] += lateral < within ? 1 : 0;
+      overlap[a] += lateral + d[2] * d[2] < within ? 1 : 0;
+    }
+  }
+  Sums& operator+=(const Sums& other) {
+    n += other.n;
+    lateral_quartic += other.lateral_quartic;
+    for (std::size_t k = 0; k < n_directions; ++k) {
+      steps[k] += other.steps[k];
+      squares[k] += other.squares[k];
+    }
+    for (std::size_t a = 0; a < overlap.size(); ++a) {
+      lateral_overlap[a] += other.lateral_overlap[a];
+      overlap[a] += other.overlap[a];
+    }
+    return *this;
+  }
+  /// Once all spheres are added.
+  void add_about_mean(double dz) {
+    const double about_mean = dz - steps[2] / n;
+    vertical_quartic += about_mean * about_mean * about_mean * about_mean;
+  }
 };
 
 /// The image of a wrapped coordinate that is nearest to where the sphere was.
@@ -61,6 +97,8 @@ std::size_t n_places(MotionPlaces places, const MotionSettings& settings) {
       return settings.layers;
     case MotionPlaces::layer_directions:
       return n_directions * settings.layers;
+    case MotionPlaces::layer_overlap_lengths:
+      return settings.overlap_lengths.size() * settings.layers;
   }
   return 0;
 }
@@ -106,46 +144,41 @@ std::vector<std::uint32_t> layers_of(std::span<const double> heights, std::uint3
   return layers;
 }
 
+std::vector<std::uint64_t> layer_sizes(std::uint64_t n_spheres, std::uint32_t n_layers) {
+  std::vector<std::uint64_t> sizes(n_layers);
+  // Layer k begins at the least rank r with r n_layers >= k n_spheres.
+  const auto first = [&](std::uint64_t k) { return (k * n_spheres + n_layers - 1) / n_layers; };
+  for (std::uint32_t k = 0; k < n_layers; ++k) sizes[k] = first(k + 1) - first(k);
+  return sizes;
+}
+
 std::vector<double> motion_values(const MotionSettings& settings, std::span<const Vec3> reference,
                                   std::span<const Vec3> now,
                                   std::span<const std::uint32_t> layers) {
   assert(reference.size() == now.size() && layers.size() == now.size());
-  const auto n = static_cast<double>(now.size());
-  std::array<double, n_directions> sums{}, squares{};
-  double lateral_quartic = 0, vertical_quartic = 0;
-  std::vector<double> lateral_overlap(settings.overlap_lengths.size()),
-      overlap(settings.overlap_lengths.size());
-  std::vector<LayerSums> of_layers(settings.layers);
+  const std::vector<double>& lengths = settings.overlap_lengths;
+  Sums bed(lengths.size());
+  std::vector<Sums> of_layers(settings.layers, Sums(lengths.size()));
   for (std::size_t i = 0; i < now.size(); ++i) {
-    const auto d = along(now[i] - reference[i]);
-    LayerSums& layer = of_layers[layers[i]];
-    for (std::size_t k = 0; k < n_directions; ++k) {
-      sums[k] += d[k];
-      squares[k] += d[k] * d[k];
-      layer.squares[k] += d[k] * d[k];
-    }
-    layer.n += 1;
-    layer.settling += d[2];
-    const double lateral = d[0] * d[0] + d[1] * d[1];
-    lateral_quartic += lateral * lateral;
-    for (std::size_t a = 0; a < overlap.size(); ++a) {
-      const double within = settings.overlap_lengths[a] * settings.overlap_lengths[a];
-      lateral_overlap[a] += lateral < within ? 1 : 0;
-      overlap[a] += lateral + d[2] * d[2] < within ? 1 : 0;
-    }
+    of_layers[layers[i]].add(along(now[i] - reference[i]), lengths);
   }
+  for (const Sums& layer : of_layers) bed += layer;
   for (std::size_t i = 0; i < now.size(); ++i) {
-    const double about_mean = now[i].z - reference[i].z - sums[2] / n;
-    vertical_quartic += about_mean * about_mean * about_mean * about_mean;
+    bed.add_about_mean(now[i].z - reference[i].z);
+    of_layers[layers[i]].add_about_mean(now[i].z - reference[i].z);
   }
   std::vector<double> values;  // in the order of motion_quantities
-  append(values, sums, n);
-  append(values, squares, n);
-  append(values, {{lateral_quartic, vertical_quartic}}, n);
-  append(values, lateral_overlap, n);
-  append(values, overlap, n);
-  for (const LayerSums& layer : of_layers) values.push_back(layer.settling / layer.n);
-  for (const LayerSums& layer : of_layers) append(values, layer.squares, layer.n);
+  append(values, bed.steps, bed.n);
+  append(values, bed.squares, bed.n);
+  append(values, {{bed.lateral_quartic, bed.vertical_quartic}}, bed.n);
+  append(values, bed.lateral_overlap, bed.n);
+  append(values, bed.overlap, bed.n);
+  for (const Sums& layer : of_layers) values.push_back(layer.steps[2] / layer.n);
+  for (const Sums& layer : of_layers) append(values, layer.squares, layer.n);
+  for (const Sums& layer : of_layers) values.push_back(layer.lateral_quartic / layer.n);
+  for (const Sums& layer : of_layers) values.push_back(layer.vertical_quartic / layer.n);
+  for (const Sums& layer : of_layers) append(values, layer.lateral_overlap, layer.n);
+  for (const Sums& layer : of_layers) append(values, layer.overlap, layer.n);
   return values;
 }
 

@@ -29,7 +29,14 @@ struct MotionSettings {
 };
 
 /// What a quantity has a value for each of.
-enum class MotionPlaces { none, directions, overlap_lengths, layers, layer_directions };
+enum class MotionPlaces {
+  none,
+  directions,
+  overlap_lengths,
+  layers,
+  layer_directions,
+  layer_overlap_lengths
+};
 
 /// An average over the spheres of a bed, or of a layer, of their displacements r(t_W + t) - r(t_W).
 struct MotionQuantity {
@@ -55,7 +62,15 @@ inline constexpr MotionQuantity motion_quantities[] = {
     {"layer_settling", MotionPlaces::layers, "diameter",
      "mean vertical displacement of the layer over the lag", ""},
     {"layer_square_displacement", MotionPlaces::layer_directions, "diameter^2",
-     "mean square displacement of the layer over the lag along x, y, z", ""}};
+     "mean square displacement of the layer over the lag along x, y, z", ""},
+    {"layer_lateral_quartic", MotionPlaces::layers, "diameter^4",
+     "mean fourth power of the lateral displacement of the layer", ""},
+    {"layer_vertical_quartic", MotionPlaces::layers, "diameter^4",
+     "mean fourth power of the vertical displacement of the layer about its mean", ""},
+    {"layer_lateral_overlap", MotionPlaces::layer_overlap_lengths, "1",
+     "fraction of spheres of the layer that moved less than overlap_length sideways", ""},
+    {"layer_overlap", MotionPlaces::layer_overlap_lengths, "1",
+     "fraction of spheres of the layer that moved less than overlap_length", ""}};
 
 /// Values of a quantity at one origin and lag.
 std::size_t n_places(MotionPlaces places, const MotionSettings& settings);
@@ -97,6 +112,9 @@ std::vector<double> heights_of(std::span<const Vec3> centres, const Container& c
 /// Of every sphere the layer, 0 the lowest, by its height: ranks r of n spheres with
 /// floor(r n_layers / n) equal make a layer. Equal heights are ranked by their numbers.
 std::vector<std::uint32_t> layers_of(std::span<const double> heights, std::uint32_t n_layers);
+
+/// Spheres of each layer of n: [n_layers].
+std::vector<std::uint64_t> layer_sizes(std::uint64_t n_spheres, std::uint32_t n_layers);
 
 /// Averages over spheres at one origin and lag: [n_motion_values]. `layers` of the reference.
 std::vector<double> motion_values(const MotionSettings& settings, std::span<const Vec3> reference,

@@ -32,6 +32,9 @@ Shape shape_of_quantity(const MotionQuantity& quantity, const MotionRecords& rec
     case MotionPlaces::layer_directions:
       shape.insert(shape.end(), {settings.layers, n_directions});
       break;
+    case MotionPlaces::layer_overlap_lengths:
+      shape.insert(shape.end(), {settings.layers, settings.overlap_lengths.size()});
+      break;
   }
   shape.push_back(records.n_realizations);
   return shape;
@@ -86,6 +89,9 @@ class Writer {
         break;
       case MotionPlaces::layer_directions:
         axes.insert(axes.end(), {&layers_, &directions_});
+        break;
+      case MotionPlaces::layer_overlap_lengths:
+        axes.insert(axes.end(), {&layers_, &lengths_});
         break;
     }
     axes.push_back(&realizations_);

@@ -100,6 +100,39 @@ std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::siz
                       vertical_squares(records, origin, lag), 3);
 }
 
+std::vector<double> layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                               std::size_t lag, std::size_t layer) {
+  const auto n =
+      static_cast<double>(layer_sizes(records.n_spheres, records.settings.layers)[layer]);
+  return non_gaussian(records.row("layer_lateral_quartic", origin, lag, layer),
+                      layer_lateral_squares(records, origin, lag, layer), 2 * n / (n + 1));
+}
+
+std::vector<double> layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                                std::size_t lag, std::size_t layer) {
+  const auto n =
+      static_cast<double>(layer_sizes(records.n_spheres, records.settings.layers)[layer]);
+  return non_gaussian(records.row("layer_vertical_quartic", origin, lag, layer),
+                      layer_vertical_squares(records, origin, lag, layer), 3 * (n - 1) / (n + 1));
+}
+
+std::vector<double> independent_susceptibility(const MotionRecords& records,
+                                               std::string_view overlap, std::size_t origin,
+                                               std::size_t lag, std::size_t length) {
+  const std::size_t n_lengths = records.settings.overlap_lengths.size();
+  const auto sizes = layer_sizes(records.n_spheres, records.settings.layers);
+  std::vector<double> sums(records.n_realizations, 0.0);
+  for (std::size_t layer = 0; layer < sizes.size(); ++layer) {
+    if (sizes[layer] == 0) continue;
+    const auto n = static_cast<double>(sizes[layer]);
+    const auto row = records.row(overlap, origin, lag, n_lengths * layer + length);
+    for (std::size_t r = 0; r < row.size(); ++r)
+      sums[r] += n > 1 ? n * row[r] * (1 - row[r]) * n / (n - 1) : nan;
+  }
+  for (double& sum : sums) sum /= records.n_spheres;
+  return sums;
+}
+
 LogEstimate four_point_susceptibility(std::span<const double> overlaps, std::uint32_t n_spheres) {
   LogEstimate found = variance_estimate(overlaps);
   const double n = n_spheres, q = mean_estimate(overlaps).value;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "ensemble/motion/motion_records.hpp"
@@ -37,9 +38,26 @@ std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size
 /// <z^4> / (3 <z^2>^2) - 1 of vertical displacements z about their mean.
 std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
                                           std::size_t lag);
+/// The same of the spheres of a layer, about its own mean. Of n Gaussian displacements the ratios
+/// are low by 1/(n + 1) and 2/(n + 1) in the mean: here they are taken times (n + 1)/n and (n +
+/// 1)/(n - 1), so that they read 0.
+std::vector<double> layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                               std::size_t lag, std::size_t layer);
+std::vector<double> layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                                std::size_t lag, std::size_t layer);
+
+/// chi_4 of spheres that move independently of each other, and alike within layers: the mean over
+/// spheres of Q_l (1 - Q_l) n_l/(n_l - 1), Q_l the fraction of the n_l spheres of their layer that
+/// have moved less than a (the last factor undoes what the few spheres of a layer take off). No
+/// more than Q (1 - Q) of the whole bed, which takes differences of layers for a wider scatter.
+/// `overlap`: layer_lateral_overlap or layer_overlap. No number with a sphere alone in its layer.
+std::vector<double> independent_susceptibility(const MotionRecords& records,
+                                               std::string_view overlap, std::size_t origin,
+                                               std::size_t lag, std::size_t length);
 
 /// chi_4 = N Var(Q), the variance over realizations (of M - 1) of the fraction Q of N spheres that
-/// have moved less than a: Q (1 - Q) for spheres that move independently of each other. Intervals
+/// have moved less than a; independent_susceptibility() for spheres that move independently of each
+/// other. Intervals
 /// of chi2, exact where Q is normal over realizations: so none where fewer spheres than
 /// `fewest_spheres` have moved, or stayed, in the mean, or fewer than one group in two
 /// realizations; a group has chi_4 / (Q (1 - Q)) spheres. After Dauchot et al. 2005,

@@ -220,13 +220,14 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
   table.add_places("overlap_length", records.settings.overlap_lengths, "diameter",
                    "largest displacement a");
   struct Kind {
-    const char *row, *of, *chi_4, *of_chi_4, *independent;
+    const char *row, *of, *chi_4, *of_chi_4, *independent, *of_layers;
   };
   constexpr Kind kinds[] = {
       {"lateral_overlap", "fraction of spheres that moved less than a sideways", "lateral_chi_4",
-       "N times the variance over realizations of lateral_overlap", "lateral_chi_4_independent"},
+       "N times the variance over realizations of lateral_overlap", "lateral_chi_4_independent",
+       "layer_lateral_overlap"},
       {"overlap", "fraction of spheres that moved less than a, settling included", "chi_4",
-       "N times the variance over realizations of overlap", "chi_4_independent"}};
+       "N times the variance over realizations of overlap", "chi_4_independent", "layer_overlap"}};
   for (const Kind& kind : kinds) {
     const auto row = [&](std::size_t o, std::size_t l, std::size_t length) {
       return records.row(kind.row, o, l, length);
@@ -239,13 +240,13 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
                         [&](std::size_t o, std::size_t l, std::size_t length) {
                           return four_point_susceptibility(row(o, l, length), records.n_spheres);
                         });
-    table.add_means_of({kind.independent, "1",
-                        "chi_4 of spheres that move independently and alike, Q (1 - Q)", ""},
-                       [&](std::size_t o, std::size_t l, std::size_t length) {
-                         std::vector<double> values = copy(row(o, l, length));
-                         for (double& q : values) q *= 1 - q;
-                         return values;
-                       });
+    table.add_means_of(
+        {kind.independent, "1",
+         "chi_4 of spheres that move independently, and alike within layers: mean of Q_l (1 - Q_l)",
+         ""},
+        [&](std::size_t o, std::size_t l, std::size_t length) {
+          return independent_susceptibility(records, kind.of_layers, o, l, length);
+        });
   }
   table.add_count();
   return table.take();
@@ -273,6 +274,16 @@ Table layer_table(const std::string& prefix, const MotionRecords& records) {
                       "mean square vertical displacement about the layer's mean", ""},
                      [&](std::size_t o, std::size_t l, std::size_t layer) {
                        return layer_vertical_squares(records, o, l, layer);
+                     });
+  table.add_means_of({"lateral_non_gaussian", "1",
+                      "<r^4> / (2 <r^2>^2) - 1, sideways, within the layer; 0 if Gaussian", rahman},
+                     [&](std::size_t o, std::size_t l, std::size_t layer) {
+                       return layer_lateral_non_gaussian(records, o, l, layer);
+                     });
+  table.add_means_of({"vertical_non_gaussian", "1",
+                      "<z^4> / (3 <z^2>^2) - 1, about the layer's mean; 0 if Gaussian", rahman},
+                     [&](std::size_t o, std::size_t l, std::size_t layer) {
+                       return layer_vertical_non_gaussian(records, o, l, layer);
                      });
   return table.take();
 }

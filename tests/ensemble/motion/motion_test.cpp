@@ -116,6 +116,25 @@ void check_bed(const MotionRecords& found, const std::vector<Vec3>& moved, std::
   }
 }
 
+void check_layer_shapes(const MotionRecords& found, const std::vector<Vec3>& moved, std::size_t o,
+                        std::size_t l, std::size_t layer) {
+  const double settling = mean(moved, [](Vec3 d) { return d.z; });
+  const auto lateral = [](Vec3 d) { return std::hypot(d.x, d.y); };
+  CHECK(found.row("layer_lateral_quartic", o, l, layer)[0] ==
+        Approx(mean(moved, [&](Vec3 d) { return std::pow(lateral(d), 4); })).margin(1e-12));
+  CHECK(found.row("layer_vertical_quartic", o, l, layer)[0] ==
+        Approx(mean(moved, [&](Vec3 d) { return std::pow(d.z - settling, 4); })).margin(1e-12));
+  const auto& lengths = found.settings.overlap_lengths;
+  for (std::size_t a = 0; a < lengths.size(); ++a) {
+    const std::size_t place = lengths.size() * layer + a;
+    CHECK(found.row("layer_lateral_overlap", o, l, place)[0] ==
+          Approx(mean(moved, [&](Vec3 d) { return lateral(d) < lengths[a] ? 1.0 : 0.0; })));
+    CHECK(found.row("layer_overlap", o, l, place)[0] == Approx(mean(moved, [&](Vec3 d) {
+            return std::hypot(d.x, d.y, d.z) < lengths[a] ? 1.0 : 0.0;
+          })));
+  }
+}
+
 void check_layers(const MotionRecords& found, const Twin& twin, const std::vector<Vec3>& moved,
                   std::size_t o, std::size_t l) {
   const std::uint64_t origin = found.settings.origins[o];
@@ -138,6 +157,7 @@ void check_layers(const MotionRecords& found, const Twin& twin, const std::vecto
           Approx(mean(of_layer, [](Vec3 d) { return d.x * d.x; })).margin(1e-12));
     CHECK(found.row("layer_square_displacement", o, l, 3 * k + 2)[0] ==
           Approx(mean(of_layer, [](Vec3 d) { return d.z * d.z; })).margin(1e-12));
+    check_layer_shapes(found, of_layer, o, l, k);
   }
 }
 
@@ -297,4 +317,14 @@ TEST_CASE("More taps later give what they give at once") {
   CHECK(resumed.state().motion == straight.state().motion);
   CHECK(straight.state().motion->origins.size() == 3);
   CHECK(straight.state().motion->origins[1].values.size() == 3 * n_motion_values(*longer.motion));
+}
+
+TEST_CASE("Layers have the sizes of their spheres' ranks") {
+  for (const std::uint64_t n : {1u, 7u, 48u, 100u})
+    for (const std::uint32_t n_layers : {1u, 3u, 7u, 12u}) {
+      std::vector<std::uint64_t> counted(n_layers);
+      for (const std::uint32_t layer : layers_of(std::vector<double>(n), n_layers))
+        ++counted[layer];
+      CHECK(layer_sizes(n, n_layers) == counted);
+    }
 }

@@ -11,6 +11,7 @@
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/noise.hpp"
+#include "tests/ensemble/synthetic_series.hpp"
 
 // How often what is printed of the motion holds the truth, over ensembles of 3 to 20 realizations
 // of spheres that move alone or in groups.
@@ -102,7 +103,89 @@ std::vector<double> overlaps(std::size_t realizations, std::size_t group, double
   return row;
 }
 
+/// Spheres that move alone, Gaussian steps, those of each layer alike and `ratio` times as far as
+/// those of the layer below. One waiting time and lag.
+MotionRecords sheared(std::size_t realizations, std::uint32_t spheres, std::uint32_t layers,
+                      double ratio, synthetic::Gaussian& gaussian) {
+  const MotionSettings settings{
+      .origins = {0}, .lags = {1}, .overlap_lengths = {0.1}, .layers = layers};
+  MotionRecords records(settings, spheres, static_cast<std::uint32_t>(realizations));
+  const std::vector<std::uint32_t> of_sphere = layers_of(std::vector<double>(spheres), layers);
+  for (std::uint32_t r = 0; r < realizations; ++r) {
+    MotionOrigin origin;
+    origin.centres.resize(spheres);
+    std::vector<Vec3> now(spheres);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double step = 0.01 * std::pow(ratio, of_sphere[i]);
+      now[i] = {step * gaussian(), step * gaussian(), step * (gaussian() - 1)};
+    }
+    origin.values = motion_values(settings, origin.centres, now, of_sphere);
+    MotionState state;
+    state.origins.push_back(std::move(origin));
+    records.add(r, state, PeriodicBox{8, 8});
+  }
+  return records;
+}
+
 }  // namespace
+
+TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken for groups") {
+  constexpr std::uint32_t layers = 8;
+  constexpr double ratio = 1.6;
+  synthetic::Gaussian gaussian(20261125, 45);
+  // Of the truth: p of a layer that a lateral step is less than 0.1.
+  double truth = 0, stay = 0;
+  for (std::uint32_t k = 0; k < layers; ++k) {
+    const double step = 0.01 * std::pow(ratio, k), p = 1 - std::exp(-0.005 / (step * step));
+    truth += p * (1 - p) / layers;
+    stay += p / layers;
+  }
+  REQUIRE(stay * (1 - stay) > 2 * truth);            // what the whole bed would give
+  for (const std::uint32_t spheres : {40u, 400u}) {  // 5 and 50 a layer
+    CAPTURE(spheres);
+    Moments independent, of_bed, chi_4, lateral, vertical, lateral_of_bed, vertical_of_bed;
+    const int ensembles = 400;
+    for (int e = 0; e < ensembles; ++e) {
+      const MotionRecords records = sheared(4, spheres, layers, ratio, gaussian);
+      for (const double one : independent_susceptibility(records, "layer_lateral_overlap", 0, 0, 0))
+        independent.add(one);
+      for (const double q : records.row("lateral_overlap", 0, 0)) of_bed.add(q * (1 - q));
+      chi_4.add(four_point_susceptibility(records.row("lateral_overlap", 0, 0), spheres).value);
+      for (std::uint32_t k = 0; k < layers; ++k) {
+        for (const double one : layer_lateral_non_gaussian(records, 0, 0, k)) lateral.add(one);
+        for (const double one : layer_vertical_non_gaussian(records, 0, 0, k)) vertical.add(one);
+      }
+      for (const double one : lateral_non_gaussian(records, 0, 0)) lateral_of_bed.add(one);
+      for (const double one : vertical_non_gaussian(records, 0, 0)) vertical_of_bed.add(one);
+    }
+    CHECK(std::abs(independent.mean() - truth) <= 3 * independent.standard_error());
+    CHECK(std::abs(chi_4.mean() - truth) <= 3 * chi_4.standard_error());
+    CHECK(of_bed.mean() > 2 * truth);
+    CHECK(std::abs(lateral.mean()) <= 3 * lateral.standard_error());
+    CHECK(std::abs(vertical.mean()) <= 3 * vertical.standard_error());
+    CHECK(lateral_of_bed.mean() > 0.5);
+    CHECK(vertical_of_bed.mean() > 0.5);
+  }
+  // One layer is the whole bed; a sphere alone in its layer says nothing.
+  const MotionRecords one = sheared(1, 200, 1, 1, gaussian);
+  const double q = one.row("lateral_overlap", 0, 0)[0];
+  CHECK(independent_susceptibility(one, "layer_lateral_overlap", 0, 0, 0)[0] ==
+        Approx(q * (1 - q) * 200 / 199));
+  const MotionRecords alone = sheared(1, 8, 8, 1.1, gaussian);
+  CHECK(std::isnan(independent_susceptibility(alone, "layer_overlap", 0, 0, 0)[0]));
+}
+
+TEST_CASE("Groups that move together are above the reference of layers") {
+  RandomStream random = test_stream(46);
+  Moments chi_4, reference;
+  for (int e = 0; e < 200; ++e) {
+    const MotionRecords records = walks(4, 16, false, 1, random);
+    chi_4.add(four_point_susceptibility(records.row("lateral_overlap", 0, 2), n_spheres).value);
+    for (const double one : independent_susceptibility(records, "layer_lateral_overlap", 0, 2, 0))
+      reference.add(one);
+  }
+  CHECK(chi_4.mean() > 10 * reference.mean());
+}
 
 TEST_CASE("Quantiles of chi2 are those of its tail and of tables") {
   CHECK(chi_squared_quantile(0.95, 1) == Approx(3.841458820694124));
