@@ -202,7 +202,8 @@ class Pilot {
             .start = scale * start_time,
             .realization = scale * (start_time + taps_time),
             .bytes = static_cast<std::size_t>(
-                scale * (static_cast<double>(dynamics_->bytes()) + observed))};
+                         scale * (static_cast<double>(dynamics_->bytes()) + observed)) +
+                     (plan_.motion ? motion_bytes(*plan_.motion, plan_.n_spheres) : 0)};
   }
 
   const Plan& plan_;

@@ -45,6 +45,11 @@ ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell)
     bytes_ = std::max(bytes_, estimate.bytes);
     settled_ = settled_ && estimate.settled;
   }
+  for (const Plan& plan : loaded.plans) {
+    if (!plan.motion) continue;
+    const std::uint64_t numbers = motion_numbers(*plan.motion, loaded.scene.realizations);
+    motion_bytes_ = std::max<std::size_t>(motion_bytes_, numbers * sizeof(double));
+  }
 }
 
 Seconds ScenePilot::mean_realization() const {
@@ -64,7 +69,7 @@ Seconds ScenePilot::realization(std::size_t point) const {
 }
 
 double ScenePilot::bytes(std::size_t threads) const {
-  return process_bytes + static_cast<double>(threads * bytes_);
+  return process_bytes + static_cast<double>(std::max(threads * bytes_, motion_bytes_));
 }
 
 }  // namespace jostle::inline study

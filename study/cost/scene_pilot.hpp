@@ -33,7 +33,8 @@ class ScenePilot {
   std::vector<std::size_t> points_;  // that were tried, ascending
   std::vector<Seconds> times_;       // of a realization of each
   Seconds start_{0};
-  std::size_t bytes_ = 0;
+  std::size_t bytes_ = 0;         // of a realization
+  std::size_t motion_bytes_ = 0;  // of all realizations of a point, when a run has ended
   bool settled_ = true;
 };
 

@@ -100,3 +100,22 @@ TEST_CASE("A ramp costs the sum over its taps") {
   CHECK(both > weak);
   CHECK(both < strong);
 }
+
+TEST_CASE("What is followed of the motion is counted in the memory") {
+  Plan plan = plan_of(PeriodicBox{8, 8}, 500);
+  const PilotEstimate without = pilot(plan, 1'000'000);
+  plan.motion = MotionSettings{.origins = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
+                               .lags = {1, 2, 3, 4, 5},
+                               .overlap_lengths = {0.05, 0.1},
+                               .layers = 20};
+  const PilotEstimate with = pilot(plan, 1'000'000);
+  const std::uint64_t followed = motion_bytes(*plan.motion, 500);
+  CHECK(followed > 11 * 500 * sizeof(Vec3));
+  CHECK(with.bytes == without.bytes + followed);
+  // Of a bed that is cut for the pilot it is that of the whole one.
+  Plan large = plan_of(PeriodicBox{100, 100}, 40'000);
+  monte_carlo(large).relax.stop.rule = SweepsStop{1};
+  large.protocol = {{Dilate{0.02}, 1}};
+  large.motion = plan.motion;
+  CHECK(pilot(large, 1'000'000).bytes > motion_bytes(*plan.motion, 40'000));
+}
