@@ -18,6 +18,8 @@ const char* name(Argument argument) {
   switch (argument) {
     case Argument::observable:
       return "observable";
+    case Argument::equilibrium:
+      return "equilibrium";
     case Argument::sweep_point:
       return "sweep point";
     case Argument::shard:

@@ -15,8 +15,8 @@ class BadInput : public std::runtime_error {
 };
 
 /// An argument that several functions take.
-enum class Argument { observable, sweep_point, shard };
-const char* name(Argument argument);  // "observable", "sweep point", "shard"
+enum class Argument { observable, equilibrium, sweep_point, shard };
+const char* name(Argument argument);  // "observable", "equilibrium", "sweep point", "shard"
 
 /// One argument is at fault: what() is "observable X: there is none; ...".
 class BadArgument : public BadInput {

@@ -23,6 +23,8 @@ const char* option(Argument argument) {
   switch (argument) {
     case Argument::observable:
       return "--observable";
+    case Argument::equilibrium:
+      return "--equilibrium";
     case Argument::sweep_point:
       return "--sweep-point";
     case Argument::shard:

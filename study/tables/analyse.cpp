@@ -125,6 +125,7 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
   const std::function<const PointScenes&()> scenes = [&]() -> const PointScenes& {
     return read ? *read : read.emplace(file);
   };
+  for (const auto& request : analyses.ordering) require_equilibrium(file, points, request.settings);
   for (const std::uint32_t point : points) {
     const Surroundings around{file, point, threads, scenes};
     add_tables(around, "steady", analyses.steady, tables);

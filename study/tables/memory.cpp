@@ -57,7 +57,9 @@ std::vector<LagWindow> windows_within(const MemorySettings& settings, std::uint6
 Table table_of(const ResultsFile& file, const PointScenes& scenes,
                std::span<const std::uint32_t> points,
                const AnalysisRequest<MemorySettings>& request) {
-  if (points.size() < 2) throw BadInput("needs two sweep points at least, each a history");
+  if (points.size() < 2)
+    throw BadInput("needs two sweep points at least, each a history" +
+                   of_chosen_points(file, points));
   std::vector<Switch> switches;
   std::vector<ObservableSeries> series;
   std::uint64_t last = std::numeric_limits<std::uint64_t>::max();

@@ -47,6 +47,16 @@ OrderingAnalysis ordering_of(const ObservableSeries& series, const OrderingSetti
   return analysis;
 }
 
+void require_equilibrium(const ResultsFile& file, std::span<const std::uint32_t> points,
+                         const OrderingSettings& settings) {
+  if (settings.equilibrium.empty()) return;
+  try {
+    for (const std::uint32_t point : points) ObservableSeries(file, point, settings.equilibrium);
+  } catch (const BadArgument& fault) {
+    throw BadArgument(Argument::equilibrium, fault.value(), fault.reason(), fault.remedy());
+  }
+}
+
 Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_t> points,
                            const AnalysisRequest<OrderingSettings>& request, Streams streams) {
   const auto& [observable, settings] = request;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -12,6 +13,10 @@
 // Analyses over the sweep points of one file together. What is not possible gives a table with the
 // note "refused" alone. Throw BadArgument for an observable that there is not.
 namespace jostle::inline study {
+
+/// What to add where an analysis needs more sweep points than those that were chosen; nothing where
+/// all were.
+std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
 
 /// volumes/<observable>, over strengths; of points whose own protocol goes through several
 /// strengths point_PPPP/volumes/<observable>, over the steps of its last branch. With other values

@@ -116,10 +116,12 @@ std::vector<double> volumes_of(std::span<const double> values, const VolumeOf& v
   return volumes;
 }
 
-Table table_of(const ResultsFile& file, const PointScenes& scenes, const Sources& sources,
+Table table_of(const ResultsFile& file, const PointScenes& scenes,
+               std::span<const std::uint32_t> points, const Sources& sources,
                const AnalysisRequest<VolumesSettings>& request) {
   if (sources.all.size() < 2)
-    throw BadInput("needs two strengths at least: a sweep of them, or a ramp in the protocol");
+    throw BadInput("needs two strengths at least: a sweep of them, or a ramp in the protocol" +
+                   of_chosen_points(file, points));
   const std::string& observable = request.observable;
   const std::vector<std::uint32_t> realizations = common_realizations(file, sources, observable);
   const Source& first = sources.all.front();
@@ -183,12 +185,13 @@ std::optional<Sources> last_branch(const PointScenes& scenes, std::uint32_t poin
 }
 
 /// One table of volumes with its name.
-void add_table(const ResultsFile& file, const PointScenes& scenes, const Sources& sources,
+void add_table(const ResultsFile& file, const PointScenes& scenes,
+               std::span<const std::uint32_t> points, const Sources& sources,
                const AnalysisRequest<VolumesSettings>& request, const std::string& name,
                std::vector<Table>& tables) {
   Table table;
   try {
-    table = table_of(file, scenes, sources, request);
+    table = table_of(file, scenes, points, sources, request);
   } catch (const BadInput& refusal) {
     table.notes = {{"refused", refusal.what()}};
   }
@@ -205,7 +208,7 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
   for (const std::uint32_t point : points) {
     const ObservableSeries series(file, point, observable);
     if (const auto branch = last_branch(scenes, point, settings.last)) {
-      add_table(file, scenes, *branch, request, point_name(point) + "/" + name, tables);
+      add_table(file, scenes, points, *branch, request, point_name(point) + "/" + name, tables);
       continue;
     }
     const SweptPlace place =
@@ -218,13 +221,20 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
   }
   for (auto& [others, sources] : groups) {
     std::ranges::stable_sort(sources.all, {}, &Source::strength);
-    add_table(file, scenes, sources, request,
+    add_table(file, scenes, points, sources, request,
               groups.size() == 1 ? name : fmt::format("{}_{:04}", name, tables.size()), tables);
     if (!others.empty()) tables.back().notes.emplace_back("at", others);
   }
 }
 
 }  // namespace
+
+std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points) {
+  const std::size_t all = file.study().points.size();
+  if (points.size() >= all) return {};
+  return fmt::format("; a choice of sweep points leaves {} of the file's {}: take all",
+                     points.size(), all);
+}
 
 std::vector<Table> volume_tables(const ResultsFile& file, const PointScenes& scenes,
                                  std::span<const std::uint32_t> points,

@@ -268,6 +268,40 @@ class Analysed(Case):
         self.assertRegex(table["notes"]["verdict"],
                          "^(mean_height alone is not the state|no memory found|cannot decide)")
 
+    def test_points_that_are_not_chosen_are_named_as_the_cause(self):
+        scene = changed(TINY, realizations=3, protocol=[
+            {"tap": {"dilate": 0.05}, "count": 40}, {"tap": {"dilate": 0.02}, "count": 5}])
+        scene["sweep"] = {"/protocol/0/tap/dilate": [0.05, 0.2, 0.3]}
+        self.write(scene)
+        self.run_scene("-o", "memory.h5")
+        self.write(changed(TAPPED, sweep={"/protocol/0/tap/dilate": [0.05, 0.2, 0.5]}))
+        self.run_scene("-o", "volumes.h5")
+        for kind in ("volumes", "memory"):
+            out = self.jostle("analyse", f"{kind}.h5", "--sweep-point", "1", kind, "--observable",
+                              "mean_height", expect=BAD_INPUT).stdout
+            self.assertIn("a choice of sweep points leaves 1 of the file's 3: take all",
+                          " ".join(out.split()))
+            self.jostle("analyse", f"{kind}.h5", kind, "--observable", "mean_height")
+
+    def test_an_equilibrium_that_is_not_observed_is_refused(self):
+        self.write(TAPPED)
+        self.run_scene()
+        for point in ((), ("--sweep-point", "0")):
+            ended = self.jostle("analyse", "tiny.h5", *point, "ordering", "--observable", "mean_height",
+                                "--threshold", "1", "--equilibrium", "nonsense", expect=BAD_INPUT)
+            self.assertIn("--equilibrium nonsense: there is none; ", ended.stderr)
+            self.assertEqual(ended.stdout, "")
+        self.jostle("analyse", "tiny.h5", "ordering", "--observable", "mean_height", "--threshold", "1",
+                    "--equilibrium", "bottom_fraction")
+
+    def test_one_realization_has_no_interval_of_the_median(self):
+        self.write(changed(TAPPED, realizations=1))
+        self.run_scene()
+        out = self.analyse("tiny.h5", "ordering", "--observable", "mean_height", "--threshold", "0.5",
+                           "--hold", "1")
+        verdict = out["tables"][0]["notes"]["verdict"]
+        self.assertIn("(68 %: no interval; 95 %: no interval)", verdict)
+
     def test_memory_needs_a_common_last_stage(self):
         self.write(TAPPED)
         self.run_scene()

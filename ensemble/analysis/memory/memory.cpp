@@ -68,6 +68,7 @@ MemoryTest memory_test(std::span<const History> histories, std::vector<LagWindow
   const auto response = [&](const History& history, std::size_t w, std::size_t r) {
     return history.after[w * realizations + r] - history.at_switch[r];
   };
+  for (const History& history : histories) test.strengths.push_back(history.strength);
   for (std::size_t i = 0; i < histories.size(); ++i) {
     for (std::size_t w = 0; w < test.windows.size(); ++w) {
       Moments mean;
@@ -106,7 +107,14 @@ double MemoryTest::detectable() const {
   return std::ranges::max(differences, {}, &AlignedDifference::detectable).detectable;
 }
 
-std::string MemoryTest::statement(const std::string& observable) const {
+std::string MemoryTest::name_of(std::size_t history) const {
+  const double strength = strengths[history];
+  std::string name = fmt::format("{:.4g}", strength);
+  if (std::ranges::count(strengths, strength) > 1) name += fmt::format(" (number {})", history);
+  return name;
+}
+
+std::string MemoryTest::statement(const std::string& observable, const std::string& control) const {
   if (realizations < 3)
     return fmt::format("cannot decide with {} realization{}: errors need three", realizations,
                        realizations == 1 ? "" : "s");
@@ -117,13 +125,21 @@ std::string MemoryTest::statement(const std::string& observable) const {
   if (found.corrected < level) {
     const LagWindow& at = windows[found.window];
     return fmt::format(
-        "{} alone is not the state: histories {} and {} differ by {:+.2g} +- {:.1g} at lags "
-        "{} to {} (p = {:.2g}, {} tests together, {} realizations)",
-        observable, found.first, found.second, found.value,
+        "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} at "
+        "lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
+        observable, control, name_of(found.first), name_of(found.second), found.value,
         student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
         at.first, at.last, found.corrected, differences.size(), realizations);
   }
-  const double seen = detectable();
+  const AlignedDifference& unseen =
+      *std::ranges::max_element(differences, {}, &AlignedDifference::detectable);
+  if (!std::isfinite(unseen.detectable)) {
+    return fmt::format(
+        "cannot decide: {} at the switch is off by the same in every realization between {} {} "
+        "and {}, so that nothing says what is left at equal value",
+        observable, control, name_of(unseen.first), name_of(unseen.second));
+  }
+  const double seen = unseen.detectable;
   if (!(seen <= response)) {
     return fmt::format(
         "cannot decide with {} realizations: p = {:.2g}, but only a difference of {:.2g} "

@@ -50,13 +50,19 @@ struct MemoryTest {
   std::vector<AlignedDifference> differences;  // pairs of histories, each with all windows
   double response = 0;  // largest mean change after the switch, of any history and window
   std::size_t realizations = 0;
+  std::vector<double> strengths{};  // [n_histories], before the switch
 
   static constexpr double level = 0.05;  // false alarms, all tests together
   /// The difference that would have been found with probability 0.8 in whichever window and between
   /// whichever histories it stands.
   double detectable() const;
-  /// "phi alone is not the state", "no memory found" or "cannot decide", with test and power.
-  std::string statement(const std::string& observable) const;
+  /// "phi alone is not the state", "no memory found" or "cannot decide", with test and power;
+  /// `control`: what the strengths of the histories are, which it names them by.
+  std::string statement(const std::string& observable, const std::string& control) const;
+
+ private:
+  /// Its strength, and its number where others have the same.
+  std::string name_of(std::size_t history) const;
 };
 
 /// Histories of the same realizations, at least two.

@@ -69,15 +69,18 @@ void add_histories(const Column& observable, const std::string& control, const s
           "mean over the lags less the value at the switch", josserand);
 }
 
-void add_differences(const Column& observable, const MemoryTest& test, Table& table) {
+void add_differences(const Column& observable, const std::string& control, const std::string& units,
+                     const MemoryTest& test, Table& table) {
   TableOf out(table);
   std::vector<std::uint64_t> pair, first, second;
-  std::vector<double> value, error, dof, p, corrected, detectable;
+  std::vector<double> value, error, dof, p, corrected, detectable, first_strength, second_strength;
   for (const AlignedDifference& found : test.differences) {
     if (found.window == 0) {
       pair.push_back(pair.size());
       first.push_back(found.first);
       second.push_back(found.second);
+      first_strength.push_back(test.strengths[found.first]);
+      second_strength.push_back(test.strengths[found.second]);
     }
     value.push_back(found.value);
     error.push_back(error_or_nan(found.error));
@@ -92,6 +95,8 @@ void add_differences(const Column& observable, const MemoryTest& test, Table& ta
   table.axes.push_back({"pair", {"pair"}, pair, "1", "pair of histories", ""});
   out.add("first_history", {"pair"}, first, "1", "of the pair");
   out.add("second_history", {"pair"}, second, "1", "of the pair");
+  out.add("first_" + control, {"pair"}, first_strength, units, "strength of the taps of the first");
+  out.add("second_" + control, {"pair"}, second_strength, units, "of the second");
   out.add("difference", both, value, observable.units,
           "of the responses at equal value at the switch, second less first", josserand);
   out.add("difference_error", both, error, observable.units, "standard error over realizations");
@@ -119,10 +124,10 @@ Table memory_table(std::string name, const Column& observable, const std::string
   table.quantities.push_back(
       {"first_lag", {"lag_window"}, first, "taps", "first lag of the window", ""});
   add_histories(observable, control, units, histories, test, table);
-  add_differences(observable, test, table);
+  add_differences(observable, control, units, test, table);
   table.notes = {{"observable", observable.name},
                  {"realizations", std::to_string(test.realizations)},
-                 {"verdict", test.statement(observable.name)}};
+                 {"verdict", test.statement(observable.name, control)}};
   return table;
 }
 

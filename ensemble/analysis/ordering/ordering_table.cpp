@@ -65,6 +65,7 @@ std::string between(const Limits& limits) {
   const auto end = [](double tap) {
     return std::isnan(tap) ? std::string("no limit") : fmt::format("{:.0f}", tap);
   };
+  if (std::isnan(limits.low) && std::isnan(limits.high)) return "no interval";
   return fmt::format("{} to {}", end(limits.low), end(limits.high));
 }
 

@@ -210,7 +210,7 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
   verdict.detectable = detectable.empty() ? std::numeric_limits<double>::infinity()
                                           : *std::ranges::max_element(detectable);
   const std::string tests =
-      fmt::format("p = {:.2g} of their difference, {:.2g} of a bend of ln P_2/P_1, {} realizations",
+      fmt::format("p = {:.2g} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
                   verdict.difference_p, verdict.curvature_p, realizations);
   if (overlapping == 0) {
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";

@@ -80,11 +80,11 @@ struct CompactivityStep {
   /// doi:10.1103/PhysRevE.57.1971) with the mean of 1/var taken geometrically, which is exact where
   /// the variance is constant and where it grows as (V - V_min)^2.
   Replicates fluctuations{};
-  /// Minus the slope of ln[P_2(V) / P_1(V)] against V (Dean & Lefevre 2003,
+  /// The slope of ln[P_1(V) / P_2(V)] against V (Dean & Lefevre 2003,
   /// doi:10.1103/PhysRevLett.90.198301), a straight line fitted to the counts by maximum
   /// likelihood (logistic regression).
   Replicates histograms{};
-  /// Of a parabola fitted to ln[P_2 / P_1] likewise: what its slope changes by over a deviation, in
+  /// Of a parabola fitted to ln[P_1 / P_2] likewise: what its slope changes by over a deviation, in
   /// the units of 1/X. 0 where one density of states serves both.
   Replicates curvature{};
 };

@@ -106,7 +106,8 @@ void add_states(const Column& observable, const std::string& control, const std:
   out.add("steady", std::move(steady), "1", "verdict on the steady state");
   out.add(observable.name, means, observable.units, observable.long_name);
   const std::string squared = observable.units == "1" ? "1" : observable.units + "^2";
-  out.add_variances("variance", variances, squared, "variance of single taps");
+  out.add_variances("variance", variances, squared,
+                    "variance over taps and realizations together, about their common mean");
   out.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
   out.add_variances("volume_variance", volume_variances, "sphere volumes^2",
                     "variance of V over N, which does not depend on N where parts of a bed "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -81,12 +82,47 @@ TEST_CASE("Histories are compared at equal values at the switch") {
   const MemoryTest other = memory_test(all, lag_windows(1));
   CHECK(other.differences[0].value == Approx(0.125).epsilon(1e-10));
   CHECK(other.differences[0].error.dof == 1);
-  CHECK(other.statement("phi").starts_with("phi alone is not the state"));
+  CHECK(
+      other.statement("phi", "dilate")
+          .starts_with("phi alone is not the state: after dilate 0.1 and 0.2 responses differ by"));
+  // One strength reached in two ways: by number.
+  all[1].strength = 0.1;
+  CHECK(memory_test(all, lag_windows(1))
+            .statement("phi", "dilate")
+            .starts_with(
+                "phi alone is not the state: after dilate 0.1 (number 0) and 0.1 (number 1) "));
+}
+
+TEST_CASE("Histories that are off by the same in every realization cannot be compared") {
+  std::vector<History> all = {{0.1, 10, {0.5, 0.5, 0.5}, {1, 1, 1}},
+                              {0.2, 20, {0.6, 0.6, 0.6}, {1, 1, 1}}};
+  const std::string still = memory_test(all, lag_windows(1)).statement("phi", "dilate");
+  CHECK(still ==
+        "cannot decide: phi at the switch is off by the same in every realization between dilate "
+        "0.1 and 0.2, so that nothing says what is left at equal value");
+  // Beside a pair that can be compared.
+  all.push_back({0.3, 5, {0.61, 0.58, 0.62}, {1.1, 1.3, 1.25}});
+  const std::string mixed = memory_test(all, lag_windows(1)).statement("phi", "dilate");
+  CHECK(mixed.starts_with("cannot decide: phi at the switch is off by the same"));
+}
+
+TEST_CASE("Tables name histories by their strengths") {
+  const std::vector<History> all = {{0.1, 10, {0.50, 0.52, 0.57}, {2, 2, 3}},
+                                    {0.2, 20, {0.60, 0.61, 0.64}, {3, 3, 1}}};
+  const Table table = memory_table("", {"phi", "1", "fraction", ""}, "dilate", "1", all,
+                                   memory_test(all, lag_windows(1)));
+  const auto column = [&](const std::string& name) {
+    const auto found = std::ranges::find(table.quantities, name, &Quantity::name);
+    REQUIRE(found != table.quantities.end());
+    return std::get<std::vector<double>>(found->values);
+  };
+  CHECK(column("first_dilate") == std::vector{0.1});
+  CHECK(column("second_dilate") == std::vector{0.2});
 }
 
 TEST_CASE("Two realizations cannot tell of memory") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.6}, {1, 2}}, {0.2, 20, {0.5, 0.61}, {3, 5}}};
-  CHECK(memory_test(all, lag_windows(1)).statement("phi").starts_with("cannot decide"));
+  CHECK(memory_test(all, lag_windows(1)).statement("phi", "dilate").starts_with("cannot decide"));
 }
 
 TEST_CASE("Memory that is not there is seldom found, and what is detectable is found",
@@ -105,7 +141,7 @@ TEST_CASE("Memory that is not there is seldom found, and what is detectable is f
       for (std::size_t e = 0; e < ensembles; ++e) {
         const std::uint64_t seed = 20003632 + e;
         const MemoryTest still = memory_test(histories(setting, 0, seed), windows);
-        const std::string statement = still.statement("phi");
+        const std::string statement = still.statement("phi", "dilate");
         alarms += statement.starts_with("phi alone is not");
         none += statement.starts_with("no memory");
         const double size = still.detectable();
@@ -113,7 +149,7 @@ TEST_CASE("Memory that is not there is seldom found, and what is detectable is f
         // The offset fades: as large at the first lag, and seen by pairs 0-1 and 1-2.
         const std::string with =
             memory_test(histories(setting, size * std::exp(1.0 / 30), seed), windows)
-                .statement("phi");
+                .statement("phi", "dilate");
         found += with.starts_with("phi alone is not");
         missed += with.starts_with("no memory");
       }

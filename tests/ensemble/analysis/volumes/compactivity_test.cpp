@@ -258,6 +258,7 @@ TEST_CASE("Neighbours that lie close are told to agree whatever they are: no ver
   const CompactivityVerdict verdict = compactivity_verdict(compactivity_steps(states, bins));
   CHECK(verdict.separation < CompactivityVerdict::least_separation);
   CHECK_FALSE(verdict.statement.starts_with("agree"));
+  CHECK(verdict.statement.find("bend of ln P_1/P_2") != std::string::npos);
 }
 
 TEST_CASE("Compactivities and their verdict are calibrated", "[statistics]") {
