@@ -37,8 +37,10 @@ Packing wrapped_inside(const Packing& packing) {
                         r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
                         boundary_depth(boundary, r) <= sphere_radius;
     if (!within) {
-      throw std::invalid_argument(
-          fmt::format("sphere {} lies outside the container, at {}, {}, {}", i, r.x, r.y, r.z));
+      throw std::invalid_argument(fmt::format(
+          "sphere {} lies outside the container, at {}, {}, {}; check that lengths are in "
+          "diameters and that the packing was made in this container",
+          i, r.x, r.y, r.z));
     }
   }
   return moved;
