@@ -69,7 +69,7 @@ Seconds ScenePilot::realization(std::size_t point) const {
 }
 
 double ScenePilot::bytes(std::size_t threads) const {
-  return process_bytes + static_cast<double>(std::max(threads * bytes_, motion_bytes_));
+  return process_bytes + static_cast<double>(threads * bytes_ + motion_bytes_);
 }
 
 }  // namespace jostle::inline study
