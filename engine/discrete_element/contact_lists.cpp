@@ -143,7 +143,7 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
     near_.shift[0].push_back(pair.turns[0] * periods.x);
     near_.shift[1].push_back(pair.turns[1] * periods.y);
   };
-  // Those that touch now come first: whole blocks of the others are done with at once.
+  // Those that touch now come first: blocks of the others are idle.
   std::vector<std::uint32_t> apart;
   for (std::uint32_t p = 0; p < far_.size(); ++p) {
     const FarPair& pair = far_[p];
@@ -158,13 +158,24 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
       apart.push_back(p);
     }
   }
+  first_idle_ = near_.first.size();
   for (const std::uint32_t p : apart) add(p, far_[p]);
   fill(near_, near_.first.size());
+  carry_pairs(old, old_near_of);
+  first_idle_ = (first_idle_ + block_size - 1) / block_size * block_size;
+}
+
+// From the near pairs before, or from those that wait; those that remember are not idle.
+void ContactLists::carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of) {
+  const auto set = [&](std::size_t at, const ContactHistory& history) {
+    if (history == ContactHistory{}) return;
+    for (int k = 0; k < n_history_; ++k) near_.history[k][at] = history[k];
+    first_idle_ = std::max(first_idle_, at + 1);
+  };
   if (!old_near_of.empty()) {
     for (std::size_t at = 0; at < near_.n; ++at) {
       const std::uint32_t before = old_near_of[near_.source[at]];
-      if (before == none) continue;
-      for (int k = 0; k < n_history_; ++k) near_.history[k][at] = old.history[k][before];
+      if (before != none) set(at, history_of(old, before));
     }
     return;
   }
@@ -174,10 +185,15 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
     const auto key = std::tuple(numbers_[pair.first], numbers_[pair.second], pair.turns);
     const auto found = std::ranges::lower_bound(waiting_pairs_, key, {},
                                                 [](const KeptPair& one) { return order(one); });
-    if (found == waiting_pairs_.end() || order(*found) != key) continue;
-    for (int k = 0; k < n_history_; ++k) near_.history[k][at] = found->history[k];
+    if (found != waiting_pairs_.end() && order(*found) == key) set(at, found->history);
   }
   waiting_pairs_.clear();
+}
+
+ContactHistory ContactLists::history_of(const Near& near, std::size_t at) const {
+  ContactHistory history{};
+  for (int k = 0; k < n_history_; ++k) history[k] = near.history[k][at];
+  return history;
 }
 
 void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
@@ -222,11 +238,8 @@ void ContactLists::carry_sides(Near& sides, const std::vector<KeptSide>& kept) c
 }
 
 void ContactLists::add_sides(const Near& near, std::vector<KeptSide>& out) const {
-  for (std::size_t at = 0; at < near.n; ++at) {
-    KeptSide one{numbers_[near.first[at]], near.source[at], {}};
-    for (int k = 0; k < n_history_; ++k) one.history[k] = near.history[k][at];
-    out.push_back(one);
-  }
+  for (std::size_t at = 0; at < near.n; ++at)
+    out.push_back({numbers_[near.first[at]], near.source[at], history_of(near, at)});
 }
 
 void ContactLists::keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides) {
@@ -242,9 +255,7 @@ std::vector<KeptPair> ContactLists::near_pairs() const {
   std::vector<KeptPair> out = waiting_pairs_;
   for (std::size_t at = 0; at < near_.n; ++at) {
     const FarPair& pair = far_[near_.source[at]];
-    KeptPair one{numbers_[pair.first], numbers_[pair.second], pair.turns, {}};
-    for (int k = 0; k < n_history_; ++k) one.history[k] = near_.history[k][at];
-    out.push_back(one);
+    out.push_back({numbers_[pair.first], numbers_[pair.second], pair.turns, history_of(near_, at)});
   }
   std::ranges::sort(out, {}, [](const KeptPair& one) { return order(one); });
   return out;
@@ -276,7 +287,9 @@ void ContactLists::make_slots() {
     return static_cast<std::uint32_t>(near.first.size());
   };
   const std::uint32_t floor_at = padded(near_), sides_at = floor_at + padded(floor_);
-  action_.resize(sides_at + padded(sides_));
+  action_.assign(sides_at + padded(sides_), {});
+  idle_.assign(action_.size(), 0);
+  for (std::size_t at = first_idle_; at < floor_at; ++at) idle_[at] = 1;
   // [sphere][0]: floor; the others: up to two planes are near at once, four in a narrow box.
   std::vector<std::array<std::uint32_t, 5>> of_sides(n_spheres_, {none, none, none, none, none});
   for (std::uint32_t k = 0; k < floor_.n; ++k) of_sides[floor_.first[k]][0] = floor_at + k;
@@ -305,6 +318,7 @@ ContactArrays ContactLists::arrays(Near& near, std::size_t action_at) {
   for (int k = 0; k < 4; ++k) out.side[k] = near.side[k].data();
   for (int k = 0; k < n_history_; ++k) out.history[k] = near.history[k].data();
   out.action = action_.data() + action_at;
+  out.idle = idle_.data() + action_at;
   out.deepest = &deepest_;
   return out;
 }
@@ -358,6 +372,12 @@ double ContactLists::floor_force() const {
   double sum = 0;
   for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].of[2];
   return sum;
+}
+
+bool ContactLists::mostly_idle() const {
+  std::size_t idle = 0;
+  for (std::size_t at = 0; at < near_.first.size(); at += block_size) idle += idle_[at];
+  return 2 * idle * block_size > near_.first.size();
 }
 
 std::size_t ContactLists::bytes() const {

@@ -34,7 +34,7 @@ struct KeptSide {
 /// depends on when lists are made or on how spheres are sorted.
 class ContactLists {
  public:
-  static constexpr double far_skin = 0.25, near_skin = 0.01, side_skin = 0.1;
+  static constexpr double far_skin = 0.25, near_skin = 0.03, side_skin = 0.1;
 
   ContactLists(const Container& container, int n_history);
 
@@ -66,6 +66,9 @@ class ContactLists {
   const Row* action() const { return action_.data(); }
   /// Of the contacts with the floor, the forces upwards, summed in the order of the spheres.
   double floor_force() const;
+  const std::uint8_t* idle() const { return idle_.data(); }
+  /// Whether most near pairs were idle in the last step.
+  bool mostly_idle() const;
   std::size_t n_near() const { return near_.n; }
   std::size_t bytes() const;
   /// The greatest overlap since it was last set.
@@ -93,6 +96,8 @@ class ContactLists {
   void find_far_pairs(std::span<const Row> rows);
   void make_far_slots();
   void find_pairs(std::span<const Row> rows);
+  void carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of);
+  ContactHistory history_of(const Near& near, std::size_t at) const;
   void find_sides(std::span<const Row> rows, double floor_height);
   void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;
   void make_slots();
@@ -114,6 +119,8 @@ class ContactLists {
   std::vector<KeptSide> waiting_sides_;
   std::vector<std::uint32_t> begin_, slots_;
   std::vector<Row> action_;
+  std::vector<std::uint8_t> idle_;  // of each action, as ContactArrays has it
+  std::size_t first_idle_ = 0;      // near pairs from here on neither touch nor did a step ago
   double deepest_ = 0;
 };
 

@@ -166,7 +166,8 @@ SphereArrays GrainLoop::spheres() {
           .dissipated = dissipated_.data(),
           .begin = lists_.begin().data(),
           .slot = lists_.slots().data(),
-          .action = lists_.action()};
+          .action = lists_.action(),
+          .idle = lists_.idle()};
 }
 
 void GrainLoop::run(std::uint64_t steps) {
@@ -202,7 +203,8 @@ void GrainLoop::step() {
   }
   Advance advance{.time_step = settings_.time_step,
                   .gravity = settings_.gravity,
-                  .drift = {drift_.x, drift_.y, drift_.z}};
+                  .drift = {drift_.x, drift_.y, drift_.z},
+                  .mostly_idle = lists_.mostly_idle()};
   kernels_.advance(spheres(), advance);
   const double path = settings_.time_step * std::sqrt(advance.fastest_squared);
   pair_path_ += 2 * path;

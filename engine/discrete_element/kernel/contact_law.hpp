@@ -185,10 +185,15 @@ struct WaltonBraunLaw {
     }
   }
 
+  /// Whether they touch or have touched: if not, there is neither action nor history.
+  JOSTLE_INLINE bool is_at_work(const Meeting<N>& at) const {
+    const N zero{};
+    return any_of(at.overlap > zero) || any_of(greatest > zero);
+  }
+
   JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
-    if (!any_of(touching) && !any_of(greatest > zero)) return {};
     const N before = greatest;
     greatest = greater(before, at.overlap);
     const N unloading = law.unloading * (at.overlap - law.latched * greatest);
@@ -297,10 +302,14 @@ struct LinearLaw {
     }
   }
 
+  JOSTLE_INLINE bool is_at_work(const Meeting<N>& at) const {
+    const N zero{};
+    return any_of(at.overlap > zero) || any_of(dot(spring, spring) > zero);
+  }
+
   JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
-    if (!any_of(touching) && !any_of(dot(spring, spring) > zero)) return {};
     const N speed = dot(at.velocity, at.normal);
     const N resisting = law.stiffness * at.overlap - law.damping * speed;
     const N normal_force = select(touching, resisting, zero);

@@ -9,6 +9,7 @@ namespace jostle::inline engine::JOSTLE_KERNELS {
 namespace {
 
 using Half = double __attribute__((vector_size(32)));  // of a row
+using HalfBits = std::int64_t __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Half& half_at(double* from) {
   return *reinterpret_cast<Half*>(from);
@@ -98,15 +99,43 @@ template <bool spin>
   return out;
 }
 
+// Whether there was anything to do.
 template <class Law>
-[[gnu::always_inline]] inline void act(const Meeting<Wide>& meeting, const ContactArrays& contacts,
+[[gnu::always_inline]] inline bool act(const Meeting<Wide>& meeting, const ContactArrays& contacts,
                                        std::size_t at, const LawConstants& constants,
                                        double share) {
   Law law;
   read_history(law, contacts, at);
+  if (!law.is_at_work(meeting)) {
+    write_action(contacts, at, {}, share);
+    return false;
+  }
   const ContactAction<Wide> action = law(meeting, constants);
   write_history(law, contacts, at);
   write_action(contacts, at, action, share);
+  return true;
+}
+
+// Whether any of a block's spheres may have come to touch: in half the time of their meeting.
+[[gnu::always_inline]] inline bool may_touch(const SphereArrays& spheres,
+                                             const ContactArrays& contacts, std::size_t at) {
+  constexpr double reach2 = 1 + 1e-9;  // beyond the rounding of either way to compute distances
+  HalfBits near{};
+  for (std::size_t k = at; k < at + wide_size; k += 4) {
+    Half m[4];
+    for (std::size_t l = 0; l < 4; ++l)
+      m[l] = half_at(spheres.rows[contacts.first[k + l]].of) -
+             half_at(spheres.rows[contacts.second[k + l]].of);
+    const Half a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);  // x0 x1 z0 z1
+    const Half b = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
+    const Half c = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
+    const Half d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+    const Half x = __builtin_shufflevector(a, b, 0, 1, 4, 5) - half_at(contacts.shift[0] + k);
+    const Half y = __builtin_shufflevector(c, d, 0, 1, 4, 5) - half_at(contacts.shift[1] + k);
+    const Half z = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    near |= (HalfBits)(x * x + y * y + z * z < Half{} + reach2);
+  }
+  return (near[0] | near[1] | near[2] | near[3]) != 0;
 }
 
 [[gnu::always_inline]] inline void keep_deepest(const ContactArrays& contacts,
@@ -122,6 +151,8 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
   using Law = LawOf<Wide, friction>;
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
+    std::uint8_t& idle = contacts.idle[at];
+    if (idle != 0 && !may_touch(spheres, contacts, at)) continue;
     const Columns m = of_pairs<Law::has_spin>(spheres, contacts, at);
     const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
                                    m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
@@ -135,7 +166,7 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
       meeting.spin = {m.of[3], m.of[7], m.spin_z};
     }
     deepest = greater(deepest, meeting.overlap);
-    act<Law>(meeting, contacts, at, constants, 0.5);
+    idle = act<Law>(meeting, contacts, at, constants, 0.5) ? 0 : 1;
   }
   keep_deepest(contacts, deepest);
 }
@@ -165,18 +196,19 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
 
 // A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
 // step back, go a step on, and then the positions. Moment of inertia 1/10.
-template <bool spin, bool full_step>
-void advance(const SphereArrays& spheres, Advance& step) {
+template <bool spin, bool full_step, bool mostly_idle>
+[[gnu::always_inline]] inline void advance_all(const SphereArrays& spheres, Advance& step) {
   constexpr Half sign_of[2] = {{1, 1, 1, 1}, {-1, -1, -1, 1}};
   const double dt = step.time_step, turn = 10 * dt;
   const Half kick = {dt, dt, dt, turn}, twist = {0, 0, 0, turn}, move = {dt, dt, dt, 0};
-  const Half weight = {0, 0, -step.gravity, 0};
+  const Half weight = {0, 0, 0 - step.gravity, 0};
   const Half drift = {step.drift[0], step.drift[1], step.drift[2], 0};
   double fastest = 0;
   for (std::size_t i = 0; i < spheres.n; ++i) {
     Half force = weight, rest = {};
     for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
       const std::uint32_t slot = spheres.slot[s];
+      if (mostly_idle && spheres.idle[(slot >> 1) & ~(wide_size - 1)] != 0) continue;
       const double* action = spheres.action[slot >> 1].of;
       force += sign_of[slot & 1] * half_at(action);
       rest += half_at(action + 4);
@@ -211,6 +243,15 @@ void advance(const SphereArrays& spheres, Advance& step) {
     fastest = speed_squared > fastest ? speed_squared : fastest;
   }
   step.fastest_squared = fastest;
+}
+
+template <bool spin, bool full_step>
+void advance(const SphereArrays& spheres, Advance& step) {
+  if (step.mostly_idle) {
+    advance_all<spin, full_step, true>(spheres, step);
+  } else {
+    advance_all<spin, full_step, false>(spheres, step);
+  }
 }
 
 template <template <class, bool> class LawOf, bool friction>

@@ -39,6 +39,8 @@ struct ContactArrays {
   std::array<const double*, 4> side{};    // of sides: normal, distance
   std::array<double*, most_history> history{};
   Row* action = nullptr;
+  // Of pairs: in the first of a kernel's block 1 if the whole block has neither history nor action.
+  std::uint8_t* idle = nullptr;
   double side_velocity = 0;   // of the floor, upwards
   double* deepest = nullptr;  // the greatest overlap, raised
 };
@@ -54,6 +56,7 @@ struct SphereArrays {
   const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
   const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
   const Row* action = nullptr;
+  const std::uint8_t* idle = nullptr;  // as ContactArrays has it, of all contacts
 };
 
 /// What an advance by one step is given, and what it finds.
@@ -61,6 +64,7 @@ struct Advance {
   double time_step = 0, gravity = 1;
   double drift[3] = {0, 0, 0};  // velocity from which `fastest` is counted
   double fastest_squared = 0;
+  bool mostly_idle = false;  // contacts: actions of those that are need not be summed
 };
 
 /// One law, for one instruction set.
