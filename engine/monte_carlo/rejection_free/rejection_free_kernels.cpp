@@ -48,8 +48,11 @@ struct Obstacles {
 };
 
 // Another place as seen from a sphere's own. All say in the same arithmetic what is in the way.
+// Differences wrap around, as places do through periodic sides.
 inline Four seen_from(const Sight& sight, FourIntegers own, FourIntegers other) {
-  return __builtin_convertvector(other - own, Four) * *reinterpret_cast<const Four*>(sight.unit);
+  using Wrapping = std::uint32_t __attribute__((vector_size(16)));
+  const auto between = (FourIntegers)((Wrapping)other - (Wrapping)own);
+  return __builtin_convertvector(between, Four) * *reinterpret_cast<const Four*>(sight.unit);
 }
 
 // |r|^2 - 1, rounded up; > 0.
