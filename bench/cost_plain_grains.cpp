@@ -34,14 +34,17 @@ int main(int argc, char** argv) {
                              .dissipated = dissipated.data(),
                              .begin = lists.begin().data(),
                              .slot = lists.slots().data(),
-                             .action = lists.action()};
+                             .action = lists.action(),
+                             .idle = lists.idle()};
   const ContactArrays pairs = lists.pairs(), floor = lists.floor();
   double path = 0;
   for (std::uint64_t step = 0; step < count; ++step) {
     lists.measure_sides({rows.data(), n}, 0);
     kernels.pairs(pairs, spheres, units.spheres);
     kernels.sides(floor, spheres, units.floor);
-    Advance advance{.time_step = units.time_step, .gravity = units.gravity};
+    Advance advance{.time_step = units.time_step,
+                    .gravity = units.gravity,
+                    .mostly_idle = lists.mostly_idle()};
     kernels.advance(spheres, advance);
     path += 2 * units.time_step * std::sqrt(advance.fastest_squared);
   }
