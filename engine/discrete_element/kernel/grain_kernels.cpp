@@ -145,14 +145,23 @@ template <class Law>
       *contacts.deepest = part[k] > *contacts.deepest ? part[k] : *contacts.deepest;
 }
 
+// A pass of its own: beside a law's many numbers its own would be put aside and fetched again.
+[[gnu::noinline]] void find_idle(const ContactArrays& contacts, const SphereArrays& spheres) {
+  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
+    std::uint8_t& idle = contacts.idle[at];
+    if (idle != 0 && may_touch(spheres, contacts, at)) idle = 0;
+  }
+}
+
 template <template <class, bool> class LawOf, bool friction>
 void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
            const LawConstants& constants) {
   using Law = LawOf<Wide, friction>;
+  find_idle(contacts, spheres);
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
     std::uint8_t& idle = contacts.idle[at];
-    if (idle != 0 && !may_touch(spheres, contacts, at)) continue;
+    if (idle != 0) continue;
     const Columns m = of_pairs<Law::has_spin>(spheres, contacts, at);
     const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
                                    m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
