@@ -229,13 +229,6 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
 
 }  // namespace
 
-std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points) {
-  const std::size_t all = file.study().points.size();
-  if (points.size() >= all) return {};
-  return fmt::format("; a choice of sweep points leaves {} of the file's {}: take all",
-                     points.size(), all);
-}
-
 std::vector<Table> volume_tables(const ResultsFile& file, const PointScenes& scenes,
                                  std::span<const std::uint32_t> points,
                                  std::span<const AnalysisRequest<VolumesSettings>> requests) {

@@ -57,9 +57,8 @@ std::vector<double> independent_susceptibility(const MotionRecords& records,
 
 /// chi_4 = N Var(Q), the variance over realizations (of M - 1) of the fraction Q of N spheres that
 /// have moved less than a; independent_susceptibility() for spheres that move independently of each
-/// other. Intervals
-/// of chi2, exact where Q is normal over realizations: so none where fewer spheres than
-/// `fewest_spheres` have moved, or stayed, in the mean, or fewer than one group in two
+/// other. Intervals of chi2, exact where Q is normal over realizations: so none where fewer spheres
+/// than `fewest_spheres` have moved, or stayed, in the mean, or fewer than one group in two
 /// realizations; a group has chi_4 / (Q (1 - Q)) spheres. After Dauchot et al. 2005,
 /// doi:10.1103/PhysRevLett.95.265701; Keys et al. 2007, doi:10.1038/nphys572.
 inline constexpr double fewest_spheres = 30;
