@@ -28,23 +28,21 @@ int main(int argc, char** argv) {
   ContactLists lists(bed.container, kernels.n_history);
   lists.find_far({rows.data(), n}, numbers);
   lists.find_near({rows.data(), n}, 0);
-  const SphereArrays spheres{.n = n,
-                             .rows = rows.data(),
-                             .spin_z = spins.data(),
-                             .dissipated = dissipated.data(),
-                             .begin = lists.begin().data(),
-                             .slot = lists.slots().data(),
-                             .action = lists.action(),
-                             .idle = lists.idle()};
+  SphereArrays spheres{.n = n,
+                       .rows = rows.data(),
+                       .spin_z = spins.data(),
+                       .dissipated = dissipated.data(),
+                       .begin = lists.begin().data(),
+                       .slot = lists.slots().data(),
+                       .action = lists.action()};
   const ContactArrays pairs = lists.pairs(), floor = lists.floor();
   double path = 0;
   for (std::uint64_t step = 0; step < count; ++step) {
     lists.measure_sides({rows.data(), n}, 0);
     kernels.pairs(pairs, spheres, units.spheres);
     kernels.sides(floor, spheres, units.floor);
-    Advance advance{.time_step = units.time_step,
-                    .gravity = units.gravity,
-                    .mostly_idle = lists.mostly_idle()};
+    Advance advance{.time_step = units.time_step, .gravity = units.gravity};
+    spheres.acted_upon = lists.acted_upon();
     kernels.advance(spheres, advance);
     path += 2 * units.time_step * std::sqrt(advance.fastest_squared);
   }

@@ -374,6 +374,21 @@ double ContactLists::floor_force() const {
   return sum;
 }
 
+const std::uint8_t* ContactLists::acted_upon() {
+  if (!mostly_idle()) return nullptr;
+  acted_upon_.assign(n_spheres_ + 2, 0);
+  for (std::size_t at = 0; at < near_.first.size(); at += smallest_block) {
+    if (idle_[at] != 0) continue;
+    for (std::size_t k = at; k < at + smallest_block; ++k) {
+      acted_upon_[near_.first[k]] = 1;
+      acted_upon_[near_.second[k]] = 1;
+    }
+  }
+  for (const Near* near : {&floor_, &sides_})
+    for (const std::uint32_t sphere : near->first) acted_upon_[sphere] = 1;
+  return acted_upon_.data();
+}
+
 bool ContactLists::mostly_idle() const {
   std::size_t idle = 0;
   for (std::size_t at = 0; at < near_.first.size(); at += block_size) idle += idle_[at];

@@ -66,9 +66,8 @@ class ContactLists {
   const Row* action() const { return action_.data(); }
   /// Of the contacts with the floor, the forces upwards, summed in the order of the spheres.
   double floor_force() const;
-  const std::uint8_t* idle() const { return idle_.data(); }
-  /// Whether most near pairs were idle in the last step.
-  bool mostly_idle() const;
+  /// Of every sphere 0 if nothing acts on it in this step; null if most pairs have an action.
+  const std::uint8_t* acted_upon();
   std::size_t n_near() const { return near_.n; }
   std::size_t bytes() const;
   /// The greatest overlap since it was last set.
@@ -101,6 +100,7 @@ class ContactLists {
   void find_sides(std::span<const Row> rows, double floor_height);
   void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;
   void make_slots();
+  bool mostly_idle() const;
   void add_sides(const Near& near, std::vector<KeptSide>& out) const;
   ContactArrays arrays(Near& near, std::size_t action_at);
   void fill(Near& near, std::size_t n) const;
@@ -121,6 +121,7 @@ class ContactLists {
   std::vector<Row> action_;
   std::vector<std::uint8_t> idle_;  // of each action, as ContactArrays has it
   std::size_t first_idle_ = 0;      // near pairs from here on neither touch nor did a step ago
+  std::vector<std::uint8_t> acted_upon_;  // [n_spheres + 2]
   double deepest_ = 0;
 };
 

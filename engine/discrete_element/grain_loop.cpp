@@ -166,8 +166,7 @@ SphereArrays GrainLoop::spheres() {
           .dissipated = dissipated_.data(),
           .begin = lists_.begin().data(),
           .slot = lists_.slots().data(),
-          .action = lists_.action(),
-          .idle = lists_.idle()};
+          .action = lists_.action()};
 }
 
 void GrainLoop::run(std::uint64_t steps) {
@@ -203,9 +202,10 @@ void GrainLoop::step() {
   }
   Advance advance{.time_step = settings_.time_step,
                   .gravity = settings_.gravity,
-                  .drift = {drift_.x, drift_.y, drift_.z},
-                  .mostly_idle = lists_.mostly_idle()};
-  kernels_.advance(spheres(), advance);
+                  .drift = {drift_.x, drift_.y, drift_.z}};
+  SphereArrays grains = spheres();
+  grains.acted_upon = lists_.acted_upon();
+  kernels_.advance(grains, advance);
   const double path = settings_.time_step * std::sqrt(advance.fastest_squared);
   pair_path_ += 2 * path;
   side_path_ += path + settings_.time_step * std::sqrt(norm_squared(drift_));

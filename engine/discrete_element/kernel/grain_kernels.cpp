@@ -145,11 +145,15 @@ template <class Law>
       *contacts.deepest = part[k] > *contacts.deepest ? part[k] : *contacts.deepest;
 }
 
+[[gnu::always_inline]] inline void set_idle(const ContactArrays& contacts, std::size_t at,
+                                            bool idle) {
+  for (std::size_t k = 0; k < wide_size; k += smallest_block) contacts.idle[at + k] = idle ? 1 : 0;
+}
+
 // A pass of its own: beside a law's many numbers its own would be put aside and fetched again.
 [[gnu::noinline]] void find_idle(const ContactArrays& contacts, const SphereArrays& spheres) {
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    std::uint8_t& idle = contacts.idle[at];
-    if (idle != 0 && may_touch(spheres, contacts, at)) idle = 0;
+    if (contacts.idle[at] != 0 && may_touch(spheres, contacts, at)) set_idle(contacts, at, false);
   }
 }
 
@@ -160,8 +164,7 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
   find_idle(contacts, spheres);
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    std::uint8_t& idle = contacts.idle[at];
-    if (idle != 0) continue;
+    if (contacts.idle[at] != 0) continue;
     const Columns m = of_pairs<Law::has_spin>(spheres, contacts, at);
     const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
                                    m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
@@ -175,7 +178,7 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
       meeting.spin = {m.of[3], m.of[7], m.spin_z};
     }
     deepest = greater(deepest, meeting.overlap);
-    idle = act<Law>(meeting, contacts, at, constants, 0.5) ? 0 : 1;
+    set_idle(contacts, at, !act<Law>(meeting, contacts, at, constants, 0.5));
   }
   keep_deepest(contacts, deepest);
 }
@@ -205,8 +208,8 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
 
 // A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
 // step back, go a step on, and then the positions. Moment of inertia 1/10.
-template <bool spin, bool full_step, bool mostly_idle>
-[[gnu::always_inline]] inline void advance_all(const SphereArrays& spheres, Advance& step) {
+template <bool spin, bool full_step, bool all>
+[[gnu::always_inline]] inline void advance_those(const SphereArrays& spheres, Advance& step) {
   constexpr Half sign_of[2] = {{1, 1, 1, 1}, {-1, -1, -1, 1}};
   const double dt = step.time_step, turn = 10 * dt;
   const Half kick = {dt, dt, dt, turn}, twist = {0, 0, 0, turn}, move = {dt, dt, dt, 0};
@@ -215,12 +218,15 @@ template <bool spin, bool full_step, bool mostly_idle>
   double fastest = 0;
   for (std::size_t i = 0; i < spheres.n; ++i) {
     Half force = weight, rest = {};
-    for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
-      const std::uint32_t slot = spheres.slot[s];
-      if (mostly_idle && spheres.idle[(slot >> 1) & ~(wide_size - 1)] != 0) continue;
-      const double* action = spheres.action[slot >> 1].of;
-      force += sign_of[slot & 1] * half_at(action);
-      rest += half_at(action + 4);
+    if (all || spheres.acted_upon[i] != 0) {
+      for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
+        const std::uint32_t slot = spheres.slot[s];
+        const double* action = spheres.action[slot >> 1].of;
+        force += sign_of[slot & 1] * half_at(action);
+        rest += half_at(action + 4);
+      }
+      spheres.dissipated[2 * i] += rest[0];
+      spheres.dissipated[2 * i + 1] += rest[1];
     }
     const Half kicked = force * kick, twisted = rest * twist;
     double* row = spheres.rows[i].of;
@@ -245,8 +251,6 @@ template <bool spin, bool full_step, bool mostly_idle>
         spheres.spin_z[i] += turned;
       }
     }
-    spheres.dissipated[2 * i] += rest[0];
-    spheres.dissipated[2 * i + 1] += rest[1];
     const Half apart = velocity - drift, squares = apart * apart;
     const double speed_squared = squares[0] + squares[1] + squares[2];
     fastest = speed_squared > fastest ? speed_squared : fastest;
@@ -256,10 +260,10 @@ template <bool spin, bool full_step, bool mostly_idle>
 
 template <bool spin, bool full_step>
 void advance(const SphereArrays& spheres, Advance& step) {
-  if (step.mostly_idle) {
-    advance_all<spin, full_step, true>(spheres, step);
+  if (spheres.acted_upon == nullptr) {
+    advance_those<spin, full_step, true>(spheres, step);
   } else {
-    advance_all<spin, full_step, false>(spheres, step);
+    advance_those<spin, full_step, false>(spheres, step);
   }
 }
 

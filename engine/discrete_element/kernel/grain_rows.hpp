@@ -27,7 +27,7 @@ using CacheLines = std::vector<T, LargePageAllocator<T>>;
 inline constexpr std::size_t most_history = 6;
 
 /// Kernels go through contacts in blocks of 4, 8 or 16.
-inline constexpr std::size_t block_size = 16;
+inline constexpr std::size_t smallest_block = 4, block_size = 16;
 
 /// Contacts that may be: pairs of spheres, or spheres and sides. All arrays are of `n` entries, a
 /// multiple of block_size; what fills the last block are spheres that touch nothing.
@@ -39,7 +39,7 @@ struct ContactArrays {
   std::array<const double*, 4> side{};    // of sides: normal, distance
   std::array<double*, most_history> history{};
   Row* action = nullptr;
-  // Of pairs: in the first of a kernel's block 1 if the whole block has neither history nor action.
+  // Of pairs: in every fourth 1 if the kernel's block has neither history nor action.
   std::uint8_t* idle = nullptr;
   double side_velocity = 0;   // of the floor, upwards
   double* deepest = nullptr;  // the greatest overlap, raised
@@ -56,7 +56,7 @@ struct SphereArrays {
   const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
   const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
   const Row* action = nullptr;
-  const std::uint8_t* idle = nullptr;  // as ContactArrays has it, of all contacts
+  const std::uint8_t* acted_upon = nullptr;  // [n] 0 where all actions are 0; null: not known
 };
 
 /// What an advance by one step is given, and what it finds.
@@ -64,7 +64,6 @@ struct Advance {
   double time_step = 0, gravity = 1;
   double drift[3] = {0, 0, 0};  // velocity from which `fastest` is counted
   double fastest_squared = 0;
-  bool mostly_idle = false;  // contacts: actions of those that are need not be summed
 };
 
 /// One law, for one instruction set.
