@@ -114,24 +114,29 @@ def contacts(run):
                  rows), statements
 
 
-def densities(curve, printed):
-    return [is_within(f"rho = {value} after {tap} taps", Estimate.of(curve[tap] - value), PRINTED,
+def densities(curve, printed, of=""):
+    return [is_within(f"rho = {value} after {tap} taps{of}", Estimate.of(curve[tap] - value), PRINTED,
                       f"{at(curve, tap)}; from it ") for tap, value in printed.items()]
 
 
-def gain_of_two_hundred(curve):
+def gain_of_two_hundred(curve, of=""):
     gain = Estimate.of(curve[250] - curve[50])
-    return is_within("from tap 50 to 250 it gains 0.019",
+    return is_within(f"from tap 50 to 250 it gains 0.019{of}",
                      Estimate.of(curve[250] - curve[50] - 0.019), 2 * PRINTED,
                      f"{gain.text()}; from it ")
 
 
 def published_rules(run):
-    curve, shown = run.curves("bulk_fraction")[0], (0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 250)
-    statements = densities(curve, {0: 0.567, 50: 0.578, 250: 0.597})
-    return table(["tap"] + [str(tap) for tap in shown],
-                 [["Phi"] + [at(curve, tap) for tap in shown]]), \
-        statements + [gain_of_two_hundred(curve)]
+    shown = (0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 250)
+    curves, steps = run.curves("bulk_fraction"), run.values()
+    statements = densities(curves[0], {0: 0.567})  # the same beds for every first step
+    rows = []
+    for curve, step in zip(curves, steps):
+        of = f", first step {step}"
+        statements += densities(curve, {50: 0.578, 250: 0.597}, of)
+        statements.append(gain_of_two_hundred(curve, of))
+        rows.append([step] + [at(curve, tap) for tap in shown])
+    return table(["first step, d"] + [f"Phi, tap {tap}" for tap in shown], rows), statements
 
 
 def reading(max_step, reset_each_tap, measure_start, of):
@@ -152,10 +157,10 @@ def readings(run):
     for place, (curve, sweeps) in enumerate(zip(run.curves("bulk_fraction"),
                                                 run.curves("sweeps"))):
         words = reading(**{name: values[place] for name, values in settings.items()})
-        rows.append([words] + [at(curve, tap) for tap in taps] +
+        rows.append([f"{place + 1}: {words}"] + [at(curve, tap) for tap in taps] +
                     [f"{np.mean(sweeps[1:]):.0f}"])
         statements.append(are_within(
-            f"rho = 0.578 and 0.597 after 50 and 250 taps; {words}",
+            f"rho = 0.578 and 0.597 after 50 and 250 taps, reading {place + 1}",
             [Estimate.of(curve[tap] - value) for tap, value in printed.items()], PRINTED,
             " and ".join(at(curve, tap) for tap in printed)))
     return table(["reading"] + [f"Phi, tap {tap}" for tap in taps] + ["sweeps a tap"],

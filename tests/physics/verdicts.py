@@ -162,11 +162,13 @@ def are_positive(paper, estimates, found, digits=4, scale=1.0, name="t-tests"):
 def are_within(paper, estimates, margin, found, digits=4):
     """All of the paper's numbers are 0, within the margin: shown where the test of each shows it,
     refuted where one lies beyond (p times their number)."""
-    if not all(estimate.testable for estimate in estimates):
+    tested = [estimate for estimate in estimates if estimate.testable]
+    if not tested:
         return Statement(paper, found, "no test")
-    near = max(p_within(estimate, margin) for estimate in estimates)
-    far = min(1.0, len(estimates) * min(p_beyond(estimate, margin) for estimate in estimates))
-    worst = max(estimates, key=lambda estimate: estimate.error)
+    all_tested = len(tested) == len(estimates)  # else it can be refuted only
+    near = max(p_within(estimate, margin) for estimate in tested) if all_tested else 1.0
+    far = min(1.0, len(estimates) * min(p_beyond(estimate, margin) for estimate in tested))
+    worst = max(tested, key=lambda estimate: estimate.error)
     return Statement(paper, found, f"all within {margin:.{digits}f} or one beyond: t-tests, "
                      f"{degrees_of_freedom(worst.dof)} each", min(near, far), near < far,
                      lambda level: found_beyond(worst, margin, level / len(estimates), digits, 1.0))

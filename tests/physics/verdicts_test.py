@@ -83,6 +83,11 @@ def all_within(random):
             for word in wrong:
                 at_most(found.count(word) / ENSEMBLES, LEVEL,
                         f"{word}: two of M = {realizations} at {first} and {second}")
+    still, near, far = (Estimate.of(np.array(values)) for values in
+                        ([-9.0, -9.0, -9.0], [-0.01, 0.0, 0.02], [6.9, 7.0, 7.2]))
+    for pair, word in (([far, still], DISAGREES), ([near, still], UNDECIDED)):
+        said = judge([are_within("", pair, 1, "")])[0][2]
+        check(said == word, "one number without scatter:", said)
 
 
 def families(random):
