@@ -25,15 +25,14 @@ std::string sentence(std::string text, const std::string& number) {
   return text.empty() ? text : text + "\n";
 }
 
-/// How often it happened, of the taps at which the engine moved anything: a start that is not
-/// relaxed leaves columns of the engine without a value.
+/// How often it happened, of the taps at which the engine did any work, the first column that it
+/// shows: a start that is not relaxed has none.
 std::string count_line(const EnsembleSeries& happened, const PointSeries& series) {
+  const auto work = std::ranges::find(series.columns, Shown::mean,
+                                      [](const EnsembleSeries& one) { return one.label.shown; });
   double taps = 0, times = 0;
   for (std::size_t tap = 0; tap < happened.count.size(); ++tap) {
-    const bool moved = std::ranges::all_of(series.columns, [&](const EnsembleSeries& column) {
-      return column.label.shown == Shown::spread || column.count[tap] > 0;
-    });
-    if (!moved) continue;
+    if (work != series.columns.end() && !(work->mean[tap] > 0)) continue;
     taps += happened.count[tap];
     times += happened.mean[tap] * happened.count[tap];
   }

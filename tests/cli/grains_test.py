@@ -270,6 +270,12 @@ class Grains(Case):
         self.assertIn("the pilot failed: a sphere left the container, or lies deeper",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 
+    def test_taps_that_dissipate_nothing_are_counted_at_the_cap(self):
+        elastic = {"walton_braun": {"restitution": 1, "friction": 0}}
+        self.write(changed(GRAINS, snapshots={}, protocol=[{"tap": {"lift": 0.5}, "count": 2}],
+                           engine={"discrete_element": {"contact": elastic, "most_seconds": 0.5}}))
+        self.assertIn("9 of 9 taps ended at the cap", self.run_scene().stdout)
+
     def test_what_does_not_go_together_is_refused(self):
         self.write(changed(GRAINS, relax={"polar": {}}))
         self.assertIn("/relax: trials are of Monte Carlo",

@@ -41,9 +41,9 @@ def poured(run):
             phi[0][0] - 0.6366), PRINTED, f"{at(phi[0], 0)}; from it "),
         is_within(f"{POURED} +- {RANGE} at a friction of 0.1", Estimate.of(
             phi[tenth][0] - POURED), RANGE, f"{at(phi[tenth], 0)}; from it "),
-        of_interval("nearest neighbours at 0.1: mean 7.2713 +- 0.0558", *mean[:2],
+        of_interval("nearest neighbours at 0.1, cut at 1.05 d: mean 7.2713 +- 0.0558", *mean[:2],
                     between=(7.2713 - 0.0558, 7.2713 + 0.0558), found="mean within 1.05 d"),
-        of_interval("nearest neighbours at 0.1: width 1.2550 +- 0.0262", *width[:2],
+        of_interval("nearest neighbours at 0.1, cut at 1.05 d: width 1.2550 +- 0.0262", *width[:2],
                     between=(1.2550 - 0.0262, 1.2550 + 0.0262), found="width within 1.05 d")]
     return table(["friction", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
                   "contacts a sphere", "neighbours within 1.05 d: mean", "width",
