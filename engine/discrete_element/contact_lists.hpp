@@ -66,7 +66,7 @@ class ContactLists {
   const Row* action() const { return action_.data(); }
   /// Of the contacts with the floor, the forces upwards, summed in the order of the spheres.
   double floor_force() const;
-  /// Of every sphere 0 if nothing acts on it in this step; null if most pairs have an action.
+  /// Of every sphere 0 if nothing acts on it in this step; null unless nearly all pairs are idle.
   const std::uint8_t* acted_upon();
   std::size_t n_near() const { return near_.n; }
   std::size_t bytes() const;
