@@ -135,7 +135,7 @@ def published_rules(run):
         of = f", first step {step}"
         statements += densities(curve, {50: 0.578, 250: 0.597}, of)
         statements.append(gain_of_two_hundred(curve, of))
-        rows.append([step] + [at(curve, tap) for tap in shown])
+        rows.append([str(step)] + [at(curve, tap) for tap in shown])
     return table(["first step, d"] + [f"Phi, tap {tap}" for tap in shown], rows), statements
 
 
