@@ -115,8 +115,8 @@ def contacts(run):
 
 
 def densities(curve, printed, of=""):
-    return [is_within(f"rho = {value} after {tap} taps{of}", Estimate.of(curve[tap] - value), PRINTED,
-                      f"{at(curve, tap)}; from it ") for tap, value in printed.items()]
+    return [is_within(f"rho = {value} after {tap} taps{of}", Estimate.of(curve[tap] - value),
+                      PRINTED, f"{at(curve, tap)}; from it ") for tap, value in printed.items()]
 
 
 def gain_of_two_hundred(curve, of=""):

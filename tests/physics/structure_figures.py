@@ -111,7 +111,8 @@ def wall_profiles(run):
             "10^3 alpha R, the inner strengths less the weakest: ", digits=2, scale=1e3,
             name="paired t-test"),
         is_positive("alpha is bell-shaped: it falls at last", Estimate.of(
-            alpha[-2] - alpha[-1]), "10^3 alpha R, the second strongest less the strongest: ", digits=2, scale=1e3,
+            alpha[-2] - alpha[-1]),
+            "10^3 alpha R, the second strongest less the strongest: ", digits=2, scale=1e3,
             name="paired t-test")]
     for name, peaks, trough in (("first", (0.55, 1.45), 0.95), ("second", (1.45, 2.35), 1.85),
                                 ("third", (2.35, 3.25), 2.75)):
