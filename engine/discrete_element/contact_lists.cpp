@@ -13,19 +13,12 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
 
-Vec3 centre_of(const Row& row) {
-  return {row.of[0], row.of[1], row.of[2]};
-}
-
 std::int32_t turns_of(double x, double period) {
   return period > 0 ? static_cast<std::int32_t>(std::floor(x / period)) : 0;
 }
 
 auto order(const KeptPair& pair) {
   return std::tuple(pair.first, pair.second, pair.turns);
-}
-auto order(const KeptSide& side) {
-  return std::tuple(side.sphere, side.side);
 }
 
 }  // namespace
@@ -196,52 +189,6 @@ ContactHistory ContactLists::history_of(const Near& near, std::size_t at) const 
   return history;
 }
 
-void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
-  std::vector<KeptSide> kept = kept_sides();
-  waiting_sides_.clear();
-  floor_ = {};
-  sides_ = {};
-  constexpr double reach = sphere_radius + side_skin;
-  const auto add = [](Near& near, std::uint32_t place, std::uint32_t side) {
-    near.first.push_back(place);
-    near.source.push_back(side);
-  };
-  std::vector<std::uint32_t> by_number(n_spheres_);
-  for (std::uint32_t i = 0; i < n_spheres_; ++i) by_number[numbers_[i]] = i;
-  for (const std::uint32_t i : by_number) {
-    const Vec3 r = centre_of(rows[i]);
-    if (boundary_.floor && r.z - floor_height < reach) add(floor_, i, 0);
-    if (boundary_.sides == Sides::walls) {
-      if (r.x < reach) add(sides_, i, 1);
-      if (boundary_.width_x - r.x < reach) add(sides_, i, 2);
-      if (r.y < reach) add(sides_, i, 3);
-      if (boundary_.width_y - r.y < reach) add(sides_, i, 4);
-    } else if (boundary_.sides == Sides::cylinder) {
-      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
-      if (boundary_.axis() - std::sqrt(x * x + y * y) < reach) add(sides_, i, 1);
-    }
-  }
-  fill(floor_, floor_.first.size());
-  fill(sides_, sides_.first.size());
-  carry_sides(floor_, kept);
-  carry_sides(sides_, kept);
-}
-
-void ContactLists::carry_sides(Near& sides, const std::vector<KeptSide>& kept) const {
-  for (std::size_t at = 0; at < sides.n && !kept.empty(); ++at) {
-    const auto key = std::tuple(numbers_[sides.first[at]], sides.source[at]);
-    const auto found =
-        std::ranges::lower_bound(kept, key, {}, [](const KeptSide& one) { return order(one); });
-    if (found == kept.end() || order(*found) != key) continue;
-    for (int k = 0; k < n_history_; ++k) sides.history[k][at] = found->history[k];
-  }
-}
-
-void ContactLists::add_sides(const Near& near, std::vector<KeptSide>& out) const {
-  for (std::size_t at = 0; at < near.n; ++at)
-    out.push_back({numbers_[near.first[at]], near.source[at], history_of(near, at)});
-}
-
 void ContactLists::keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides) {
   n_spheres_ = 0;
   near_ = {};
@@ -261,23 +208,9 @@ std::vector<KeptPair> ContactLists::near_pairs() const {
   return out;
 }
 
-std::vector<KeptSide> ContactLists::near_sides() const {
-  std::vector<KeptSide> out = waiting_sides_;
-  add_sides(floor_, out);
-  add_sides(sides_, out);
-  std::ranges::sort(out, {}, [](const KeptSide& one) { return order(one); });
-  return out;
-}
-
 std::vector<KeptPair> ContactLists::kept_pairs() const {
   std::vector<KeptPair> kept = near_pairs();
   std::erase_if(kept, [](const KeptPair& one) { return one.history == ContactHistory{}; });
-  return kept;
-}
-
-std::vector<KeptSide> ContactLists::kept_sides() const {
-  std::vector<KeptSide> kept = near_sides();
-  std::erase_if(kept, [](const KeptSide& one) { return one.history == ContactHistory{}; });
   return kept;
 }
 
@@ -331,47 +264,6 @@ ContactArrays ContactLists::floor() {
 }
 ContactArrays ContactLists::sides() {
   return arrays(sides_, near_.first.size() + floor_.first.size());
-}
-
-void ContactLists::measure_sides(std::span<const Row> rows, double floor_height) {
-  const auto set = [](Near& near, std::size_t at, Vec3 normal, double distance) {
-    near.side[0][at] = normal.x;
-    near.side[1][at] = normal.y;
-    near.side[2][at] = normal.z;
-    near.side[3][at] = distance;
-  };
-  for (std::size_t at = 0; at < floor_.n; ++at)
-    set(floor_, at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
-  for (std::size_t at = 0; at < sides_.n; ++at) {
-    const Vec3 r = centre_of(rows[sides_.first[at]]);
-    if (boundary_.sides == Sides::cylinder) {
-      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
-      const double distance = std::sqrt(x * x + y * y);
-      const double inverse = distance > 0 ? 1 / distance : 0;
-      set(sides_, at, {-x * inverse, -y * inverse, 0}, boundary_.axis() - distance);
-      continue;
-    }
-    switch (sides_.source[at]) {
-      case 1:
-        set(sides_, at, {1, 0, 0}, r.x);
-        break;
-      case 2:
-        set(sides_, at, {-1, 0, 0}, boundary_.width_x - r.x);
-        break;
-      case 3:
-        set(sides_, at, {0, 1, 0}, r.y);
-        break;
-      default:
-        set(sides_, at, {0, -1, 0}, boundary_.width_y - r.y);
-        break;
-    }
-  }
-}
-
-double ContactLists::floor_force() const {
-  double sum = 0;
-  for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].of[2];
-  return sum;
 }
 
 const std::uint8_t* ContactLists::acted_upon() {

@@ -10,6 +10,13 @@
 
 namespace jostle::inline engine {
 
+inline Vec3 centre_of(const Row& sphere) {
+  return {sphere.of[0], sphere.of[1], sphere.of[2]};
+}
+inline Vec3 velocity_of(const Row& sphere) {
+  return {sphere.of[4], sphere.of[5], sphere.of[6]};
+}
+
 /// What a law remembers of a contact.
 using ContactHistory = std::array<double, most_history>;
 

@@ -34,46 +34,67 @@ double shear_force(GrainLaw law, const ContactHistory& history) {
 }
 
 struct HeldByContact {
-  double elastic = 0, latched = 0;
+  double elastic = 0, latched = 0, friction = 0;
 };
 
-// What a contact stores and has latched; one that a displacement has opened until it is erased.
-HeldByContact held(GrainLaw law, const LawConstants& constants, double overlap,
+// A linear contact's tangential spring is cut so that spring and dashpot together pull with mu N,
+// and is longer where they slide faster. It can give back what a spring of mu N holds: the rest,
+// which the contacts' sums do not have yet, is friction's. One that a displacement has opened holds
+// all until it is erased.
+void add_shear(HeldByContact& out, const LawConstants& constants, const Approach& at,
+               double force) {
+  double given_back = force;
+  if (at.overlap > 0) {
+    const double normal = constants.stiffness * at.overlap - constants.damping * at.speed;
+    given_back = std::min(force, constants.friction * std::abs(normal));
+  }
+  out.elastic += 0.5 / constants.tangential * squared(given_back);
+  out.friction += 0.5 / constants.tangential * (squared(force) - squared(given_back));
+}
+
+// What a contact stores, has latched and has rubbed away beyond what its steps have counted; one
+// that a displacement has opened until it is erased.
+HeldByContact held(GrainLaw law, const LawConstants& constants, const Approach& at,
                    const ContactHistory& history) {
   HeldByContact out;
   if (is_linear(law)) {
-    out.elastic = 0.5 * constants.stiffness * squared(std::max(0.0, overlap));
+    out.elastic = 0.5 * constants.stiffness * squared(std::max(0.0, at.overlap));
   } else {
-    out.elastic = 0.5 * constants.unloading * squared(stretch(constants, overlap, history));
+    out.elastic = 0.5 * constants.unloading * squared(stretch(constants, at.overlap, history));
     out.latched =
-        0.5 * constants.stiffness * constants.latched * squared(std::max(history[0], overlap));
+        0.5 * constants.stiffness * constants.latched * squared(std::max(history[0], at.overlap));
   }
-  if (law == GrainLaw::linear || law == GrainLaw::walton_braun)
-    out.elastic += 0.5 / constants.tangential * squared(shear_force(law, history));
+  const double shear = shear_force(law, history);
+  if (law == GrainLaw::linear) add_shear(out, constants, at, shear);
+  if (law == GrainLaw::walton_braun) out.elastic += 0.5 / constants.tangential * squared(shear);
   return out;
 }
 
 }  // namespace
 
-double GrainLoop::overlap_of(const KeptPair& pair) const {
+Approach GrainLoop::approach_of(const KeptPair& pair) const {
+  const Row &first = rows_[place_of_[pair.first]], &second = rows_[place_of_[pair.second]];
   const Vec3 periods = boundary_.periods();
   const Vec3 shift = {pair.turns[0] * periods.x, pair.turns[1] * periods.y, 0};
-  const auto centre = [&](std::uint32_t number) {
-    const Row& row = rows_[place_of_[number]];
-    return Vec3{row.of[0], row.of[1], row.of[2]};
-  };
-  return 1 - std::sqrt(norm_squared(centre(pair.first) - centre(pair.second) - shift));
+  const Vec3 between = centre_of(first) - centre_of(second) - shift;
+  const double distance = std::sqrt(norm_squared(between));
+  return {1 - distance, dot(velocity_of(first) - velocity_of(second), between) / distance};
 }
 
-double GrainLoop::overlap_of(const KeptSide& side) const {
+Approach GrainLoop::approach_of(const KeptSide& side) const {
   const Row& row = rows_[place_of_[side.sphere]];
-  const double x = row.of[0], y = row.of[1];
-  if (side.side == 0) return sphere_radius - (row.of[2] - floor_.height);
-  if (boundary_.sides == Sides::cylinder)
-    return sphere_radius - (boundary_.axis() - std::sqrt(squared(x - boundary_.axis()) +
-                                                         squared(y - boundary_.axis())));
-  const double distances[] = {x, boundary_.width_x - x, y, boundary_.width_y - y};
-  return sphere_radius - distances[side.side - 1];
+  const Vec3 r = centre_of(row), v = velocity_of(row);
+  if (side.side == 0)
+    return {sphere_radius - (r.z - floor_.height), v.z - floor_.velocity};
+  if (boundary_.sides == Sides::cylinder) {
+    const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
+    const double from_axis = std::sqrt(squared(x) + squared(y));
+    const double outwards = from_axis > 0 ? (x * v.x + y * v.y) / from_axis : 0;
+    return {sphere_radius - (boundary_.axis() - from_axis), -outwards};
+  }
+  const double distances[] = {r.x, boundary_.width_x - r.x, r.y, boundary_.width_y - r.y};
+  const double speeds[] = {v.x, -v.x, v.y, -v.y};
+  return {sphere_radius - distances[side.side - 1], speeds[side.side - 1]};
 }
 
 Energies GrainLoop::energies() {
@@ -89,11 +110,12 @@ Energies GrainLoop::energies() {
   const auto add = [&](const HeldByContact& one) {
     sum.elastic += one.elastic;
     sum.latched += one.latched;
+    sum.friction += one.friction;
   };
   for (const KeptPair& pair : lists_.near_pairs())
-    add(held(settings_.law, settings_.spheres, overlap_of(pair), pair.history));
+    add(held(settings_.law, settings_.spheres, approach_of(pair), pair.history));
   for (const KeptSide& side : lists_.near_sides())
-    add(held(settings_.law, side.side == 0 ? settings_.floor : settings_.sides, overlap_of(side),
+    add(held(settings_.law, side.side == 0 ? settings_.floor : settings_.sides, approach_of(side),
              side.history));
   return sum;
 }
@@ -103,7 +125,7 @@ ContactCensus GrainLoop::census() {
   ContactCensus census;
   double sliding = 0, pairs = 0;
   for (const KeptPair& pair : lists_.near_pairs()) {
-    const double overlap = overlap_of(pair);
+    const double overlap = approach_of(pair).overlap;
     const double force = normal_force(settings_.law, settings_.spheres, overlap, pair.history);
     if (!(force > 0)) continue;
     census.contacts += 2;
@@ -115,7 +137,7 @@ ContactCensus GrainLoop::census() {
   }
   for (const KeptSide& side : lists_.near_sides()) {
     const LawConstants& law = side.side == 0 ? settings_.floor : settings_.sides;
-    census.contacts += normal_force(settings_.law, law, overlap_of(side), side.history) > 0;
+    census.contacts += normal_force(settings_.law, law, approach_of(side).overlap, side.history) > 0;
   }
   census.contacts /= static_cast<double>(n_spheres());
   if (pairs > 0) {

@@ -41,7 +41,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
   for (std::size_t at = 0; at < lists_.n_near(); ++at) {
     const std::uint32_t a = pairs.first[at], b = pairs.second[at];
     const Vec3 shift = {pairs.shift[0][at], pairs.shift[1][at], 0};
-    const Vec3 between = triple(rows_[a], 0) - triple(rows_[b], 0) - shift;
+    const Vec3 between = centre_of(rows_[a]) - centre_of(rows_[b]) - shift;
     const double distance = std::sqrt(norm_squared(between));
     Contact contact{.first = numbers_[a],
                     .second = numbers_[b],

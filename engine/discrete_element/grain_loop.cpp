@@ -26,12 +26,6 @@ GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
   return baseline::grain_kernels(law);
 }
 
-Vec3 centre_of(const Row& row) {
-  return {row.of[0], row.of[1], row.of[2]};
-}
-Vec3 velocity_of(const Row& row) {
-  return {row.of[4], row.of[5], row.of[6]};
-}
 Vec3 spin_of(const Row& row, double spin_z) {
   return {row.of[3], row.of[7], spin_z};
 }

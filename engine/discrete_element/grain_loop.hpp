@@ -34,6 +34,11 @@ struct ContactCensus {
   double mean_overlap = 0;  // of those between spheres, diameters
 };
 
+/// How deep two bodies lie in each other, and how fast they part along their normal.
+struct Approach {
+  double overlap = 0, speed = 0;
+};
+
 /// A sphere as it goes on from step to step.
 struct GrainState {
   Vec3 centre;                       // not brought into the box
@@ -101,8 +106,8 @@ class GrainLoop {
   void add_velocities(BedMechanics& out);
   void renew_lists();
   bool near_lists_hold();
-  double overlap_of(const KeptPair& pair) const;
-  double overlap_of(const KeptSide& side) const;
+  Approach approach_of(const KeptPair& pair) const;
+  Approach approach_of(const KeptSide& side) const;
   double farthest_since(const std::vector<Vec3>& reference, const Vec3& drift) const;
   SphereArrays spheres();
 

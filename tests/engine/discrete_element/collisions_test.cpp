@@ -137,6 +137,35 @@ TEST_CASE("a sphere that slides on the floor comes to roll") {
   CHECK(std::abs(rolling.velocity.x - 0.5 * rolling.spin.y) < 2e-3);
 }
 
+// mu N times the way that the surfaces slide. What the spring keeps while the dashpot pulls is no
+// energy that a contact of mu N could give back.
+TEST_CASE("a sphere that slides fast on springs and dashpots rubs away mu N times its way") {
+  const double mu = 0.1, speed = 5;
+  for (const double restitution : {0.9, 0.2}) {
+    CAPTURE(restitution);
+    const ReducedSettings units =
+        settings(LinearSpringDashpot{.restitution = restitution, .friction = mu}, 1);
+    const double sunk = 1 / units.floor.stiffness;
+    GrainLoop loop = loop_of(box, units, {grain({5, 5, 0.5 - sunk}, {speed, 0, 0})});
+    const double start = loop.energies().held();
+    REQUIRE(units.floor.shear_damping * speed > 10 * mu);
+    const double springs_hold =
+        0.5 / units.floor.stiffness + 0.5 * mu * mu / units.floor.tangential;
+    double way = 0, before = 0;
+    for (int look = 0; look < 400; ++look) {
+      loop.run(5);
+      const Energies now = loop.energies();
+      const GrainState sphere = loop.state().grains[0];
+      way += 5 * units.time_step * (sphere.velocity.x - 0.5 * sphere.spin.y);
+      CHECK(now.friction > before);
+      CHECK(now.friction == Approx(mu * way).epsilon(0.01).margin(1e-4));
+      CHECK(now.elastic < 1.05 * springs_hold);
+      CHECK(std::abs(start - now.held() - now.dissipated()) < 1e-3 * mu * way + 1e-4);
+      before = now.friction;
+    }
+  }
+}
+
 TEST_CASE("collisions go step by step as those of LAMMPS") {
   constexpr double stiffness = 40559.36368294987, tangential = 11588.389623699963;
   constexpr double gamma_n = 19.093013324349467, gamma_t = 9.546506662174734, speed = 0.05;
