@@ -66,6 +66,25 @@ const symbols = {
   mean_height: "\u27e8Z\u27e9", bottom_fraction: "\u03a6_b", corrected_fraction: "\u27e8\u03a6_c\u27e9",
 };
 
+const controls = {sqrt_epsilon: "\u221a\u03b5", epsilon: "\u03b5", sqrt_delta: "\u221a\u03b4", gamma: "\u03b3", lambda: "\u03bb",
+                  Gamma: "\u0393", amplitude: "A"};
+
+/// Of the strengths of taps.
+export function controlSymbol(name) {
+  return controls[name] ?? words(name);
+}
+
+/// "strength of the taps gamma (diameter)".
+export function controlLabel(name, units) {
+  const symbol = controls[name];
+  return (symbol ? `strength of the taps ${symbol}` : words(name ?? "")) + (!units || units === "1" ? "" : ` (${units})`);
+}
+
+/// Which strength a table has as a quantity.
+export function controlOf(table) {
+  return Object.keys(controls).find((name) => table.has(name)) ?? "";
+}
+
 /// "mean height <Z> (diameter)".
 export function axisLabel(name, units) {
   const symbol = symbols[name];

@@ -8,11 +8,14 @@ import {compactionSection, engineSection, spreadSection} from "./sections/curves
 import {fitsSection} from "./sections/fits.js";
 import {steadySection} from "./sections/steady.js";
 import {ageingSection} from "./sections/ageing.js";
+import {motionSection} from "./sections/motion.js";
+import {orderingSection} from "./sections/ordering.js";
 import {spectraSection} from "./sections/spectra.js";
 import {hysteresisSection, sweepSection} from "./sections/sweeps.js";
 import {structureSections} from "./sections/structure.js";
 import {costSection, otherSection, precisionSection} from "./sections/others.js";
 import {packingSection} from "./sections/packing.js";
+import {memorySection, volumesSection} from "./sections/volumes.js";
 
 const mostShown = 8;  // sweep points that are switched on at first
 
@@ -100,6 +103,7 @@ class Chapter {
     const {run} = this;
     const sections = [runSection(this), this.chips(), compactionSection(this), spreadSection(this), packingSection(this), fitsSection(this),
                       steadySection(this), ageingSection(this), spectraSection(this), hysteresisSection(this), sweepSection(this),
+                      orderingSection(this), motionSection(this), volumesSection(this), memorySection(this),
                       ...structureSections(this), engineSection(this), costSection(this), precisionSection(this), otherSection(this)].filter(Boolean);
     const description = run.scene.description;
     const article = element("article", {id: this.id, "aria-label": run.file},

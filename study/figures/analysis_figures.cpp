@@ -9,25 +9,6 @@
 namespace jostle::inline study {
 namespace {
 
-/// A curve of every waiting time, of the rows that have a value.
-template <class MakeRow>
-std::vector<FigureSeries> by_waiting_time(const TableView& table, MakeRow make_row) {
-  const std::vector<double> ages = table.axis("waiting_time"), lags = table.axis("lag");
-  std::vector<FigureSeries> series;
-  for (std::size_t k = 0; k < ages.size(); ++k) {
-    FigureSeries one{.name = fmt::format("t_W = {}", ages[k]),
-                     .colour = colour_of(k, ages.size()),
-                     .drawn = Drawn::joined_points,
-                     .symbol = series.size()};
-    for (std::size_t j = 0; j < lags.size(); ++j) {
-      FigureRow row = make_row(k, j, lags[j]);
-      if (std::isfinite(row.y)) one.rows.push_back(std::move(row));
-    }
-    if (!one.rows.empty()) series.push_back(std::move(one));
-  }
-  return series;
-}
-
 double at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() ? values[i] : no_value;
 }

@@ -156,6 +156,40 @@ std::string axis_label(const std::string& name, const std::string& units) {
   return words(name) + (symbol == symbols.end() ? "" : symbol->second) + unit_text(units);
 }
 
+namespace {
+
+struct ControlName {
+  const char *name, *symbol;
+};
+constexpr ControlName controls[] = {{"sqrt_epsilon", "√ε"}, {"epsilon", "ε"}, {"sqrt_delta", "√δ"},
+                                    {"gamma", "γ"},         {"lambda", "λ"},  {"Gamma", "Γ"},
+                                    {"amplitude", "A"}};
+
+const char* symbol_of_control(const std::string& name) {
+  const auto* const found = std::ranges::find(controls, name, &ControlName::name);
+  return found == std::end(controls) ? nullptr : found->symbol;
+}
+
+}  // namespace
+
+std::string control_symbol(const std::string& name) {
+  const char* const symbol = symbol_of_control(name);
+  return symbol == nullptr ? words(name) : symbol;
+}
+
+std::string control_label(const std::string& name, const std::string& units) {
+  const char* const symbol = symbol_of_control(name);
+  return (symbol == nullptr ? words(name) : std::string("strength of the taps ") + symbol) +
+         unit_text(units);
+}
+
+std::string control_of(const TableView& table) {
+  for (const ControlName& one : controls) {
+    if (table.has(one.name)) return one.name;
+  }
+  return "";
+}
+
 std::vector<FigureRow> rows_of(const std::vector<double>& xs, const std::vector<double>& ys,
                                const std::vector<double>& errors) {
   std::vector<FigureRow> rows;

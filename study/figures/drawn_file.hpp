@@ -71,6 +71,12 @@ std::string words(std::string name);
 std::string sentence(std::string text);
 /// "mean height <Z> (diameter)".
 std::string axis_label(const std::string& name, const std::string& units);
+/// Of a strength of taps, "sqrt_epsilon": "√ε"; what is none in words.
+std::string control_symbol(const std::string& name);
+/// "strength of the taps γ (diameter)".
+std::string control_label(const std::string& name, const std::string& units);
+/// Which strength a table has as a quantity; none: empty.
+std::string control_of(const TableView& table);
 /// " (diameter)"; nothing where there is no unit.
 std::string unit_text(const std::string& units);
 /// One row a place; `errors` may be empty.

@@ -126,7 +126,24 @@ const std::vector<Part>& parts() {
          .beside = "p0_gotoh",
          .beside_name = "Gotoh, Percus-Yevick fluid"}},
        {{{"phi"}}}},
-      {"holes", {}, {{{"unclassified"}}}}};
+      {"holes", {}, {{{"unclassified"}}}},
+      {"gaps",
+       {{"z_of_gap", "gap", "Contacts by gap", "gap that counts as a contact (diameters)",
+         "mean number of contacts", linear, false, Drawn::joined_points, logarithmic},
+        {"rattlers_of_gap", "gap", "Rattlers by gap", "gap that counts as a contact (diameters)",
+         "share of rattlers", linear, true, Drawn::joined_points, logarithmic}},
+       {{{"contacts", "backbone_contacts"}}, {{"rattlers"}}}},
+      {"structure_factor",
+       {{"s", "k", "Structure factor S(k)", "wave number k (1/diameters)", "S(k)", logarithmic,
+         false, Drawn::joined_points}},
+       {{{"s_0_of_line", "s_0_of_squares"}}}},
+      {"clusters",
+       {{"relative_variance", "cells", "Variance of clusters of cells", "cells of a cluster",
+         "variance a cell over that of single cells", logarithmic, false, Drawn::joined_points,
+         logarithmic},
+        {"chi", "cells", "Compactivity of clusters of cells", "cells of a cluster",
+         "χ (sphere volumes)", linear, false, Drawn::joined_points, logarithmic}},
+       {{{"mean_volume"}}}}};
   return all;
 }
 

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
 namespace {
-
-std::string control_label(const std::string& name, const std::string& units) {
-  static const std::map<std::string, std::string> known{
-      {"sqrt_epsilon", "√ε"}, {"gamma", "γ"}, {"epsilon", "ε"}};
-  const auto symbol = known.find(name);
-  return (symbol == known.end() ? words(name) : "strength of the taps " + symbol->second) +
-         unit_text(units);
-}
 
 /// A branch with the step at which the branch before it turned.
 std::vector<std::size_t> steps_of(const std::vector<double>& branch, std::size_t b,
@@ -66,8 +57,7 @@ FigurePanel loop_panel(const TableView& table) {
 }
 
 bool is_sweep(const TableView& table) {
-  return table.group() == "analysis" && !table.point() && !table.is_refused() &&
-         table.path().front() != "cost" && table.name() != "target_precision";
+  return table.is_in("analysis", "sweep") && !table.is_refused();
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ def overlap(first, second):
 
 
 def fluctuations(run):
-    last, rows, states = 1500, [], []
+    last, rows, states = run.scene["analyse"]["steady"][0]["last"], [], []
     steady = run.analyse("steady", "--observable", "mean_height", "--last", last)
     spectra = run.analyse("spectrum", "--observable", "mean_height", "--last", last, "--detrend",
                           "linear")

@@ -11,6 +11,7 @@ import time
 
 import numpy as np
 
+from box_figures import shakes, sides, widths
 from compaction_figures import ageing, bell, compaction, fluctuations, hysteresis, moves
 from grain_figures import columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
@@ -61,12 +62,21 @@ FIGURES = {
                  "theta_0 = pi/4 gives the greatest rate of compaction: a very small one decompacts, "
                  "a large one is less efficient; a very small or large d_max nearly freezes the "
                  "packing; of the law of the angle only the width matters."),
+    "pb-sides": (f"{PB}/sides", sides, [], f"{PB_SETUP}, walls and periodic; figs. 3 to 5 do not "
+                 "name their sides", "Periodic sides do not qualitatively affect figs. 3 to 5."),
+    "pb-widths": (f"{PB}/widths", widths("corrected_fraction", "Phi_c"), [], f"{PB_SETUP}",
+                  "One width."),
     "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
             "The lift of 0.25 densifies much faster than the held dilation by 1.025, which gives "
             "little or nothing."),
     "dr2-wide": (f"{DR}/fig2-wide", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
                  "The lift of 0.25 densifies much faster than the held dilation by 1.025, which "
                  "gives little or nothing."),
+    "dr-shakes": (f"{DR}/shakes", shakes, [], f"{DR_SETUP}; from its refs. 33 and 37",
+                  "Random lateral displacements leave the solids fraction statistically as it is; "
+                  "displacements proportional to height densify the upper part of beds 22 d high "
+                  "little or not at all, so that the bulk stays relatively loose."),
+    "dr-widths": (f"{DR}/widths", widths("bulk_fraction", "Phi"), [], f"{DR_SETUP}", "One width."),
     "dr3": (f"{DR}/fig6", contacts, [], f"{DR_SETUP}", "N_c rises with Phi, along one line."),
     "dr4": (f"{DR}/fig4", best_lift, [], f"{DR_SETUP}; 10 000 to 90 000 taps",
             "Phi grows as KWW, and most at an intermediate lift, near 0.25 to 0.3."),
@@ -111,8 +121,12 @@ PICTURES = {
              Picture("volume of a pore, sphere volumes", "rho_v", across=True, table=1, log="y")],
     "pb-moves": [Picture("longest step, diameters", "10^4 (Phi_c(30) - Phi_c(0))", across=True,
                          log="x")],
+    "pb-sides": [Picture(TAPS, "corrected fraction", across=True, log="x")],
+    "pb-widths": [Picture(TAPS, "corrected fraction", across=True, columns=r"^\d+$", log="x")],
     "dr2": [Picture(TAPS, PHI, across=True, log="x")],
     "dr2-wide": [Picture(TAPS, PHI, across=True, log="x")],
+    "dr-shakes": [Picture(TAPS, "solids fraction, 11 to 17 d", across=True, table=2, log="x")],
+    "dr-widths": [Picture(TAPS, PHI, across=True, columns=r"^\d+$", log="x")],
     "dr3": [Picture("solids fraction of the region", "neighbours within 1.05 d",
                     columns="N_c of the region", x_column=2)],
     "dr4": [Picture(TAPS, PHI, across=True, log="x")],
@@ -153,12 +167,20 @@ def remark_of(page, figure, numbers):
 
 def setup(run):
     scene = run.scene
+    zipped = scene.get("sweep", {}).get("zip", {})
+
+    def swept(pointer, otherwise):
+        values = zipped.get(pointer, [otherwise])
+        return ", ".join(map(str, values[:-1])) + " and " * (len(values) > 1) + str(values[-1])
     width = scene["container"]["width"]
     size = " x ".join(f"{side:.4g}" for side in (width if isinstance(width, list) else [width] * 2))
+    if "/container/width" in zipped:
+        size = swept("/container/width", width)
     taps = len(run.curves("mean_height")[0]) - 1
     streams = ", matched streams" if scene.get("streams") == "matched" else ""
-    return (f"{scene['spheres']} spheres in {size} d, "
-            f"{scene['container']['sides']}, {taps} taps, {run.realizations} realizations{streams}")
+    return (f"{swept('/spheres', scene['spheres'])} spheres in {size} d, "
+            f"{swept('/container/sides', scene['container']['sides'])}, {taps} taps, "
+            f"{run.realizations} realizations{streams}")
 
 
 def with_pictures(figure, text, page):

@@ -16,7 +16,7 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 
 from browser import WIDE, Browser  # noqa: E402
-from pages import make_pages  # noqa: E402
+from pages import DRAWN_TWICE, make_pages  # noqa: E402
 from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
@@ -114,7 +114,7 @@ class SameFigures(Open):
     """The page and jostle report --figures are written in two languages: they show the same."""
 
     def test_every_figure_of_the_page_is_one_of_the_folder_with_the_same_values(self):
-        for name in ("whole", "loop", "grains", "cost"):
+        for name in DRAWN_TWICE:
             BROWSER.open(FOLDER / f"{name}.html")
             folder = figures_of(FOLDER / f"{name}-figures")
             shown = BROWSER.run("""
@@ -123,7 +123,7 @@ class SameFigures(Open):
                   rows: figure.spec.series.filter((one) => !one.isGuide)
                     .flatMap((one) => one.rows.map((row) => [row.x, row.y])),
                 }));""")
-            self.assertGreater(len(shown), 3)
+            self.assertGreater(len(shown), 2)
             for one in shown:
                 with self.subTest(page=name, figure=one["title"]):
                     own = numpy.array(folder.pop(one["title"]), dtype=float)
@@ -190,6 +190,35 @@ class Loop(Open):
         BROWSER.draw_everything()
         legend = BROWSER.find("#file-0-hysteresis .legend").get_attribute("textContent")
         self.assertEqual(legend, "branch 1, upwardsbranch 2, downwards")
+
+
+class States(Open):
+    name = "states"
+
+    def test_ordering_motion_and_volumes_say_what_the_file_says(self):
+        self.assertLess({"ordering", "motion", "volumes", "gaps", "structure_factor", "clusters"},
+                        set(self.sections()))
+        self.assertNotIn("others", self.sections())
+        with h5py.File(FOLDER / "states.h5") as file:
+            analysis = file["analysis"]
+            notes = {
+                "ordering": analysis["ordering/bottom_fraction"].attrs["note_verdict"],
+                "motion": analysis["point_0000/motion/displacement"].attrs["note_age"],
+                "volumes": analysis["volumes/mean_height"].attrs["note_verdict"]}
+        for section, note in notes.items():
+            with self.subTest(section):
+                self.assertIn(note, BROWSER.find(f"#file-0-{section}").get_attribute("textContent"))
+
+
+class Memory(Open):
+    name = "memory"
+
+    def test_memory_says_what_the_file_says(self):
+        with h5py.File(FOLDER / "memory.h5") as file:
+            note = file["analysis/memory/mean_height"].attrs["note_verdict"]
+        text = BROWSER.find("#file-0-memory").get_attribute("textContent")
+        self.assertIn(note, text)
+        self.assertIn("lags 2 to 3", text)
 
 
 class Grains(Open):

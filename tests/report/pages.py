@@ -22,11 +22,23 @@ GRAINS = {
     "engine": {"discrete_element": {}}, "observe": ["mean_height"],
     "snapshots": {"taps": [0, 2]},
     "protocol": [{"tap": {"half_sine": {"amplitude": 0.4413, "frequency": 7.5}}, "count": 2}]}
+STATES = changed(
+    TINY, name="states", realizations=4, motion={"layers": 2},
+    protocol=[{"tap": {"dilate": 0.05}, "count": 40}], snapshots={"taps": [0, 10, 40]},
+    sweep={"/protocol/0/tap/dilate": [0.02, 0.1, 0.3]},
+    analyse={"ordering": [{"observable": "bottom_fraction", "threshold": 0.45, "hold": 2}],
+             "volumes": [{"observable": "mean_height", "last": 32}]},
+    structure={"gaps": {}, "structure_factor": {}, "clusters": {"largest": 4}})
+MEMORY = changed(TINY, name="memory", snapshots={"taps": []}, streams="matched", protocol=[
+    {"tap": {"dilate": 0.05}, "count": 5}, {"tap": {"dilate": 0.05}, "count": 12}],
+    analyse={"memory": [{"observable": "mean_height"}]})
 PLAIN = changed(TINY, name="plain", snapshots={"taps": []}, realizations=1)
 del PLAIN["sweep"]
 MARKUP = changed(WHOLE, name="hostile", description=HOSTILE, realizations=2,
                  sweep={"/protocol/0/tap/dilate": [0.02, 0.05]})
-SCENES = {"whole": WHOLE, "plain": PLAIN, "loop": LOOP, "grains": GRAINS, "hostile": MARKUP}
+SCENES = {"whole": WHOLE, "plain": PLAIN, "loop": LOOP, "grains": GRAINS, "states": STATES,
+          "memory": MEMORY, "hostile": MARKUP}
+DRAWN_TWICE = ("whole", "loop", "grains", "states", "memory", "cost")
 
 
 def make_pages(case):
@@ -40,7 +52,7 @@ def make_pages(case):
     case.jostle("cost", "cost.json", "--replicates", 2, "--taps", 2, "-o", "cost.h5")
     for name in (*SCENES, "cost", "spread"):
         case.jostle("report", f"{name}.h5")
-    for name in ("whole", "loop", "grains", "cost"):
+    for name in DRAWN_TWICE:
         case.jostle("report", f"{name}.h5", "--figures", f"{name}-figures")
     case.jostle("report", "plain.h5", "loop.h5", "-o", "two.html")
 

@@ -1,5 +1,6 @@
 // Accuracy against time, target precision, and tables that have no section of their own.
 import {dataTable, element, figure, number, pair, section, statement, withError, words} from "../section.js";
+import {parts} from "./structure.js";
 
 function front(chapter, table) {
   const names = table.axis("setting");
@@ -43,9 +44,12 @@ export function precisionSection(chapter) {
        number(table.value("value", i)), number(table.value("at_most", i))]), "Targets")));
 }
 
-const drawn = {fits: () => true, analysis: (table) => ["steady", "spectrum", "ageing", "hysteresis", "cost"].includes(table.path[0]) ||
-  ["sweep", "target_precision"].includes(table.path[0]), structure: (table) => ["profile", "sides", "layers", "coordination", "pair_correlation", "order", "voronoi", "pores",
-                                                "void_probability", "holes"].includes(table.path[0])};
+const drawn = {
+  fits: () => true,
+  analysis: (table) => ["steady", "spectrum", "ageing", "hysteresis", "cost", "sweep", "target_precision", "ordering", "motion", "volumes",
+                        "memory"].includes(table.path[0]),
+  structure: (table) => table.path[0] in parts,
+};
 
 /// Of a later version, or another program.
 export function otherSection(chapter) {

@@ -7,7 +7,7 @@ import {snapshotSection} from "./curves.js";
 const mostTaps = 6;
 
 /// A curve of a part at several taps: what is drawn, over what, on which axes.
-const parts = {
+export const parts = {
   profile: {
     title: "Density profile",
     plots: [
@@ -92,6 +92,34 @@ const parts = {
     scalars: ["phi"],
   },
   holes: {title: "Bernal's holes", plots: [], scalars: ["unclassified"]},
+  gaps: {
+    title: "Gaps and contacts",
+    plots: [
+      {y: "z_of_gap", x: "gap", title: "Contacts by gap", xLabel: "gap that counts as a contact (diameters)", yLabel: "mean number of contacts",
+       logX: true, mark: "dots+line"},
+      {y: "rattlers_of_gap", x: "gap", title: "Rattlers by gap", xLabel: "gap that counts as a contact (diameters)", yLabel: "share of rattlers",
+       logX: true, zero: true, mark: "dots+line"},
+    ],
+    trends: [["contacts", "backbone_contacts"], ["rattlers"]],
+    scalars: ["contacts", "backbone_contacts", "rattlers", "gap_exponent"],
+  },
+  structure_factor: {
+    title: "Structure factor",
+    plots: [{y: "s", x: "k", title: "Structure factor S(k)", xLabel: "wave number k (1/diameters)", yLabel: "S(k)", log: true, mark: "dots+line"}],
+    trends: [["s_0_of_line", "s_0_of_squares"]],
+    scalars: ["s_0_of_line", "s_0_of_squares"],
+  },
+  clusters: {
+    title: "Clusters of Voronoi cells",
+    plots: [
+      {y: "relative_variance", x: "cells", title: "Variance of clusters of cells", xLabel: "cells of a cluster",
+       yLabel: "variance a cell over that of single cells", logX: true, log: true, mark: "dots+line"},
+      {y: "chi", x: "cells", title: "Compactivity of clusters of cells", xLabel: "cells of a cluster", yLabel: "\u03c7 (sphere volumes)", logX: true,
+       mark: "dots+line"},
+    ],
+    trends: [["mean_volume"]],
+    scalars: ["mean_volume"],
+  },
 };
 
 function tapPlaces(table) {

@@ -1,6 +1,6 @@
 // What depends on the swept value, or on a strength that goes up and down.
 import {byPoint, dataTable, figure, number, pair, pointsOf, refusals, rowsOf, section, statement, withError, words} from "../section.js";
-import {axisLabel} from "../format.js";
+import {axisLabel, controlLabel} from "../format.js";
 
 const branchDashes = [null, "6,3", "2,3"];
 
@@ -34,11 +34,6 @@ function loopFigure(chapter, table) {
   });
 }
 
-function controlLabel(name, units) {
-  const known = {sqrt_epsilon: "\u221a\u03b5", gamma: "\u03b3", epsilon: "\u03b5"}[name];
-  return (known ? `strength of the taps ${known}` : words(name ?? "")) + (!units || units === "1" ? "" : ` (${units})`);
-}
-
 function areas(table) {
   if (table.axis("loop").length === 0) return null;
   return dataTable(["branches", "over strengths", "area", "p", "verdict"], table.axis("loop").map((_, i) =>
@@ -58,8 +53,7 @@ export function hysteresisSection(chapter) {
 }
 
 function isSweep(table) {
-  return table.group === "analysis" && table.point === null && !["cost"].includes(table.path[0]) &&
-    table.name !== "target_precision";
+  return table.group === "analysis" && table.path[0] === "sweep";
 }
 
 function sweepFigure(chapter, table) {
