@@ -38,6 +38,7 @@ struct Law {
 ReducedSettings settings_of(const ContactLaw& contact) {
   DiscreteElement engine;
   engine.spheres = contact;
+  engine.steps_per_contact = 40;  // of every law
   return reduced(engine);
 }
 

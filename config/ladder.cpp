@@ -120,10 +120,10 @@ class GrainLadder : LadderMaker {
   void time_steps() {
     for (const double factor : {0.5, 2.0, 4.0}) {
       DiscreteElement other = grains_;
-      other.steps_per_contact = rounded(grains_.steps_per_contact * factor);
-      if (other.steps_per_contact < 40 || other.steps_per_contact > 1e6) continue;
-      add(PilotSetting::Part::step, fmt::format("{:g} steps a contact", other.steps_per_contact),
-          other);
+      const double steps = rounded(steps_of_contact(grains_) * factor);
+      if (steps < 40 || steps > 1e6) continue;
+      other.steps_per_contact = steps;
+      add(PilotSetting::Part::step, fmt::format("{:g} steps a contact", steps), other);
     }
   }
 

@@ -92,7 +92,9 @@ DiscreteElement read_discrete_element(const Reader& in) {
   if (const auto law = in.find("contact")) engine.spheres = read_law(*law);
   if (const auto law = in.find("floor")) engine.floor = read_law(*law);
   if (const auto law = in.find("sides")) engine.sides = read_law(*law);
-  in.read("steps_per_contact", engine.steps_per_contact, between(40, 1e6));
+  double steps = steps_of_contact(engine);
+  in.read("steps_per_contact", steps, between(40, 1e6));
+  engine.steps_per_contact = steps;
   if (const auto rest = in.find("rest")) {
     if (const auto choice = rest->named_choice(names_of(rests)))
       engine.rest = read_kind(rests, *choice);
@@ -108,7 +110,7 @@ Json written(const DiscreteElement& engine) {
               {"contact", written_kind(laws, engine.spheres)}};
   if (engine.floor) out["floor"] = written_kind(laws, *engine.floor);
   if (engine.sides) out["sides"] = written_kind(laws, *engine.sides);
-  out["steps_per_contact"] = plain_number(engine.steps_per_contact);
+  out["steps_per_contact"] = plain_number(steps_of_contact(engine));
   out["rest"] = written_kind(rests, engine.rest);
   out["most_seconds"] = plain_number(engine.most_seconds);
   return out;

@@ -63,11 +63,15 @@ struct DiscreteElement {
   double gravity = 9.81;   // m/s^2
   ContactLaw spheres;
   std::optional<ContactLaw> floor, sides;  // with the floor and the sides; absent: as `spheres`
-  double steps_per_contact = 40;           // time steps of the shortest contact, at least
+  std::optional<double> steps_per_contact{};  // of the shortest; absent: steps_of_contact()
   Rest rest;
   double most_seconds = 5;  // of one tap or start: then it is capped
   bool operator==(const DiscreteElement&) const = default;
 };
+
+/// Time steps of the shortest contact, at least: 40 where the scene does not say, 160 of springs with
+/// dashpots, whose force begins and ends with a jump.
+double steps_of_contact(const DiscreteElement& settings);
 
 /// Why beds of the container cannot be moved so; nothing if they can.
 std::optional<std::string> engine_fault(const DiscreteElement& settings,

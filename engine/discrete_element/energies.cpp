@@ -97,13 +97,10 @@ Approach GrainLoop::approach_of(const KeptSide& side) const {
   return {sphere_radius - distances[side.side - 1], speeds[side.side - 1]};
 }
 
-Energies GrainLoop::energies() {
-  if (!near_lists_hold()) renew_lists();
+// What contacts hold and have dissipated, by their histories and what was counted in steps.
+Energies GrainLoop::contact_energies() const {
   Energies sum;
-  sum.kinetic = kinetic_energy();
-  sum.floor_work = floor_work_;
   for (const std::uint32_t at : place_of_) {
-    sum.potential += settings_.gravity * rows_[at].of[2];
     sum.friction += dissipated_[2 * at];
     sum.latched += dissipated_[2 * at + 1];
   }
@@ -118,6 +115,34 @@ Energies GrainLoop::energies() {
     add(held(settings_.law, side.side == 0 ? settings_.floor : settings_.sides, approach_of(side),
              side.history));
   return sum;
+}
+
+// What is found with the forces is of the time of the positions. Linear springs' histories and
+// dashpots are of half a step later: their mean with those of half a step before is.
+Energies GrainLoop::energies() const {
+  GrainLoop next = *this;  // forces take up histories: this loop keeps its own
+  if (!next.near_lists_hold()) next.renew_lists();
+  const Energies before = next.contact_energies();
+  next.find_forces();
+  Energies now = next.contact_energies();
+  const SphereArrays all = next.spheres();
+  for (std::uint32_t s = 0; s < all.begin[all.n]; ++s) {
+    const Row& action = all.action[all.slot[s] >> 1];
+    now.friction += action.of[4];
+    now.latched += action.of[5];
+  }
+  if (kernels_.sees_full_step) {
+    now.elastic = 0.5 * (before.elastic + now.elastic);
+    now.friction = 0.5 * (before.friction + now.friction);
+    now.latched = 0.5 * (before.latched + now.latched);
+  }
+  BedMechanics moving;
+  next.add_velocities(moving);
+  for (const Vec3& velocity : moving.velocities) now.kinetic += 0.5 * norm_squared(velocity);
+  for (const Vec3& spin : moving.spins) now.kinetic += 0.5 * sphere_inertia * norm_squared(spin);
+  for (const std::uint32_t at : place_of_) now.potential += settings_.gravity * rows_[at].of[2];
+  now.floor_work = next.floor_work_;
+  return now;
 }
 
 ContactCensus GrainLoop::census() {

@@ -8,8 +8,6 @@ namespace jostle::inline engine {
 
 namespace {
 
-constexpr double inverse_inertia = 10;  // of a sphere of diameter and mass 1
-
 Vec3 triple(const Row& row, int at) {
   return {row.of[at], row.of[at + 1], row.of[at + 2]};
 }
@@ -84,7 +82,7 @@ void GrainLoop::add_velocities(BedMechanics& out) {
     const std::uint32_t number = numbers_[at];
     out.velocities[number] = before[number].velocity + half_step * force;
     if (kernels_.has_spin)
-      out.spins[number] = before[number].spin + inverse_inertia * half_step * torque;
+      out.spins[number] = before[number].spin + (1 / sphere_inertia) * half_step * torque;
   }
 }
 

@@ -12,7 +12,6 @@ namespace jostle::inline engine {
 namespace {
 
 constexpr double deepest_possible = 0.2;  // of spheres that press on each other
-constexpr double inertia = 0.1;           // of a sphere of diameter and mass 1
 
 GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
   switch (set) {
@@ -167,7 +166,7 @@ void GrainLoop::run(std::uint64_t steps) {
   for (std::uint64_t k = 0; k < steps; ++k) step();
 }
 
-// All of a step but what moves.
+// All of a step but what moves; the floor's work between the ends of a step is by the mean force.
 void GrainLoop::find_forces() {
   const FloorMotion::Place before = floor_;
   floor_ = motion_.at(time_);
@@ -181,12 +180,6 @@ void GrainLoop::find_forces() {
   kernels_.pairs(lists_.pairs(), grains, settings_.spheres);
   kernels_.sides(floor, grains, settings_.floor);
   kernels_.sides(lists_.sides(), grains, settings_.sides);
-}
-
-void GrainLoop::step() {
-  const FloorMotion::Place before = floor_;
-  find_forces();
-  pair_tests_ += lists_.n_near();
   if (floor_moves() || floor_.height != before.height) {
     const double force = lists_.floor_force();
     floor_work_ += 0.5 * (floor_force_ + force) * (floor_.height - before.height);
@@ -194,6 +187,11 @@ void GrainLoop::step() {
   } else {
     floor_force_ = 0;
   }
+}
+
+void GrainLoop::step() {
+  find_forces();
+  pair_tests_ += lists_.n_near();
   Advance advance{.time_step = settings_.time_step,
                   .gravity = settings_.gravity,
                   .drift = {drift_.x, drift_.y, drift_.z}};
@@ -258,7 +256,7 @@ double GrainLoop::kinetic_energy() const {
   for (const std::uint32_t at : place_of_) {
     const Row& row = apart ? half_rows_[at] : rows_[at];
     const double spin_z = apart ? half_spin_z_[at] : spin_z_[at];
-    sum += norm_squared(velocity_of(row)) + inertia * norm_squared(spin_of(row, spin_z));
+    sum += norm_squared(velocity_of(row)) + sphere_inertia * norm_squared(spin_of(row, spin_z));
   }
   return 0.5 * sum;
 }

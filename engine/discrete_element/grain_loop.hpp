@@ -13,10 +13,12 @@
 
 namespace jostle::inline engine {
 
+inline constexpr double sphere_inertia = 0.1;  // moment of, of a sphere of diameter and mass 1
+
 /// A bed's energies, in m g d of the whole bed. What came in less what was dissipated is what the
 /// bed holds: the ledger closes as far as the integration is right.
 struct Energies {
-  double kinetic = 0;     // of velocities half a step before the positions
+  double kinetic = 0;     // of centres and spins
   double potential = 0;   // of gravity, from z = 0
   double elastic = 0;     // stored in contacts
   double latched = 0;     // lost in Walton & Braun's springs, or in normal dashpots
@@ -71,9 +73,11 @@ class GrainLoop {
   double time() const { return time_; }
   void run(std::uint64_t steps);
 
-  Energies energies();
+  /// Of the time of the positions.
+  Energies energies() const;
   ContactCensus census();
-  double kinetic_energy() const;  // summed in the order of load()
+  /// Of velocities half a step before the positions, summed in the order of load().
+  double kinetic_energy() const;
   /// Contacts with the forces of the step that would follow, and velocities and spins at the time
   /// of the positions: those half a step before, with half a step of what acts. Spins of laws with
   /// friction alone. Times in sqrt(diameter / gravity).
@@ -102,6 +106,7 @@ class GrainLoop {
   void place(const std::vector<GrainState>& grains);
   void step();
   void find_forces();
+  Energies contact_energies() const;
   void add_contacts(std::vector<Contact>& out);
   void add_velocities(BedMechanics& out);
   void renew_lists();

@@ -105,9 +105,14 @@ ReducedSettings reduced(const DiscreteElement& settings) {
   out.spheres = constants(settings.spheres, 0.5);
   out.floor = constants(floor, 1);
   out.sides = constants(sides, 1);
-  out.time_step = shortest / settings.steps_per_contact;
+  out.time_step = shortest / steps_of_contact(settings);
   for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
   return out;
+}
+
+double steps_of_contact(const DiscreteElement& settings) {
+  const bool has_dashpots = std::holds_alternative<LinearSpringDashpot>(settings.spheres);
+  return settings.steps_per_contact.value_or(has_dashpots ? 160 : 40);
 }
 
 ContactTimes contact_times(const DiscreteElement& settings) {

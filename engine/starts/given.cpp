@@ -38,11 +38,14 @@ void check_overlaps(const Packing& packing, double most_overlap) {
   if (worst.depth <= std::max(overlap_bound(packing), most_overlap)) return;
   const std::string with = worst.second < 0 ? "the floor or a side of the container"
                                             : "sphere " + std::to_string(worst.second);
+  const std::string hint =
+      most_overlap > 0 ? "; \"overlap\" allows " + in_diameters(most_overlap)
+                       : "; packings of discrete elements overlap, and say how deep (\"overlap\")";
   refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
          in_diameters(worst.depth) +
          ", the deepest overlap of the packing; check that its lengths are in diameters and that "
-         "it was made in this container, and that no digits were dropped when it was written; "
-         "packings of discrete elements overlap, and say how deep (\"overlap\")");
+         "it was made in this container, and that no digits were dropped when it was written" +
+         hint);
 }
 
 }  // namespace

@@ -155,7 +155,7 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   CHECK(grains["diameter"]["default"] == DiscreteElement{}.diameter);
   CHECK(grains["density"]["default"] == DiscreteElement{}.density);
   CHECK(grains["gravity"]["default"] == DiscreteElement{}.gravity);
-  CHECK(grains["steps_per_contact"]["default"] == DiscreteElement{}.steps_per_contact);
+  CHECK_FALSE(grains["steps_per_contact"].contains("default"));  // it hangs on the law
   CHECK(grains["most_seconds"]["default"] == DiscreteElement{}.most_seconds);
   const auto& rest = grains["rest"]["anyOf"][1]["properties"];
   CHECK(rest["quiet"]["properties"]["kinetic_energy"]["default"] == QuietRest{}.kinetic_energy);

@@ -84,14 +84,15 @@ def fluctuations(run):
 
 def bell(run):
     values, curves = np.sqrt(run.values()), run.curves("corrected_fraction")
-    windows = ((301, 400), (601, 700), (901, 1000))
+    last = len(curves[0]) - 1
+    windows = [(end - 99, end) for end in (400, 700, 1000, 2000, 4000) if end <= last]
     rows = [[f"{value:.3f}", at(curve, 1)] +
             [Estimate.of(window(curve, *taps)).text() for taps in windows]
             for value, curve in zip(values, curves)]
     sweep = next(iter(run.analyse("sweep", "--observable", "corrected_fraction", "--last",
                                   100).values()))
-    steady = run.analyse("steady", "--observable", "corrected_fraction", "--last", 500)
-    end = dict(zip(np.round(values, 3), (window(curve, 901, 1000) for curve in curves)))
+    steady = run.analyse("steady", "--observable", "corrected_fraction", "--last", last // 2)
+    end = dict(zip(np.round(values, 3), (window(curve, *windows[-1]) for curve in curves)))
     statements = [
         maximum_of(sweep, "a bell: Phi_c has a maximum inside", "eps^(1/2)"),
         of_interval("its maximum lies between 0.1 and 0.2", sweep["maximum_at_low"],
@@ -101,11 +102,13 @@ def bell(run):
         is_positive("its right side falls", Estimate.of(end[0.2] - end[0.4]),
                     "Phi_c at 0.20 less 0.40: ", name="paired t-test")]
     statements.append(undecided(
-        "its values are those of steady states", "steady over taps 501 to 1000? " + steadiness(
+        "its values are those of steady states",
+        f"steady over taps {last - last // 2 + 1} to {last}? " + steadiness(
             steady, "corrected_fraction", [f"{value:.2f}" for value in values]),
-        "1000 of 4000 taps"))
-    return table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps 301 to 400", "601 to 700",
-                  "901 to 1000"], rows), statements
+        f"{last} of 4000 taps"))
+    header = [f"{first} to {end}" for first, end in windows]
+    return table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps " + header[0]] + header[1:],
+                 rows), statements
 
 
 def maximum_of(sweep, statement, symbol):

@@ -30,7 +30,8 @@ TEST_CASE("What grains come to is what one works out by hand") {
   CHECK_THAT(lines[1], Contains("Gamma 1.998, floor speed 0.416 m/s"));
   // 0.416 m/s * sqrt(5.0265e-3 / 2e5) / 0.02 m.
   CHECK_THAT(lines[1],
-             Contains("overlap 0.0033 d where two spheres meet at it") && !Contains("stiffness"));
+             Contains("overlap 0.0033 d where two spheres meet at it and up to some 0.013 d in beds") &&
+                 !Contains("stiffness"));
 }
 
 TEST_CASE("An acceleration is the amplitude that it asks for") {
@@ -49,7 +50,7 @@ TEST_CASE("Equal taps are told of once, too many are counted, too fast ones warn
   REQUIRE(lines.size() == 7);
   CHECK(lines.back() == "... and 4 more taps");
   const auto fast = grain_summary(grains({{Vibration{0.48, 1000, 4}, 1}}));
-  CHECK_THAT(fast.at(1), Contains("such overlaps fail: raise the stiffness"));
+  CHECK_THAT(fast.at(1), Contains("beds fail at 0.2 d: raise the stiffness"));
   Plan monte_carlo = grains({{Dilate{0.1}, 5}});
   monte_carlo.engine = MonteCarlo{};
   CHECK(grain_summary(monte_carlo).empty());
