@@ -62,8 +62,9 @@ FIGURES = {
                  "theta_0 = pi/4 gives the greatest rate of compaction: a very small one decompacts, "
                  "a large one is less efficient; a very small or large d_max nearly freezes the "
                  "packing; of the law of the angle only the width matters."),
-    "pb-sides": (f"{PB}/sides", sides, [], f"{PB_SETUP}, walls and periodic; figs. 3 to 5 do not "
-                 "name their sides", "Periodic sides do not qualitatively affect figs. 3 to 5."),
+    "pb-sides": (f"{PB}/sides", sides, [], f"{PB_SETUP}, walls and periodic",
+                 "Periodic sides do not qualitatively affect its figs. 3 and 4; of figs. 2 and 5 it "
+                 "does not say."),
     "pb-widths": (f"{PB}/widths", widths("corrected_fraction", "Phi_c"), [], f"{PB_SETUP}",
                   "One width."),
     "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
@@ -139,7 +140,10 @@ PICTURES = {
     "dr7-9": [Picture("friction", PHI, columns="^Phi", paper=((0, 0.6366), (0.1, 0.6088)))],
     "dr7-columns": [Picture("solids fraction of the column", PHI, columns="^Phi", x_column=1,
                             rows="^100000$")],
-    "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609),))],
+    "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609),)),
+                Picture("height, diameters", PHI, across=True, table=2),
+                Picture("height, diameters", "n(z), share of the centres in 0.2 d", across=True,
+                        table=3)],
     "dr15": [Picture("frequency, Hz", "improvement, %", across=True)],
 }
 

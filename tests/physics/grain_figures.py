@@ -82,8 +82,8 @@ def tapped(run):
     def layers_at(point, k):
         return Estimate(float(grown[point]["grown_layers"][k]),
                         float(grown[point]["grown_layers_error"][k]), run.realizations - 1)
-    packings = [[parts["layers"] for parts in run.structure(["layers"], point)]
-                for point in (0, 1)]
+    found = [run.structure(["layers", "profile"], point) for point in (0, 1)]
+    packings = [[parts["layers"] for parts in of_point] for of_point in found]
 
     def added(point, name):
         """Since tap 0; shares are summed over the layers of the table."""
@@ -92,6 +92,30 @@ def tapped(run):
             return values if name == "grown_layers" else values[:LAYERS].sum()
         return Estimate.of([at_frame(layers, -1) - at_frame(layers, 0)
                             for layers in packings[point]])
+
+    def by_height(part, name, width, total, places):
+        """Figs. 12 to 14: bins of `width`, each the mean or the sum of the table's, at taps."""
+        rows = []
+        for point, gamma, tap in ((0, 2, 0), (0, 2, 50), (0, 2, 100), (0, 2, taps[-1]),
+                                  (1, 0.5, taps[-1])):
+            if tap not in taps:
+                continue
+            cells = []
+            for z in places:
+                values = []
+                for parts in found[point]:
+                    inside = np.abs(np.array(parts[part]["height"]) - z) < 0.5 * width
+                    bins = parts[part][name][taps.index(tap)][inside]
+                    values.append(bins.sum() if total else bins.mean())
+                cells.append(Estimate.of(values).text(3))
+            rows.append([f"Gamma = {gamma}, tap {tap}"] + cells)
+        return rows
+    columns = [k + 0.5 for k in range(18)], [0.5 + 0.2 * k for k in range(19)]
+    profiles = [
+        table(["Phi(z), z ="] + [f"{z:g}" for z in columns[0]],
+              by_height("profile", "phi", 1, False, columns[0])),
+        table(["n(z), share of the centres in 0.2 d, z ="] + [f"{z:.1f}" for z in columns[1]],
+              by_height("layers", "n", 0.2, True, columns[1]))]
     layer_rows = [[f"Gamma = {gamma}, tap {taps[k]}", layers_at(point, k).text(2)] +
                   [f"{grown[point]['share'][k, layer]:.2f}" for layer in range(LAYERS)]
                   for point, gamma in ((0, "2"), (1, "0.5")) for k in range(len(taps))]
@@ -113,7 +137,8 @@ def tapped(run):
                   f"shares of layers 1 to {LAYERS}, summed, at tap {taps[-1]} less tap 0: ", 2)]
     return "\n\n".join([table(["Phi, tap"] + [str(tap) for tap in shown], rows),
                         table(["", "grown layers"] + [f"share, layer {layer + 1}"
-                                                      for layer in range(LAYERS)], layer_rows)]), \
+                                                      for layer in range(LAYERS)], layer_rows)] +
+                       profiles), \
         statements
 
 
