@@ -31,8 +31,9 @@ StartChoice read_pour(const Reader& in) {
 
 StartChoice read_random_settle(const Reader& in) {
   RandomSettle settle;
-  if (in.is_object_of({"dilute_fraction"})) {
+  if (in.is_object_of({"dilute_fraction", "drop_height"})) {
     in.read("dilute_fraction", settle.dilute_fraction, above(0, densest_dilution));
+    in.read("drop_height", settle.drop_height, between(0, highest_drop));
   }
   return settle;
 }
@@ -137,7 +138,9 @@ constexpr Kinds<StartChoice> kinds{
     {"pour", read_pour, [](const FittedPour&) { return Json("fitted"); }},
     {"random_settle", read_random_settle,
      [](const RandomSettle& settle) -> Json {
-       return {{"dilute_fraction", plain_number(settle.dilute_fraction)}};
+       Json out = {{"dilute_fraction", plain_number(settle.dilute_fraction)}};
+       if (settle.drop_height > 0) out["drop_height"] = plain_number(settle.drop_height);
+       return out;
      }},
     {"crystal", read_crystal, written_crystal},
     {"grow", read_grow,

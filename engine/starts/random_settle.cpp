@@ -16,11 +16,16 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
                      ", but non-overlapping random places are found only above 0 and up to " +
                      std::to_string(densest_dilution));
   }
+  if (!(settle.drop_height >= 0 && settle.drop_height <= highest_drop)) {
+    throw StartError("random settle: drop_height is " + std::to_string(settle.drop_height) +
+                     ", but a column's foot is 0 to " + std::to_string(highest_drop) +
+                     " diameters above the floor");
+  }
   const double height =
       n_spheres * sphere_volume / (footprint_area(container) * settle.dilute_fraction);
   const double margin = boundary.side_margin();
   const double room_x = boundary.width_x - 2 * margin, room_y = boundary.width_y - 2 * margin;
-  SphereCells cells(container, n_spheres, height);
+  SphereCells cells(container, n_spheres, settle.drop_height + height);
   const auto fits = [&](Vec3 p) {
     return clear_of_boundaries(boundary, p) &&
            !cells.any_near(p, 1 + 1e-9, [&](std::uint32_t other, Vec3) {
@@ -32,7 +37,7 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
     for (int draw = 0; draw < max_draws && !placed; ++draw) {
       const double x = margin + random.uniform() * room_x;
       const double y = margin + random.uniform() * room_y;
-      const double z = sphere_radius + random.uniform() * height;
+      const double z = sphere_radius + settle.drop_height + random.uniform() * height;
       const Vec3 p = wrapped(boundary, {x, y, z});
       placed = fits(p);
       if (placed) cells.insert(p);

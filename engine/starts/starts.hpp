@@ -37,6 +37,7 @@ struct FittedPour {
 /// (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
+  double drop_height = 0;        // of the column's foot above the floor, diameters
   bool operator==(const RandomSettle&) const = default;
 };
 
@@ -79,6 +80,7 @@ using Start =
 /// Solids fraction up to which random places that do not overlap are found one after another: such
 /// beds jam at 0.384 (random sequential addition; Zhang & Torquato 2013).
 inline constexpr double densest_dilution = 0.36;
+inline constexpr double highest_drop = 1000;  // diameters
 /// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
 inline constexpr double deepest_given_overlap = 0.1;
 /// Spheres that grow without order jam beyond this solids fraction.

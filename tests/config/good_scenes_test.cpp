@@ -149,6 +149,8 @@ TEST_CASE("The defaults of the schema are those of the aggregates") {
   const auto& start = schema["definitions"]["start"]["properties"];
   CHECK(start["random_settle"]["properties"]["dilute_fraction"]["default"] ==
         RandomSettle{}.dilute_fraction);
+  CHECK(start["random_settle"]["properties"]["drop_height"]["default"] ==
+        RandomSettle{}.drop_height);
   CHECK(start["grow"]["properties"]["max_sweeps"]["default"] == Grow{}.max_sweeps);
   const auto& definitions = schema["definitions"];
   const auto& grains = definitions["discrete_element"]["properties"];

@@ -13,7 +13,7 @@ import numpy as np
 
 from box_figures import shakes, sides, widths
 from compaction_figures import ageing, bell, compaction, fluctuations, hysteresis, moves
-from grain_figures import columns, poured, shaken, tapped
+from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
 from page_text import table, verdict_table
@@ -100,6 +100,8 @@ FIGURES = {
     "dr10-14": (f"{DR}/fig10", tapped, [], f"{DR_GRAINS}; 898 taps",
                 "At Gamma = 2 Phi grows from 0.609 to 0.6997 +- 0.0058, single beds in jumps, and "
                 "layers grow from the floor; at Gamma = 0.5 almost nothing happens."),
+    "both-engines": (f"{DR}/both-engines", both_engines, [], "not in it",
+                     "Nothing: what the Monte Carlo redeposition gets right is asked here."),
     "dr15": (f"{DR}/fig15", shaken, [], "8000 spheres, periodic, L/d = 25; time of vibration and "
              "realizations not printed", "Over 0.02 <= a/d <= 0.48 and 10 <= f <= 90 Hz the solids "
              "fraction improves by at most about 5 %; none above about 0.66 was found."),
@@ -144,6 +146,8 @@ PICTURES = {
                 Picture("height, diameters", PHI, across=True, table=2),
                 Picture("height, diameters", "n(z), share of the centres in 0.2 d", across=True,
                         table=3)],
+    "both-engines": [Picture(TAPS, PHI, across=True, log="x"),
+                     Picture(TAPS, "nu, sphere volumes", across=True, table=2, log="x")],
     "dr15": [Picture("frequency, Hz", "improvement, %", across=True)],
 }
 

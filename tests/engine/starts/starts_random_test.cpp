@@ -38,7 +38,17 @@ TEST_CASE("A random settle starts from columns nearly as dense as random places 
   CHECK(top_height(packing) <= height + 0.5);
 }
 
+TEST_CASE("A column may begin high above the floor, with the same places") {
+  const Packing low = scattered({0.2}, PeriodicBox{5, 5}, 100);
+  const Packing high = scattered({0.2, 40}, PeriodicBox{5, 5}, 100);
+  for (std::size_t i = 0; i < low.centres.size(); ++i) {
+    CHECK(high.centres[i].x == low.centres[i].x);
+    CHECK(high.centres[i].z == Approx(low.centres[i].z + 40).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("A random settle that cannot be is refused") {
+  CHECK_THROWS_WITH(scattered({0.1, -1}, PeriodicBox{8, 8}, 100), Catch::Contains("drop_height"));
   CHECK_THROWS_WITH(scattered({0.37}, PeriodicBox{8, 8}, 100), Catch::Contains("0.36"));
   CHECK_THROWS_AS(scattered({0}, PeriodicBox{8, 8}, 100), StartError);
   CHECK_THROWS_WITH(scattered({0.1}, FullyPeriodicBox{}, 100), Catch::Contains("gravity"));
