@@ -100,8 +100,8 @@ FIGURES = {
     "dr10-14": (f"{DR}/fig10", tapped, [], f"{DR_GRAINS}; 898 taps",
                 "At Gamma = 2 Phi grows from 0.609 to 0.6997 +- 0.0058, single beds in jumps, and "
                 "layers grow from the floor; at Gamma = 0.5 almost nothing happens."),
-    "both-engines": (f"{DR}/both-engines", both_engines, [], "not in it",
-                     "Nothing: what the Monte Carlo redeposition gets right is asked here."),
+    "both-engines": (f"{DR}/both-engines", both_engines, [], "no such figure",
+                     "What the Monte Carlo redeposition gets right is asked here."),
     "dr15": (f"{DR}/fig15", shaken, [], "8000 spheres, periodic, L/d = 25; time of vibration and "
              "realizations not printed", "Over 0.02 <= a/d <= 0.48 and 10 <= f <= 90 Hz the solids "
              "fraction improves by at most about 5 %; none above about 0.66 was found."),
