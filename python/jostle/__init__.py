@@ -15,6 +15,7 @@ It needs numpy and h5py; xarray, pandas, matplotlib and jsonschema for what is n
 """
 
 from .commands import analyse, cost, export, fit, report, run, structure
+from .contacts import Contacts
 from .errors import (Fault, JostleError, NotThere, ProgramError, ProgramMissing, RealizationsFailed,
                      ResultsError, RunStopped, SceneError, UnfinishedRun)
 from .fits import Fit, FittedCurve, Parameter
@@ -27,7 +28,7 @@ from .tables import Quantity, Table, Tables
 
 __version__ = "0.2.0"
 
-__all__ = ["Box", "Checked", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
+__all__ = ["Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
            "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
            "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun", "analyse", "check", "cost",
            "export", "fit", "half_width", "open", "plot", "program_path", "report", "run", "schema", "structure"]

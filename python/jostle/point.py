@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import h5py
 import numpy as np
 
+from .contacts import Contacts, contacts_of
 from .errors import NotThere, ResultsError
 from .text import attribute, text, texts
 
@@ -250,11 +251,25 @@ class Point:
     def positions(self, realization: int = 0, tap: int | None = None) -> np.ndarray:
         """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""
         group = self._particles(realization)
+        frame = group["position/step"][()].tolist().index(self._kept_tap(group, tap))
+        return group["position/value"][frame]
+
+    def contacts(self, realization: int = 0, tap: int | None = None) -> Contacts:
+        """Of grains whose snapshots keep contacts: those with force, after a tap (None: the last that is
+        kept)."""
+        if "contacts" not in self.scene["snapshots"]["keep"] or \
+                "discrete_element" not in self.scene["engine"]:
+            raise NotThere(f"{self._results.path}: no contacts of sweep point {self.index}; they are kept "
+                           "of discrete_element where \"snapshots\" keeps \"contacts\"")
+        group = self._particles(realization)
+        return contacts_of(group, self.n_spheres, self._kept_tap(group, tap))
+
+    def _kept_tap(self, group: h5py.Group, tap: int | None) -> int:
         taps = group["position/step"][()].tolist()
         if tap is not None and tap not in taps:
             raise NotThere(f"{self._results.path}: no positions of tap {tap}; kept: "
                            f"{', '.join(map(str, taps))}")
-        return group["position/value"][-1 if tap is None else taps.index(tap)]
+        return taps[-1] if tap is None else tap
 
     def box(self, realization: int = 0) -> Box:
         """The box of a realization's packings."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+from .contacts import Contacts
 from .errors import ResultsError
 from .point import Box, Point
 from .program import digest_of, joined_with_parts
@@ -193,6 +194,10 @@ class Results:
     def positions(self, point: int = 0, realization: int = 0, tap: int | None = None) -> np.ndarray:
         """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""
         return self.points[point].positions(realization, tap)
+
+    def contacts(self, point: int = 0, realization: int = 0, tap: int | None = None) -> Contacts:
+        """Of grains: what presses on what, and the moments of the forces."""
+        return self.points[point].contacts(realization, tap)
 
     def box(self, point: int = 0, realization: int = 0) -> Box:
         """The box of these positions."""

@@ -8,7 +8,7 @@ import h5py
 import jostle
 import numpy as np
 
-from support import TINY, Case, changed, made
+from support import GRAINS, TINY, Case, changed, made
 
 
 class Read(Case):
@@ -68,6 +68,33 @@ class Read(Case):
             self.results.positions(3, 2, 3)
         with self.assertRaisesRegex(jostle.NotThere, "realization 7; there are those of 0, 1, 2"):
             self.results.positions(3, 7)
+
+    def test_contacts_of_grains_carry_their_weight(self):
+        self.assertRaisesRegex(jostle.NotThere, "no contacts of sweep point 0", self.results.contacts)
+        results = self.open(made(GRAINS))
+        for realization in (0, 1):
+            for frame, tap in enumerate((0, 2)):
+                contacts = results.contacts(0, realization, tap)
+                self.assertEqual(contacts.walls, ("floor",))
+                on_floor = contacts.second == 60
+                self.assertGreater(on_floor.sum(), 5)
+                # A bed that rings a little carries its weight within some per cent.
+                self.assertAlmostEqual(contacts.forces()[on_floor, 2].sum(), 60, delta=6)
+                moments = contacts.force_moments()
+                self.assertEqual(moments.shape, (60, 3, 3))
+                stored = results.points[0].snapshots["force_moment"][frame, realization]
+                np.testing.assert_allclose(moments.sum(axis=0), stored, rtol=1e-9, atol=1e-9)
+                # By hand, of one sphere.
+                one = int(contacts.first[0])
+                by_hand = np.zeros((3, 3))
+                for i, force in enumerate(contacts.forces()):
+                    first, second = contacts.first[i], contacts.second[i]
+                    reach = 0.5 * (1 - contacts.overlap[i]) if second < 60 else 0.5 - contacts.overlap[i]
+                    if one in (first, second):
+                        by_hand += reach * np.outer(contacts.normal[i], force)
+                np.testing.assert_allclose(moments[one], by_hand, rtol=1e-12)
+        np.testing.assert_array_equal(results.contacts().first, results.contacts(0, 0, 2).first)
+        self.assertRaisesRegex(jostle.NotThere, "tap 1; kept: 0, 2", results.contacts, 0, 0, 1)
 
     def test_scene_sweep_and_provenance(self):
         self.assertEqual(json.loads(self.results.scene_verbatim), TINY)

@@ -25,6 +25,13 @@ TINY = {
     "snapshots": {"taps": [0, 10, 40]},
     "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1], "/container/width": [4, 5]},
 }
+GRAINS = {
+    "name": "grains", "seed": 2010, "realizations": 2, "spheres": 60,
+    "container": {"sides": "periodic", "width": 4}, "start": {"random_settle": {"dilute_fraction": 0.2}},
+    "engine": {"discrete_element": {}}, "observe": ["mean_height"],
+    "snapshots": {"taps": [0, 2]},
+    "protocol": [{"tap": {"half_sine": {"amplitude": 0.4413, "frequency": 7.5}}, "count": 2}],
+}
 # Hours of taps that take a millisecond each.
 ENDLESS = {
     "name": "endless", "seed": 1, "realizations": 2, "spheres": 24,
