@@ -46,9 +46,33 @@ def poured(run):
                     between=(7.2713 - 0.0558, 7.2713 + 0.0558), found="mean within 1.05 d"),
         of_interval("nearest neighbours at 0.1, cut at 1.05 d: width 1.2550 +- 0.0262", *width[:2],
                     between=(1.2550 - 0.0262, 1.2550 + 0.0262), found="width within 1.05 d")]
-    return table(["friction", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
-                  "contacts a sphere", "neighbours within 1.05 d: mean", "width",
-                  "free volume, sphere volumes: mean", "sigma"], rows), statements
+    first = table(["friction", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
+                   "contacts a sphere", "neighbours within 1.05 d: mean", "width",
+                   "free volume, sphere volumes: mean", "sigma"], rows)
+    return "\n\n".join([first] + [
+        distributions(run, part, axis, quantity, title, places)
+        for part, axis, quantity, title, places in (
+            ("coordination", "neighbours", "neighbour_share",
+             "share of the spheres with neighbours within 1.05 d, friction", range(3, 13)),
+            ("voronoi", "free_volume", "free_volume_density",
+             "density of the free volume, sphere volumes, friction",
+             [0.35 + 0.06 * k for k in range(11)]))]), statements
+
+
+def distributions(run, part, axis, quantity, title, places):
+    """Figs. 8 and 9, one line a friction."""
+    rows = []
+    for point, friction in enumerate(run.values()):
+        found = run.ensemble_structure(part, point)
+        cells = []
+        for place in places:
+            i = int(np.argmin(np.abs(found[axis] - place)))
+            # The axis ends at the last place that holds anything.
+            cells.append("0" if place > found[axis][i] + 0.5 else Estimate(
+                float(found[quantity][0][i]), float(found[quantity + "_error"][0][i]),
+                run.realizations - 1).text(4 if part == "coordination" else 2))
+        rows.append([f"{friction:g}"] + cells)
+    return table([title] + [f"{place:g}" for place in places], rows)
 
 
 def columns(run):
