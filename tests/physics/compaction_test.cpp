@@ -171,6 +171,22 @@ TEST_CASE("Rosato et al.: a lift orders the floor, a held dilation of the same e
       difference(floor({{"dilate_floor_held", 0.025}}), floor({{"lift", 0.25}}), 5, 8));  // [8]
 }
 
+TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too", "[statistics]") {
+  // Of refs. 33 and 37, which say little or nothing of the upper part: so it is after ten taps.
+  const Plan plan = short_plan(
+      "rosato-dybenko-2010/shake-lateral.json",
+      {{"container", {{"width", 5}}},
+       {"spheres", 600},
+       {"protocol",
+        {{{"tap",
+           {{"shake", {{"lambda", 0.025}, {"lateral_radius", 0.1}, {"retries", 10}}}}},
+          {"count", 6}}}},
+       {"snapshots", nullptr}});
+  const Records records = run_records(plan, 8);
+  check_positive(change(series_of(plan, records, "bulk_fraction"), 0, 6));  // [10]
+  check_positive(change(series_of(plan, records, "upper"), 0, 6));          // [16]
+}
+
 TEST_CASE("Rosato et al.: a lift of 0.25 packs beds better than one of 0.1", "[statistics]") {
   // Fig. 4, by the mean height, which has the least scatter. That 0.25 is ahead of 0.5 too takes
   // some hundred taps: after six the effect is two of its errors.
