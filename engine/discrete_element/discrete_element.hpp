@@ -62,15 +62,15 @@ struct DiscreteElement {
   double density = 1200;   // kg/m^3
   double gravity = 9.81;   // m/s^2
   ContactLaw spheres;
-  std::optional<ContactLaw> floor, sides;  // with the floor and the sides; absent: as `spheres`
+  std::optional<ContactLaw> floor, sides;     // with the floor and the sides; absent: as `spheres`
   std::optional<double> steps_per_contact{};  // of the shortest; absent: steps_of_contact()
   Rest rest;
   double most_seconds = 5;  // of one tap or start: then it is capped
   bool operator==(const DiscreteElement&) const = default;
 };
 
-/// Time steps of the shortest contact, at least: 40 where the scene does not say, 160 of springs with
-/// dashpots, whose force begins and ends with a jump.
+/// Time steps of the shortest contact, at least: 40 where the scene does not say, 160 of springs
+/// with dashpots, whose force begins and ends with a jump.
 double steps_of_contact(const DiscreteElement& settings);
 
 /// Why beds of the container cannot be moved so; nothing if they can.

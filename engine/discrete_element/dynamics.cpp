@@ -214,14 +214,15 @@ class GrainDynamics final : public Dynamics {
     const Energies now = loop_->energies();
     const Ledger tap = ledger(now);
     const double missing = std::abs(tap.missing);
-    const double moved = tap.dissipated() + now.kinetic + now.elastic +
-                         std::abs(state_.input + tap.floor_work);
+    const double moved =
+        tap.dissipated() + now.kinetic + now.elastic + std::abs(state_.input + tap.floor_work);
     if (!(missing > widest * moved && missing > least * static_cast<double>(loop_->n_spheres())))
       return;
-    throw std::runtime_error(
-        "the energy ledger of a tap misses " + std::to_string(100 * missing / moved) +
-        " % of what was put in, dissipated and is still in motion: the time step is too long, raise "
-        "steps_per_contact");
+    throw std::runtime_error("the energy ledger of a tap misses " +
+                             std::to_string(100 * missing / moved) +
+                             " % of what was put in, dissipated and is still in motion: the time "
+                             "step is too long, raise "
+                             "steps_per_contact");
   }
 
   double motion_seconds() const { return loop_->motion().duration() * units_.seconds; }

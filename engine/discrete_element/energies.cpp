@@ -84,8 +84,7 @@ Approach GrainLoop::approach_of(const KeptPair& pair) const {
 Approach GrainLoop::approach_of(const KeptSide& side) const {
   const Row& row = rows_[place_of_[side.sphere]];
   const Vec3 r = centre_of(row), v = velocity_of(row);
-  if (side.side == 0)
-    return {sphere_radius - (r.z - floor_.height), v.z - floor_.velocity};
+  if (side.side == 0) return {sphere_radius - (r.z - floor_.height), v.z - floor_.velocity};
   if (boundary_.sides == Sides::cylinder) {
     const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
     const double from_axis = std::sqrt(squared(x) + squared(y));
@@ -126,10 +125,12 @@ Energies GrainLoop::energies() const {
   next.find_forces();
   Energies now = next.contact_energies();
   const SphereArrays all = next.spheres();
-  for (std::uint32_t s = 0; s < all.begin[all.n]; ++s) {
-    const Row& action = all.action[all.slot[s] >> 1];
-    now.friction += action.of[4];
-    now.latched += action.of[5];
+  for (const std::uint32_t at : next.place_of_) {
+    for (std::uint32_t s = all.begin[at]; s < all.begin[at + 1]; ++s) {
+      const Row& action = all.action[all.slot[s] >> 1];
+      now.friction += action.of[4];
+      now.latched += action.of[5];
+    }
   }
   if (kernels_.sees_full_step) {
     now.elastic = 0.5 * (before.elastic + now.elastic);
@@ -162,7 +163,8 @@ ContactCensus GrainLoop::census() {
   }
   for (const KeptSide& side : lists_.near_sides()) {
     const LawConstants& law = side.side == 0 ? settings_.floor : settings_.sides;
-    census.contacts += normal_force(settings_.law, law, approach_of(side).overlap, side.history) > 0;
+    census.contacts +=
+        normal_force(settings_.law, law, approach_of(side).overlap, side.history) > 0;
   }
   census.contacts /= static_cast<double>(n_spheres());
   if (pairs > 0) {

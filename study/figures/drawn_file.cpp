@@ -67,8 +67,8 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
     }
   }
   if (has_other_points()) {
-    left_out_.push_back(fmt::format("{} of {} sweep points are drawn, evenly spread", most_shown,
-                                    labels_.size()));
+    left_out_.push_back(
+        fmt::format("{} of {} sweep points are drawn, evenly spread", most_shown, labels_.size()));
   }
 }
 

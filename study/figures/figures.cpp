@@ -71,10 +71,9 @@ DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t
                         std::size_t n_files) {
   const DrawnFile drawn(file, DrawnRoom::of_one_in(n_files), points);
   Figures figures;
-  for (const auto add :
-       {add_compaction, add_spread, add_fits, add_steady, add_ageing, add_spectra, add_hysteresis,
-        add_sweeps, add_ordering, add_motion, add_volumes, add_memory, add_snapshots, add_structure,
-        add_engine, add_cost}) {
+  for (const auto add : {add_compaction, add_spread, add_fits, add_steady, add_ageing, add_spectra,
+                         add_hysteresis, add_sweeps, add_ordering, add_motion, add_volumes,
+                         add_memory, add_snapshots, add_structure, add_engine, add_cost}) {
     add(drawn, figures);
   }
   name_apart(figures);

@@ -39,8 +39,9 @@ FigurePanel squares(const TableView& table, const std::string& name, const std::
                     const std::string& what) {
   const ByLag square(table, name, 1), error(table, name + "_error", 1);
   return {.title = title,
-          .caption = what + " in a lag t from the waiting time t_W on, mean over spheres and "
-                            "realizations; bars are standard errors.",
+          .caption = what +
+                     " in a lag t from the waiting time t_W on, mean over spheres and "
+                     "realizations; bars are standard errors.",
           .source = table.source(name),
           .x = {"lag t (taps)", logarithmic},
           .y = {"mean square" + unit_text(table.units(name)), logarithmic},
@@ -101,21 +102,20 @@ FigurePanel susceptibility(const TableView& table) {
   const std::size_t place = *greatest % n;
   const ByLag chi(table, name, n), low(table, name + "_low_68", n),
       high(table, name + "_high_68", n);
-  return {.title = "Spheres that move together",
-          .caption = fmt::format(
-              "χ_4, the variance over realizations of the share of spheres that moved sideways by "
-              "less than {:.4g} d, times their number, at the overlap length where it is greatest; "
-              "bars are 68 % intervals, left out where few spheres have moved.",
-              lengths[place]),
-          .source = table.source(name),
-          .x = {"lag t (taps)", logarithmic},
-          .y = {"χ_4"},
-          .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
-            return FigureRow{.x = lag,
-                             .y = chi(k, j, place),
-                             .low = low(k, j, place),
-                             .high = high(k, j, place)};
-          })};
+  return {
+      .title = "Spheres that move together",
+      .caption = fmt::format(
+          "χ_4, the variance over realizations of the share of spheres that moved sideways by "
+          "less than {:.4g} d, times their number, at the overlap length where it is greatest; "
+          "bars are 68 % intervals, left out where few spheres have moved.",
+          lengths[place]),
+      .source = table.source(name),
+      .x = {"lag t (taps)", logarithmic},
+      .y = {"χ_4"},
+      .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
+        return FigureRow{
+            .x = lag, .y = chi(k, j, place), .low = low(k, j, place), .high = high(k, j, place)};
+      })};
 }
 
 }  // namespace
@@ -124,10 +124,10 @@ void add_motion(const DrawnFile& file, Figures& into) {
   const std::vector<TableView> made = file.made_of("analysis", "motion");
   for (const std::uint32_t point : points_of(file, made)) {
     if (const auto table = table_of(made, point, "displacement")) {
-      add_panel(file, point,
-                squares(*table, "msd_lateral", "Lateral motion",
-                        "Square of the lateral displacement"),
-                into);
+      add_panel(
+          file, point,
+          squares(*table, "msd_lateral", "Lateral motion", "Square of the lateral displacement"),
+          into);
       add_panel(file, point,
                 squares(*table, "msd_z_about_mean", "Vertical motion about the settling",
                         "Square of the vertical displacement less its mean over the bed,"),

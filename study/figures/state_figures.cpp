@@ -16,8 +16,9 @@ double at(const std::vector<double>& values, std::size_t i) {
 FigurePanel compactivity(const TableView& table) {
   FigurePanel panel{
       .title = "Compactivity, by " + words(table.path().back()),
-      .caption = "1/X less that of the first steady state, X the compactivity, against the mean "
-                 "volume of the states; bars are standard errors.",
+      .caption =
+          "1/X less that of the first steady state, X the compactivity, against the mean "
+          "volume of the states; bars are standard errors.",
       .source = table.source("inverse_x_fluctuations"),
       .x = {"volume a sphere" + unit_text(table.units("volume"))},
       .y = {"Δ(1/X)" + unit_text(table.units("inverse_x_fluctuations"))},
@@ -41,8 +42,9 @@ FigurePanel compactivity(const TableView& table) {
 
 FigurePanel variances(const TableView& table) {
   return {.title = "Variance of the volume, by " + words(table.path().back()),
-          .caption = "Variance of a bed's volume a sphere of each state, over taps and "
-                     "realizations, against its mean; bars are standard errors.",
+          .caption =
+              "Variance of a bed's volume a sphere of each state, over taps and "
+              "realizations, against its mean; bars are standard errors.",
           .source = table.source("volume_variance"),
           .x = {"volume a sphere" + unit_text(table.units("volume"))},
           .y = {"variance" + unit_text(table.units("volume_variance"))},
@@ -68,13 +70,13 @@ FigurePanel response(const TableView& table) {
       .y = {"change of " + axis_label(name, table.units("response"))},
       .rules = {{.y = 0}}};
   for (std::size_t k = 0; k < n; ++k)
-    panel.series.push_back({.name = fmt::format("{} = {:.4g} before", control_symbol(control),
-                                                table.value(control, k)),
-                            .colour = colour_of(k, n),
-                            .drawn = Drawn::joined_points,
-                            .rows = rows_of(lags, table.row("response", k),
-                                            table.row("response_error", k)),
-                            .symbol = k});
+    panel.series.push_back(
+        {.name =
+             fmt::format("{} = {:.4g} before", control_symbol(control), table.value(control, k)),
+         .colour = colour_of(k, n),
+         .drawn = Drawn::joined_points,
+         .rows = rows_of(lags, table.row("response", k), table.row("response_error", k)),
+         .symbol = k});
   return panel;
 }
 

@@ -110,9 +110,9 @@ TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
                        Vibration{}.cycles),
            fmt::format("m/s^2 (1e-4 to 1e4) | {}, {:g}, {} |", DiscreteElement{}.diameter,
                        DiscreteElement{}.density, DiscreteElement{}.gravity),
-           fmt::format("| `steps_per_contact` | 40 to 1e6 | {:g}, of `linear_spring_dashpot` {:g} |",
-                       steps_of_contact({}),
-                       steps_of_contact(dashpots)),
+           fmt::format(
+               "| `steps_per_contact` | 40 to 1e6 | {:g}, of `linear_spring_dashpot` {:g} |",
+               steps_of_contact({}), steps_of_contact(dashpots)),
            fmt::format("`{{\"timed\": {{\"seconds\": s}}}}` ({}) | `quiet`: 5e-5, {} |",
                        TimedRest{}.seconds, QuietRest{}.seconds),
            fmt::format("| `most_seconds` | above 0, at most 1e5 | {:g} |",

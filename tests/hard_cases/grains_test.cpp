@@ -105,8 +105,8 @@ TEST_CASE("grains that hardly rebound, and grains that lose nothing") {
   DiscreteElement settings;
   settings.spheres = WaltonBraun{.restitution = 0.05};
   settings.most_seconds = 0.8;
-  // In steps of a twentieth. K2 is 400 K1: of few spheres on the floor what was latched rings on, and
-  // quiet is not reached.
+  // In steps of a twentieth. K2 is 400 K1: of few spheres on the floor what was latched rings on,
+  // and quiet is not reached.
   Bed bed(settings, column(box, 8));
   for (int tap = 0; tap < 2; ++tap) {
     CHECK(std::abs(bed["ledger_error"]) < 5e-3);

@@ -178,8 +178,7 @@ TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too"
       {{"container", {{"width", 5}}},
        {"spheres", 600},
        {"protocol",
-        {{{"tap",
-           {{"shake", {{"lambda", 0.025}, {"lateral_radius", 0.1}, {"retries", 10}}}}},
+        {{{"tap", {{"shake", {{"lambda", 0.025}, {"lateral_radius", 0.1}, {"retries", 10}}}}},
           {"count", 6}}}},
        {"snapshots", nullptr}});
   const Records records = run_records(plan, 8);

@@ -146,9 +146,9 @@ TEST_CASE("the ledger closes in the middle of an impact, to the second order of 
           ContactLaw{LinearSpringDashpot{.restitution = restitution, .friction = 0.3}}}) {
       const auto worst = [&](double finer) {
         const ReducedSettings units = settings(law, 0, finer);
-        GrainLoop loop = loop_of(box, units,
-                                 {grain({5, 5, 5}, {0.4, 0.1, 1}, {}),
-                                  grain({5.1, 5, 6.0}, {0, 0, -1}, {3, 1, 2})});
+        GrainLoop loop = loop_of(
+            box, units,
+            {grain({5, 5, 5}, {0.4, 0.1, 1}, {}), grain({5.1, 5, 6.0}, {0, 0, -1}, {3, 1, 2})});
         const double start = loop.energies().held();
         double missing = 0, deepest = 0;
         for (double time = 0; time < 2 * units.contact_time; time += units.time_step) {
@@ -228,9 +228,8 @@ TEST_CASE("collisions go as those of LAMMPS, that stick and that slide") {
   loops.emplace("# pair", loop_from({grain({5, 5, 5}, {speed, 0.2 * speed, 0.8 * speed}),
                                      grain(other, {-0.3 * speed, 0, -0.9 * speed})}));
   loops.emplace("# floor", loop_from({grain(above, {0.15 * speed, 0, -speed})}));
-  loops.emplace("# sliding pair",
-                loop_from({grain({5, 5, 5}, {7 * speed, 2 * speed, -4 * speed}),
-                           grain(other, {}, {0.8, -2, -0.6})}));
+  loops.emplace("# sliding pair", loop_from({grain({5, 5, 5}, {7 * speed, 2 * speed, -4 * speed}),
+                                             grain(other, {}, {0.8, -2, -0.6})}));
   loops.emplace("# sliding floor",
                 loop_from({grain(above, {8 * speed, 2 * speed, -speed}, {0.5, 0, 0})}));
 

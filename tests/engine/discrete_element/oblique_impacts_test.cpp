@@ -123,8 +123,7 @@ TEST_CASE("no grazing impact on elastic springs gains more than the error of the
     for (const double mu : {0.1, 0.3, 1.0}) {
       const double angle = degrees * std::numbers::pi / 180, speed = 2;
       const Vec3 velocity = {speed * std::sin(angle), 0, -speed * std::cos(angle)};
-      const ReducedSettings units =
-          settings(LinearSpringDashpot{.restitution = 1, .friction = mu});
+      const ReducedSettings units = settings(LinearSpringDashpot{.restitution = 1, .friction = mu});
       for (int k = 0; k < phases; ++k) {
         CAPTURE(degrees, mu, k);
         const double gap = k / double(phases) * speed * std::cos(angle) * units.time_step;

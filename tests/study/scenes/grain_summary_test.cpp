@@ -29,9 +29,10 @@ TEST_CASE("What grains come to is what one works out by hand") {
   // 0.4413 * 0.02 m * (2 pi 7.5 Hz)^2 / (9.81 m/s^2); 0.4413 * 0.02 m * 2 pi 7.5 Hz.
   CHECK_THAT(lines[1], Contains("Gamma 1.998, floor speed 0.416 m/s"));
   // 0.416 m/s * sqrt(5.0265e-3 / 2e5) / 0.02 m.
-  CHECK_THAT(lines[1],
-             Contains("overlap 0.0033 d where two spheres meet at it and up to some 0.013 d in beds") &&
-                 !Contains("stiffness"));
+  CHECK_THAT(
+      lines[1],
+      Contains("overlap 0.0033 d where two spheres meet at it and up to some 0.013 d in beds") &&
+          !Contains("stiffness"));
 }
 
 TEST_CASE("An acceleration is the amplitude that it asks for") {
