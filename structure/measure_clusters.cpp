@@ -39,7 +39,9 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
       {.name = "relative_variance",
        .places = "cells",
        .values = relative,
-       .long_name = "the same over that of single cells, 1 where they are independent",
+       .long_name =
+           "variance of the volume of a cluster over its cells, over that of single cells: 1 "
+           "where cells are independent",
        .beyond = nan},
       {.name = "shared_cells",
        .places = "cells",

@@ -143,15 +143,20 @@ class GrainDynamics final : public Dynamics {
     state_.before = loop_->energies();
   }
 
-  // Springs that are pressed deeper than by weight throw what lies above them.
+  // Springs that are pressed much deeper than by weight throw what lies above them. Columns of one
+  // sphere a square diameter press with up to their number n, and hold n^2 / 6 K1 a sphere.
   void require_gentle_start() const {
-    constexpr double most = 1;  // m g d a sphere
-    const double held = state_.before.elastic / static_cast<double>(loop_->n_spheres());
-    if (held <= most) return;
-    throw std::runtime_error("the overlaps of the start hold " + std::to_string(held) +
-                             " m g d a sphere, which would throw the bed apart: begin from a "
-                             "packing whose overlaps are those of its weight, or lower the "
-                             "stiffness");
+    constexpr double most = 1, times = 10;  // m g d a sphere; of what weight holds
+    const auto n = static_cast<double>(loop_->n_spheres());
+    const double column = n / footprint_area(packing_.container);
+    const double by_weight = column * column / (6 * units_.spheres.stiffness);
+    const double held = state_.before.elastic / n;
+    if (held <= most + times * by_weight) return;
+    throw std::runtime_error(
+        "the overlaps of the start hold " + std::to_string(held) +
+        " m g d a sphere, where weight would hold about " + std::to_string(by_weight) +
+        ": its springs would throw the bed apart; begin from a packing whose overlaps are those of "
+        "its weight on these springs, or lower the stiffness");
   }
 
   // Whether the bed is at rest is looked at every fiftieth of the unit of time.
@@ -214,15 +219,14 @@ class GrainDynamics final : public Dynamics {
     const Energies now = loop_->energies();
     const Ledger tap = ledger(now);
     const double missing = std::abs(tap.missing);
-    const double moved =
-        tap.dissipated() + now.kinetic + now.elastic + std::abs(state_.input + tap.floor_work);
+    const double moved = std::max(tap.dissipated(), std::abs(state_.input + tap.floor_work)) +
+                         now.kinetic + now.elastic;
     if (!(missing > widest * moved && missing > least * static_cast<double>(loop_->n_spheres())))
       return;
-    throw std::runtime_error("the energy ledger of a tap misses " +
-                             std::to_string(100 * missing / moved) +
-                             " % of what was put in, dissipated and is still in motion: the time "
-                             "step is too long, raise "
-                             "steps_per_contact");
+    throw std::runtime_error(
+        "the energy ledger of a tap misses " + std::to_string(100 * missing / moved) +
+        " % of the greater of what was put in and what was dissipated, and of what still moves or "
+        "presses: the time step is too long, raise steps_per_contact");
   }
 
   double motion_seconds() const { return loop_->motion().duration() * units_.seconds; }

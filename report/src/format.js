@@ -57,9 +57,11 @@ export function duration(seconds) {
   return seconds < 172800 ? `${number(seconds / 3600, 3)} h` : `${number(seconds / 86400, 3)} days`;
 }
 
+const spelled = {s_0_of_line: "S(0) by a line in k", s_0_of_squares: "S(0) by a line in k squared"};
+
 /// Names of the file, as their words.
 export function words(name) {
-  return name.replaceAll("_", " ");
+  return spelled[name] ?? name.replaceAll("_", " ");
 }
 
 const symbols = {

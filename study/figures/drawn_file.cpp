@@ -128,6 +128,8 @@ FigureAxis DrawnFile::tap_axis() const {
 }
 
 std::string words(std::string name) {
+  if (name == "s_0_of_line") return "S(0) by a line in k";
+  if (name == "s_0_of_squares") return "S(0) by a line in k squared";
   std::ranges::replace(name, '_', ' ');
   return name;
 }

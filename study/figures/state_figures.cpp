@@ -61,10 +61,11 @@ FigurePanel response(const TableView& table) {
   const std::size_t n = table.axis("history").size();
   FigurePanel panel{
       .title = "Memory of " + words(name),
-      .caption = fmt::format("Change of {} since the switch to taps of one strength, mean over "
-                             "windows of lags, one curve a history; bars are standard errors. "
-                             "Where the value alone is the state the curves are one.",
-                             words(name)),
+      .caption = fmt::format(
+          "Change of {} since the switch to taps of one strength, mean over "
+          "windows of lags, one curve a history; bars are standard errors. "
+          "Histories that came to one value have one curve where it alone is the state.",
+          words(name)),
       .source = table.source("response"),
       .x = {"end of the window of lags (taps)", AxisKind::logarithmic},
       .y = {"change of " + axis_label(name, table.units("response"))},
@@ -98,8 +99,8 @@ void add_ordering(const DrawnFile& file, Figures& into) {
       for (const TableView& table : made) {
         if (table.point() != point.number || table.path().back() != observable) continue;
         panel.caption = fmt::format(
-            "Share of the beds that are not yet ordered ({}), by Kaplan & Meier's estimate; bars "
-            "are 95 % intervals.",
+            "Share of the beds that are not yet ordered ({}), by Kaplan & Meier's estimate, which "
+            "falls in a step at each point; bars are 95 % intervals.",
             table.note("rule"));
         panel.source = table.source("survival");
         FigureSeries one{.name = point.label,

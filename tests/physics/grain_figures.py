@@ -53,9 +53,9 @@ def poured(run):
         distributions(run, part, axis, quantity, title, places)
         for part, axis, quantity, title, places in (
             ("coordination", "neighbours", "neighbour_share",
-             "share of the spheres with neighbours within 1.05 d, friction", range(3, 13)),
+             "share of the spheres with neighbours within 1.05 d", range(3, 13)),
             ("voronoi", "free_volume", "free_volume_density",
-             "density of the free volume, sphere volumes, friction",
+             "density of the free volume, sphere volumes",
              [0.35 + 0.06 * k for k in range(11)]))]), statements
 
 
@@ -71,7 +71,7 @@ def distributions(run, part, axis, quantity, title, places):
             cells.append("0" if place > found[axis][i] + 0.5 else Estimate(
                 float(found[quantity][0][i]), float(found[quantity + "_error"][0][i]),
                 run.realizations - 1).text(4 if part == "coordination" else 2))
-        rows.append([f"{friction:g}"] + cells)
+        rows.append([f"friction {friction:g}"] + cells)
     return table([title] + [f"{place:g}" for place in places], rows)
 
 

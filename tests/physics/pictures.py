@@ -59,8 +59,9 @@ def curves_of(table, picture):
         found = [(row[0], [(last_number(header[i]), value_of(row[i])) for i in chosen])
                  for row in body]
     else:
-        found = [(header[i], [(last_number(row[picture.x_column].split(" ± ")[0]), value_of(row[i]))
-                               for row in body])
+        found = [(header[i], sorted(((last_number(row[picture.x_column].split(" ± ")[0]),
+                                      value_of(row[i])) for row in body),
+                                    key=lambda point: (point[0] is None, point[0])))
                  for i in chosen]
     return [(name, [(x, *y) for x, y in points if x is not None and y is not None and
                     ("y" not in picture.log or y[1] > 0)]) for name, points in found]

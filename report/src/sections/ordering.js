@@ -11,7 +11,8 @@ function survival(chapter, made, observable) {
   const one = figure(() => ({
     file: chapter.run.file,
     title: `Not yet ordered, by ${words(observable)}`,
-    caption: `Share of the beds that are not yet ordered (${example.notes.rule}), by Kaplan & Meier's estimate; bars are 95 % intervals.`,
+    caption: `Share of the beds that are not yet ordered (${example.notes.rule}), by Kaplan & Meier's estimate, which falls in a step at each point; ` +
+      "bars are 95 % intervals.",
     source: example.source("survival"), x: {label: "taps t", type: "tap", short: "tap"},
     y: {label: "share not yet ordered", short: "share"},
     series: chapter.shownPoints().flatMap(({point, label, colour}) => {
@@ -39,7 +40,7 @@ export function orderingSection(chapter) {
   return section(chapter, "ordering", "Ordering", "When beds order. Beds that had not when their taps ended count as such, not as if they never would.",
     observables.length > 0 ? gallery(observables.map((observable) => survival(chapter, points, observable))) : null,
     over.flatMap((table) => [statement(`Orders first, by ${words(table.path.at(-1))}`, table.notes.orders_first),
-                             statement(`Ends highest in ${words(table.path.at(-1))}`, table.notes.largest_value),
+                             statement("Ends highest", table.notes.largest_value),
                              statement("Are they the same", table.notes.verdict)]),
     points.length > 0 ? times(chapter, points) : null, refusals(chapter, tables));
 }

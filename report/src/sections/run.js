@@ -20,7 +20,7 @@ function isOn(part, value) {
   return Object.values(value).some((member) => !Array.isArray(member) || member.length > 0);
 }
 
-const parts = ["container", "start", "protocol", "engine", "relax", "observe", "snapshots", "sweep", "until", "fits",
+const parts = ["container", "start", "protocol", "engine", "relax", "observe", "snapshots", "motion", "sweep", "until", "fits",
                "analyse", "structure"];
 
 const longest = 500;  // characters of a part in words

@@ -51,7 +51,7 @@ function response(chapter, table) {
   return figure({
     file: chapter.run.file, title: `Memory of ${words(name)}`,
     caption: `Change of ${words(name)} since the switch to taps of one strength, mean over windows of lags, one curve a history; bars are ` +
-      "standard errors. Where the value alone is the state the curves are one.",
+      "standard errors. Histories that came to one value have one curve where it alone is the state.",
     source: table.source("response"), x: {label: "end of the window of lags (taps)", type: "log", short: "lag"},
     y: {label: `change of ${axisLabel(name, table.units("response"))}`, short: "change"}, rules: [{y: 0}],
     series: histories.map((_, k) => ({name: `${controlSymbol(control)} = ${number(table.value(control, k))} before`, colour: ordered(k, histories.length),
