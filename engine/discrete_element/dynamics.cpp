@@ -248,7 +248,7 @@ class GrainDynamics final : public Dynamics {
   ReducedSettings units_;
   Packing packing_;  // as loaded
   GrainDynamicsState state_;
-  mutable std::optional<GrainLoop> loop_;  // looking at energies may renew its lists
+  mutable std::optional<GrainLoop> loop_;  // a census may renew its lists
   Effort effort_;
 };
 

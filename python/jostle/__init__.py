@@ -28,10 +28,11 @@ from .tables import Quantity, Table, Tables
 
 __version__ = "0.2.0"
 
-__all__ = ["Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere", "Parameter", "Point",
-           "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed", "Results", "ResultsError",
-           "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun", "analyse", "check", "cost",
-           "export", "fit", "half_width", "open", "plot", "program_path", "report", "run", "schema", "structure"]
+__all__ = ["Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere",
+           "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed",
+           "Results", "ResultsError", "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun",
+           "analyse", "check", "cost", "export", "fit", "half_width", "open", "plot", "program_path",
+           "report", "run", "schema", "structure"]
 
 
 def __getattr__(name: str) -> object:

@@ -9,10 +9,6 @@
 namespace jostle::inline study {
 namespace {
 
-double at(const std::vector<double>& values, std::size_t i) {
-  return i < values.size() ? values[i] : no_value;
-}
-
 FigurePanel measured_ageing(const TableView& table) {
   return {.title = fmt::format("Ageing of {}, as measured", words(table.path().back())),
           .caption =

@@ -37,6 +37,11 @@ void add_cost(const DrawnFile& file, Figures& into);
 void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
                Figures& into);
 
+/// One of the values, or none.
+inline double at(const std::vector<double>& values, std::size_t i) {
+  return i < values.size() ? values[i] : no_value;
+}
+
 /// A curve of every waiting time, of the rows that have a value: make_row(waiting time, lag, value
 /// of the lag), both by their numbers.
 template <class MakeRow>

@@ -26,8 +26,7 @@ class ByLag {
   ByLag(const TableView& table, const std::string& quantity, std::size_t n)
       : values_(table.values(quantity)), n_lags_(table.axis("lag").size()), n_(n) {}
   double operator()(std::size_t k, std::size_t j, std::size_t place = 0) const {
-    const std::size_t i = (k * n_lags_ + j) * n_ + place;
-    return i < values_.size() ? values_[i] : no_value;
+    return at(values_, (k * n_lags_ + j) * n_ + place);
   }
 
  private:

@@ -9,10 +9,6 @@
 namespace jostle::inline study {
 namespace {
 
-double at(const std::vector<double>& values, std::size_t i) {
-  return i < values.size() ? values[i] : no_value;
-}
-
 FigurePanel compactivity(const TableView& table) {
   FigurePanel panel{
       .title = "Compactivity, by " + words(table.path().back()),

@@ -123,7 +123,7 @@ class SameFigures(Open):
                   rows: figure.spec.series.filter((one) => !one.isGuide)
                     .flatMap((one) => one.rows.map((row) => [row.x, row.y])),
                 }));""")
-            self.assertGreater(len(shown), 2)
+            self.assertGreater(len(shown), 3)
             for one in shown:
                 with self.subTest(page=name, figure=one["title"]):
                     own = numpy.array(folder.pop(one["title"]), dtype=float)

@@ -31,7 +31,7 @@ STATES = changed(
     structure={"gaps": {}, "structure_factor": {}, "clusters": {"largest": 4}})
 MEMORY = changed(TINY, name="memory", snapshots={"taps": []}, streams="matched", protocol=[
     {"tap": {"dilate": 0.05}, "count": 5}, {"tap": {"dilate": 0.05}, "count": 12}],
-    analyse={"memory": [{"observable": "mean_height"}]})
+    analyse={"memory": [{"observable": "mean_height"}, {"observable": "bottom_fraction"}]})
 PLAIN = changed(TINY, name="plain", snapshots={"taps": []}, realizations=1)
 del PLAIN["sweep"]
 MARKUP = changed(WHOLE, name="hostile", description=HOSTILE, realizations=2,

@@ -146,9 +146,9 @@ TEST_CASE("the ledger closes in the middle of an impact, to the second order of 
           ContactLaw{LinearSpringDashpot{.restitution = restitution, .friction = 0.3}}}) {
       const auto worst = [&](double finer) {
         const ReducedSettings units = settings(law, 0, finer);
-        GrainLoop loop = loop_of(
-            box, units,
-            {grain({5, 5, 5}, {0.4, 0.1, 1}, {}), grain({5.1, 5, 6.0}, {0, 0, -1}, {3, 1, 2})});
+        GrainLoop loop =
+            loop_of(box, units,
+                    {grain({5, 5, 5}, {0.4, 0.1, 1}), grain({5.1, 5, 6.0}, {0, 0, -1}, {3, 1, 2})});
         const double start = loop.energies().held();
         double missing = 0, deepest = 0;
         for (double time = 0; time < 2 * units.contact_time; time += units.time_step) {

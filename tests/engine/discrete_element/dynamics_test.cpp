@@ -193,6 +193,30 @@ TEST_CASE("stiff and strongly damped contacts are resolved, a step that is too l
   CHECK_THROWS_WITH(settled_values(*dynamics, 1'000'000), Catch::Contains("energy ledger"));
 }
 
+// Energy that comes from nowhere, as a step that is too long makes it: the bed is higher than the
+// lift raised it. A tenth of what moved is the limit.
+TEST_CASE(
+    "a tap that gains energy from nowhere is stopped, one that gains less than a tenth is not") {
+  for (const double share : {-0.2, -0.04, 0.04, 0.2}) {
+    CAPTURE(share);
+    constexpr double lift = 0.5;
+    auto dynamics = grains({});
+    dynamics->load(dilute_column(PeriodicBox{3, 3}, 40, 6));
+    dynamics->settle(RandomSettle{});
+    settled_values(*dynamics, 1'000'000);
+    RandomStream random(stream_key(1, 0, 0, Purpose::tap));
+    dynamics->tap(Lift{lift}, random);
+    GrainDynamicsState state = grain_state(dynamics->save());
+    for (GrainState& one : state.loop.grains) one.centre.z += share * lift;
+    dynamics->restore(bytes_of(state));
+    if (std::abs(share) > 0.1) {
+      CHECK_THROWS_WITH(settled_values(*dynamics, 1'000'000), Catch::Contains("energy ledger"));
+    } else {
+      CHECK_NOTHROW(settled_values(*dynamics, 1'000'000));
+    }
+  }
+}
+
 // Nearly elastic spheres that are looked at in mid-contact, after taps that dissipate next to
 // nothing.
 TEST_CASE("no sound tap is taken for one of too long a step") {
