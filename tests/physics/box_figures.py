@@ -2,7 +2,7 @@
 height-dependent displacements."""
 import numpy as np
 
-from compaction_figures import falls_with_age, squared_change
+from ageing_figures import falls_with_age, squared_change
 from page_text import at, table, window
 from verdicts import Estimate, are_positive, is_positive, is_within
 

@@ -12,7 +12,8 @@ import time
 import numpy as np
 
 from box_figures import shakes, sides, widths
-from compaction_figures import ageing, bell, compaction, fluctuations, hysteresis, moves
+from ageing_figures import ageing
+from compaction_figures import bell, compaction, fluctuations, hysteresis, moves
 from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)

@@ -1,7 +1,7 @@
 """Numbers and tables as docs/physics-results.md has them."""
 import numpy as np
 
-from verdicts import Estimate, judge, p_text
+from verdicts import AGREES, Estimate, Statement, judge, p_text
 
 
 def window(curve, first, last):
@@ -49,11 +49,27 @@ def interval(fit, name):
     return (-np.inf if low is None else low), (np.inf if high is None else high)
 
 
+def steady_words(tables, observable, points):
+    """What `jostle analyse steady` says of each sweep point, and its p-value of no drift."""
+    states = [tables[f"point_{point:04}/steady/{observable}"] for point in range(points)]
+    return [(state.notes["verdict"].split(":")[0].split(" with")[0], float(state["drift_p"]))
+            for state in states]
+
+
 def steadiness(tables, observable, names):
     """Of every sweep point in a word and the p-value of the tests of drift."""
-    said = []
-    for point, name in enumerate(names):
-        state = tables[f"point_{point:04}/steady/{observable}"]
-        word = state.notes["verdict"].split(":")[0].split(" with")[0]
-        said.append(f"{name}: {word} (drift p = {state['drift_p']:.2g})")
-    return "; ".join(said)
+    return "; ".join(f"{name}: {word} (drift p = {p:.2g})" for name, (word, p) in
+                     zip(names, steady_words(tables, observable, len(names))))
+
+
+def are_steady(paper, tables, observable, names, taps):
+    """All sweep points are in their steady states: shown where the analysis shows it of each,
+    refuted where one drifts (p times their number)."""
+    states = steady_words(tables, observable, len(names))
+    found = f"steady over taps {taps}? {steadiness(tables, observable, names)}"
+    test = "`jostle analyse steady`, each strength"
+    if all(word == "reached" for word, _ in states):
+        return Statement(paper, found, test, word=AGREES)
+    drifting = [p for word, p in states if word == "not reached" and np.isfinite(p)]
+    p = min(1.0, len(states) * min(drifting)) if drifting else np.nan
+    return Statement(paper, found, test, p)

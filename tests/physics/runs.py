@@ -4,6 +4,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import time
 
 import h5py
@@ -108,6 +109,16 @@ class Run:
         """What a law says of each sweep point."""
         answer = self.asked("fit", self.path, "--observable", observable, "--model", law, *options)
         return [curve["fits"][0] for curve in answer["curves"]]
+
+    def residual(self, curve, law):
+        """The mean square of one realization's residuals from a law, from tap 1 on."""
+        taps = np.arange(1, len(curve))
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as text:
+            np.savetxt(text, np.column_stack([taps, curve[1:]]), delimiter=",", header="t,X",
+                       comments="", fmt="%.17g")
+            text.flush()
+            fit = self.asked("fit", text.name, "--model", law)["curves"][0]["fits"][0]
+        return fit["residual_sum"] / len(taps) if "refused" not in fit else np.nan
 
     def structure(self, parts, point=0):
         """[realization]{part: Table} of the kept packings; frame k is the k-th kept tap."""

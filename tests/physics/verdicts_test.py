@@ -1,8 +1,11 @@
 """Verdicts of docs/physics-results.md are right as often as they say, at the smallest ensembles."""
 import numpy as np
 
-from compaction_figures import falls_with_age
+from ageing_figures import detectable_factor, falls_with_age, p_exchanged
+from compaction_figures import exponential_in_strength, greater
 from figures import remark_of
+from page_text import are_steady
+from runs import Table
 from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
                       are_within, detectable, holm, is_positive, is_within, judge, of_interval)
 
@@ -109,6 +112,17 @@ def ages(random):
         print(f"A of one age {factor} times that of another, 10 realizations: {rate:.3f} agree")
         at_most(rate if factor > 1 else 1 - found.count(UNDECIDED) / ENSEMBLES, most, "ages")
         check(rate >= least, "power", rate)
+    for pairs in (8, 10, 40):  # with more than 16, exchanges are drawn by chance
+        squares = random.normal(0, 1, (2, ENSEMBLES, pairs))**2
+        factor = detectable_factor(pairs, LEVEL)
+        for truth, wanted in ((1, LEVEL), (factor, POWER)):
+            rate = np.mean([p_exchanged(truth * a, b) <= LEVEL for a, b in zip(*squares)])
+            print(f"{pairs} pairs, a factor of {truth:.1f}: {rate:.3f} are found")
+            # The factor is of a rate of 400 pairs of ages, which errs too.
+            check(abs(rate - wanted) <= 3 * np.sqrt(wanted * (1 - wanted) *
+                                                    (1 / ENSEMBLES + (truth > 1) / 400)),
+                  "exchanges", pairs, rate)
+    check(detectable_factor(5, LEVEL) == np.inf, "of five pairs no exchange has p below 1/16")
 
 
 def intervals():
@@ -122,6 +136,41 @@ def intervals():
     check(word(np.nan, np.nan, between=(0.1, 0.2)) == UNDECIDED, "no limits")
     one = is_positive("", Estimate.of([1.0]), "")
     check(judge([one])[0][2] == UNDECIDED, "one realization says nothing")
+
+
+def fit(**intervals):
+    return {"parameters": {name: {"interval_95": ends, "statement": f"{name} is {ends}"}
+                           for name, ends in intervals.items()}}
+
+
+def intervals_of_fits():
+    """What is said of three strengths' fits; a line through ln B passes (0, ln 1) and (0.2, ln 4)."""
+    def word(statement):
+        return judge([statement])[0][2]
+    for middle, wanted in (([1.8, 2.1], UNDECIDED), ([1.9, 1.95], DISAGREES), ([2.1, 9], DISAGREES),
+                           ([None, 9], UNDECIDED)):
+        fits = [fit(B=[0.99, 1.01]), fit(B=middle), fit(B=[3.99, 4.01])]
+        check(word(exponential_in_strength([0, 0.01, 0.04], fits)) == wanted, "B", middle)
+    for first, second, wanted in (([50, None], [1, 40], AGREES), ([30, None], [1, 40], UNDECIDED),
+                                  ([1, 2], [3, 4], DISAGREES)):
+        said = word(greater("", [0, 1], [fit(tau=first), fit(tau=second)], "tau"))
+        check(said == wanted, "tau", first, second, said)
+    said = word(greater("", [0, 1], [fit(X=[0.6, 0.7]), fit(X=[0.6, 0.62])], "X", [0.5, 0.59]))
+    check(said == AGREES, "distance from what is reached", said)
+
+
+def steady_points():
+    def word(*states):
+        tables = {f"point_{point:04}/steady/phi": Table({
+            "notes": {"verdict": f"{verdict} with 4 realizations: ..."}, "axes": {},
+            "quantities": {"drift_p": {"axes": [], "values": p}}})
+            for point, (verdict, p) in enumerate(states)}
+        return judge([are_steady("", tables, "phi", "ab", "")])[0][2]
+    check(word(("reached", 0.5), ("reached", 0.3)) == AGREES, "both are steady")
+    check(word(("reached", 0.5), ("cannot decide", 0.3)) == UNDECIDED, "one may drift")
+    check(word(("reached", 0.5), ("not reached", 0.03)) == UNDECIDED, "one of two at 6 %")
+    check(word(("cannot decide", 0.5), ("not reached", 0.02)) == DISAGREES, "one drifts")
+    check(word(("reached", 0.5), ("not reached", None)) == UNDECIDED, "a single realization")
 
 
 def remarks_are_those_of_their_section():
@@ -142,5 +191,7 @@ if __name__ == "__main__":
     families(generator)
     ages(generator)
     intervals()
+    intervals_of_fits()
+    steady_points()
     remarks_are_those_of_their_section()
     print("verdicts: as often right as they say")
