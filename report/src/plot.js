@@ -139,9 +139,9 @@ function marksOf(one, colour, xAxis, ink) {
     }
     if (connected.length === 1) marks.push(Plot.dot(connected, {...along, fill: colour, r: 3.2}));
   } else {
-    if (kind === "dots+line") {
+    if (kind !== "dots") {
       marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: 1.2, strokeOpacity: 0.75,
-                                       strokeDasharray: one.dash}));
+                                       strokeDasharray: one.dash, curve: kind === "dots+steps" ? "step-after" : "linear"}));
     }
     if (hasErrors) {
       marks.push(Plot.ruleX(ruled(one.rows), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.1}));

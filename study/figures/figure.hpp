@@ -33,7 +33,8 @@ struct FigureRow {
   std::string label{};
 };
 
-enum class Drawn { line, points, joined_points };
+/// `stepped_points`: each value holds up to the next.
+enum class Drawn { line, points, joined_points, stepped_points };
 
 /// "#rrggbb", of those that people with any colour vision tell apart: Okabe & Ito's for the i-th
 /// of several kinds, viridis for the i-th of n that have an order.

@@ -282,9 +282,10 @@ std::vector<std::string> elements_of(const FigureSeries& series, const DataColum
     }
     return elements;
   }
-  if (series.drawn == Drawn::joined_points) {
-    elements.push_back(
-        fmt::format("{}{}:2 with lines lw 1 dt {} {}", data, x, dashes[series.dash % 4], colour));
+  if (series.drawn != Drawn::points) {
+    elements.push_back(fmt::format("{}{}:2 with {} lw 1 dt {} {}", data, x,
+                                   series.drawn == Drawn::stepped_points ? "steps" : "lines",
+                                   dashes[series.dash % 4], colour));
   }
   elements.push_back(fmt::format("{}{}{} {} pt {} {}", data, all_x, errors ? bars : ":2",
                                  errors ? "with yerrorbars lw 0.75" : "with points",

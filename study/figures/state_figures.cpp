@@ -95,13 +95,13 @@ void add_ordering(const DrawnFile& file, Figures& into) {
       for (const TableView& table : made) {
         if (table.point() != point.number || table.path().back() != observable) continue;
         panel.caption = fmt::format(
-            "Share of the beds that are not yet ordered ({}), by Kaplan & Meier's estimate, which "
-            "falls in a step at each point; bars are 95 % intervals.",
+            "Share of the beds that are not yet ordered ({}), by Kaplan & Meier's estimate; "
+            "bars are 95 % intervals.",
             table.note("rule"));
         panel.source = table.source("survival");
         FigureSeries one{.name = point.label,
                          .colour = point.colour,
-                         .drawn = Drawn::joined_points,
+                         .drawn = Drawn::stepped_points,
                          .symbol = panel.series.size()};
         const std::vector<double> taps = table.axis("tap"), share = table.values("survival"),
                                   low = table.values("survival_low_95"),

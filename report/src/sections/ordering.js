@@ -11,13 +11,12 @@ function survival(chapter, made, observable) {
   const one = figure(() => ({
     file: chapter.run.file,
     title: `Not yet ordered, by ${words(observable)}`,
-    caption: `Share of the beds that are not yet ordered (${example.notes.rule}), by Kaplan & Meier's estimate, which falls in a step at each point; ` +
-      "bars are 95 % intervals.",
+    caption: `Share of the beds that are not yet ordered (${example.notes.rule}), by Kaplan & Meier's estimate; bars are 95 % intervals.`,
     source: example.source("survival"), x: {label: "taps t", type: "tap", short: "tap"},
     y: {label: "share not yet ordered", short: "share"},
     series: chapter.shownPoints().flatMap(({point, label, colour}) => {
       const table = made.find((each) => each.point === point && each.path.at(-1) === observable);
-      return table ? [{name: label, colour, mark: "dots+line", rows: table.axis("tap").map((tap, i) => ({
+      return table ? [{name: label, colour, mark: "dots+steps", rows: table.axis("tap").map((tap, i) => ({
         x: tap, y: table.value("survival", i), low: table.value("survival_low_95", i), high: table.value("survival_high_95", i)}))}] : [];
     }),
   }));
