@@ -109,7 +109,7 @@ def ageing(run):
                    "`jostle analyse ageing`", found["ageing_p"], found["ageing_factor"] < 1,
                    would_be_found("a factor of", found["ageing_detectable"])),
         of_program("the ages collapse on eq. 6", found.notes["collapse_verdict"],
-                   "`jostle analyse ageing`", found["collapse_p"], False,
+                   "`jostle analyse ageing`, which can only refute", found["collapse_p"], False,
                    would_be_found("a change of B by a factor of", found["collapse_detectable"]))]
     head = "Not in the paper (V: the variance of the change over realizations):"
     beyond = "\n".join([head, ""] + [

@@ -10,9 +10,10 @@ import re
 import time
 
 import numpy as np
+from scipy import stats
 
-from box_figures import shakes, sides, widths
 from ageing_figures import ageing
+from box_figures import shakes, sides, widths
 from compaction_figures import bell, compaction, fluctuations, hysteresis, moves
 from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
@@ -111,6 +112,7 @@ FIGURES = {
 # figure: its pictures, of the tables of its section; points are those that the paper prints.
 TAPS, STRENGTH, PHI = "taps", "eps^(1/2)", "solids fraction"
 LAYERED = ((0, 0.567), (50, 0.578), (250, 0.597))
+NORMAL = tuple((n, round(float(stats.norm.pdf(n, 7.2713, 1.2550)), 4)) for n in range(3, 13))
 PICTURES = {
     "pb2": [Picture(TAPS, "bottom fraction", across=True, log="x")],
     "pb3": [Picture(STRENGTH, "sigma_Z, diameters", columns="^sigma_Z")],
@@ -122,6 +124,7 @@ PICTURES = {
     "pb6-8-periodic": [Picture("height, diameters", PHI, across=True)],
     "pb9": [Picture("sigma", "P0", columns="P0|Gotoh", log="y")],
     "pb10": [Picture(TAPS, "sphere volumes", columns="^(nu|v0)$", log="x"),
+             Picture("corrected fraction", "sphere volumes", columns="^(nu|v0)$", x_column=1),
              Picture("volume of a pore, sphere volumes", "rho_v", across=True, table=1, log="y")],
     "pb-moves": [Picture("longest step, diameters", "10^4 (Phi_c(30) - Phi_c(0))", across=True,
                          log="x")],
@@ -135,17 +138,18 @@ PICTURES = {
                     columns="N_c of the region", x_column=2)],
     "dr4": [Picture(TAPS, PHI, across=True, log="x")],
     "dr5": [Picture(TAPS, PHI, across=True, log="x")],
-    "dr6": [Picture(TAPS, PHI, columns="^Phi$", paper=LAYERED),
+    "dr6": [Picture(TAPS, PHI, columns="^Phi$", paper=LAYERED + ((90000, 0.654),), log="x"),
             Picture("height, diameters", "share of fcc and hcp", across=True, table=1,
                     rows="^(0|50|100|250|600)$")],
     "dr6-published": [Picture(TAPS, PHI, across=True, paper=LAYERED)],
     "dr6-readings": [Picture(TAPS, PHI, across=True, paper=LAYERED[1:])],
     "dr7-9": [Picture("friction", PHI, columns="^Phi", paper=((0, 0.6366), (0.1, 0.6088))),
-              Picture("neighbours within 1.05 d", "share of the spheres", across=True, table=1),
+              Picture("neighbours within 1.05 d", "share of the spheres", across=True, table=1,
+                      paper=NORMAL),
               Picture("free volume, sphere volumes", "probability density", across=True, table=2)],
     "dr7-columns": [Picture("solids fraction of the column", PHI, columns="^Phi", x_column=1,
                             rows="^100000$")],
-    "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609),)),
+    "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609), (898, 0.6997)), log="x"),
                 Picture("height, diameters", PHI, across=True, table=2),
                 Picture("height, diameters", "n(z), share of the centres in 0.2 d", across=True,
                         table=3)],
@@ -158,7 +162,7 @@ HEAD = """# What the papers' figures become here
 
 Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
 
-**Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides. Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's. Pictures show numbers of the tables below them."""
+**Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides (these are not corrected: one in twenty errs). Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's. Pictures show numbers of the tables below them."""
 
 REMARK = "**Remark**: "
 OUTDATED = "(Of earlier numbers.) "
@@ -214,9 +218,30 @@ def section(figure, run, others, page):
     verdicts = verdict_table(statements)
     parts = [f"## {figure}", f"`./dev physics {figure}`, {run.seconds / 60:.0f} core-minutes. " +
              " ".join(run.scene["description"]), f"**Here**: {setup(run)}. **The paper**: "
-             f"{paper_setup}. {claim}", numbers, verdicts,
+             f"{paper_setup}. {claim}", full_size(run), numbers, verdicts,
              remark_of(page, figure, numbers + "\n\n" + verdicts)]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+NOT_REACHED = "**Not reached** in the time that was given: the scene, which goes on with the next call."
+OLDER = "**Not reached** in the time that was given: the scene as it is now. Below: an earlier run."
+
+
+def not_reached(figure, run, former):
+    """The section of a figure whose run has not ended; what stood there before is kept, and marked."""
+    if former is None:
+        return "\n\n".join([f"## {figure}", " ".join(run.scene["description"]), NOT_REACHED,
+                            full_size(run)]).strip() + "\n"
+    if NOT_REACHED in former or OLDER in former:
+        return former
+    return former.replace(f"## {figure}\n\n", f"## {figure}\n\n{OLDER}\n\n", 1)
+
+
+def full_size(run):
+    """The command that makes the figure at the paper's size, and what it costs on this machine."""
+    scene = run.full_size()
+    hours = run.core_hours(scene) if scene else None
+    return f"**Full size**: `./dev run {scene}`, about {hours} core-hours." if hours else ""
 
 
 def summary(sections):
@@ -230,7 +255,7 @@ def summary(sections):
         for word in ("agrees", "disagrees", "cannot decide"):
             row.append("; ".join(statement for statement, said in words if said == word))
         if not words:
-            row[3] = "out of date" if "**Out of date**" in text else "not made yet"
+            row[3] = "not reached" if text else "not made yet"
         rows.append(row)
     return table(["figure", "agrees", "disagrees", "cannot decide"], rows)
 
@@ -255,6 +280,8 @@ def main(jostle, folder, page, figures, deadline):
         run = Run(jostle, scene, folder)
         if not run.make(deadline):
             print(f"{figure} is not reached; the next call goes on with {run.path}")
+            sections[figure] = not_reached(figure, run, sections.get(figure))
+            write_page(page, sections)
             break
         others = [finished(jostle, other, folder) for other in others]
         sections[figure] = section(figure, run, others, text)
@@ -269,7 +296,7 @@ def write_page(page, sections):
     page.write_text("\n\n".join([HEAD, summary(sections)] + ordered) + "\n")
 
 
-def arguments():
+def arguments(command=None):
     parser = argparse.ArgumentParser(prog="./dev physics", allow_abbrev=False)
     for path in ("jostle", "folder", "page"):
         parser.add_argument(path, type=pathlib.Path, help=argparse.SUPPRESS)
@@ -277,7 +304,7 @@ def arguments():
                         help="stop after so many hours; the next call goes on")
     parser.add_argument("figures", nargs="*", metavar="FIGURE",
                         help=f"all, or some of {', '.join(FIGURES)}")
-    found = parser.parse_args()
+    found = parser.parse_intermixed_args(command)
     for figure in found.figures:
         if figure not in FIGURES:
             parser.error(f"{figure}: no such figure; there are {', '.join(FIGURES)}")

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from lift_figures import PRINTED
+from lift_figures import PRINTED_ERROR, ROUNDED
 from page_text import at, table, window
 from verdicts import (Estimate, are_positive, is_positive, is_within, of_interval, undecided)
 
@@ -39,7 +39,7 @@ def poured(run):
                      f"its falls from each of {', '.join(f'{mu:g}' for mu in frictions)} to the "
                      "next: ", name="paired t-tests"),
         is_within("without friction 0.6366, as random packings have", Estimate.of(
-            phi[0][0] - 0.6366), PRINTED, f"{at(phi[0], 0)}; from it "),
+            phi[0][0]).from_printed(0.6366, PRINTED_ERROR), ROUNDED, f"{at(phi[0], 0)}; from it "),
         is_within(f"{POURED} +- {RANGE} at a friction of 0.1", Estimate.of(
             phi[tenth][0] - POURED), RANGE, f"{at(phi[tenth], 0)}; from it "),
         of_interval("nearest neighbours at 0.1, cut at 1.05 d: mean 7.2713 +- 0.0558", *mean[:2],
@@ -152,8 +152,7 @@ def tapped(run):
                     Estimate.of(0.1 * gains[0] - gains[1]),
                     f"{Estimate.of(gains[1]).text()}; a tenth of the gain at 2 less it: ",
                     name="paired t-test"),
-        undecided("Phi = 0.6997 +- 0.0058 at Gamma = 2 after 898 taps",
-                  f"{at(strong, last)} after {last}", "too few taps"),
+        at_the_end(strong, 898),
         is_positive("layers grow from the floor at Gamma = 2", added(0, "grown_layers"),
                     f"grown layers at tap {taps[-1]} less tap 0: ", digits=2,
                     name="paired t-test"),
@@ -164,6 +163,14 @@ def tapped(run):
                                                       for layer in range(LAYERS)], layer_rows)] +
                        profiles), \
         statements
+
+
+def at_the_end(strong, taps):
+    name, last = f"Phi = 0.6997 +- 0.0058 at Gamma = 2 after {taps} taps", len(strong) - 1
+    if last < taps:
+        return undecided(name, f"{at(strong, last)} after {last}", "too few taps")
+    return is_within(name, Estimate.of(strong[taps] - 0.6997), 0.0058,
+                     f"{at(strong, taps)}; from it ")
 
 
 ENGINES = ("Monte Carlo", "grains, friction 0", "grains, friction 0.1")

@@ -62,14 +62,16 @@ def steadiness(tables, observable, names):
                      zip(names, steady_words(tables, observable, len(names))))
 
 
-def are_steady(paper, tables, observable, names, taps):
-    """All sweep points are in their steady states: shown where the analysis shows it of each,
-    refuted where one drifts (p times their number)."""
+def are_steady(paper, tables, observable, names, taps, long):
+    """All sweep points are in their steady states over taps (first, last): shown where the analysis
+    shows it of each, refuted where one drifts (p times their number) after `long` taps and more."""
     states = steady_words(tables, observable, len(names))
-    found = f"steady over taps {taps}? {steadiness(tables, observable, names)}"
+    found = f"steady over taps {taps[0]} to {taps[1]}? {steadiness(tables, observable, names)}"
     test = "`jostle analyse steady`, each strength"
     if all(word == "reached" for word, _ in states):
         return Statement(paper, found, test, word=AGREES)
     drifting = [p for word, p in states if word == "not reached" and np.isfinite(p)]
+    if taps[1] < long:
+        return Statement(paper, found, f"{test}; {taps[1]} taps are too few to refute it")
     p = min(1.0, len(states) * min(drifting)) if drifting else np.nan
     return Statement(paper, found, test, p)

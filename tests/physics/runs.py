@@ -110,6 +110,18 @@ class Run:
         answer = self.asked("fit", self.path, "--observable", observable, "--model", law, *options)
         return [curve["fits"][0] for curve in answer["curves"]]
 
+    def full_size(self):
+        """The scene of the paper's size, from the project's root; None where there is none."""
+        scene = self.scene_path.parent.parent / self.scene_path.name
+        return scene.relative_to(ROOT) if scene.exists() else None
+
+    def core_hours(self, scene):
+        """What `jostle check` tells of a scene on this machine."""
+        answer = subprocess.run([self.jostle, "check", ROOT / scene], check=True, text=True,
+                                stdout=subprocess.PIPE)
+        found = re.search(r"([0-9.]+) core-hours", answer.stdout)
+        return found and found[1]
+
     def residual(self, curve, law):
         """The mean square of one realization's residuals from a law, from tap 1 on."""
         taps = np.arange(1, len(curve))

@@ -38,6 +38,12 @@ class Estimate:
         dof = sum(squares)**2 / of_squares if of_squares > 0 else 0
         return Estimate(first.value - second.value, float(np.sqrt(sum(squares))), dof)
 
+    def from_printed(self, printed, error):
+        """Less a number that is known to a standard error (Welch 1947)."""
+        both = self.error**2 + error**2
+        dof = self.dof * both**2 / self.error**4 if self.dof > 0 and self.error > 0 else self.dof
+        return Estimate(self.value - printed, float(np.sqrt(both)), dof)
+
     @property
     def testable(self):
         return bool(self.dof > 0 and np.isfinite(self.value) and self.error > 0)
@@ -141,7 +147,7 @@ def is_within(paper, estimate, margin, found, digits=4, scale=1.0):
 def is_zero(paper, estimate, found, digits=4, scale=1.0):
     """The paper says exactly 0: can be refuted, but not shown."""
     return Statement(paper, f"{found}{estimate.text(digits, scale)}",
-                     of_test(estimate, "t-test of 0"), p_two_sided(estimate), False,
+                     of_test(estimate, "t-test of 0, which can only refute"), p_two_sided(estimate), False,
                      lambda level: found_with(estimate, level, digits, scale))
 
 

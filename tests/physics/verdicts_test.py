@@ -3,7 +3,8 @@ import numpy as np
 
 from ageing_figures import detectable_factor, falls_with_age, p_exchanged
 from compaction_figures import exponential_in_strength, greater
-from figures import remark_of
+from figures import NOT_REACHED, arguments, not_reached, remark_of, summary
+from lift_figures import densities
 from page_text import are_steady
 from runs import Table
 from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
@@ -160,16 +161,17 @@ def intervals_of_fits():
 
 
 def steady_points():
-    def word(*states):
+    def word(*states, taps=4000):
         tables = {f"point_{point:04}/steady/phi": Table({
             "notes": {"verdict": f"{verdict} with 4 realizations: ..."}, "axes": {},
             "quantities": {"drift_p": {"axes": [], "values": p}}})
             for point, (verdict, p) in enumerate(states)}
-        return judge([are_steady("", tables, "phi", "ab", "")])[0][2]
+        return judge([are_steady("", tables, "phi", "ab", (1, taps), 4000)])[0][2]
     check(word(("reached", 0.5), ("reached", 0.3)) == AGREES, "both are steady")
     check(word(("reached", 0.5), ("cannot decide", 0.3)) == UNDECIDED, "one may drift")
     check(word(("reached", 0.5), ("not reached", 0.03)) == UNDECIDED, "one of two at 6 %")
     check(word(("cannot decide", 0.5), ("not reached", 0.02)) == DISAGREES, "one drifts")
+    check(word(("reached", 0.5), ("not reached", 0.02), taps=400) == UNDECIDED, "too few taps")
     check(word(("reached", 0.5), ("not reached", None)) == UNDECIDED, "a single realization")
 
 
@@ -182,6 +184,44 @@ def remarks_are_those_of_their_section():
         check(found == wanted, "remark of", figure, repr(found))
 
 
+def what_is_not_reached_keeps_what_stood_there():
+    class Run:
+        scene = {"description": ["A bed."]}
+
+        def full_size(self):
+            return "scene.json"
+
+        def core_hours(self, scene):
+            return "84" if scene == "scene.json" else None
+    new = not_reached("a", Run(), None)
+    check("A bed." in new and NOT_REACHED in new and "about 84 core-hours" in new, new)
+    check(not_reached("a", Run(), new) == new, "twice")
+    former = "## a\n\none\n\n| p | f | t | - | **agrees** |\n"
+    kept = not_reached("a", Run(), former)
+    check(kept.startswith("## a\n\n**Not reached**") and kept.endswith("**agrees** |\n"), kept)
+    check("| [a](#a) |" not in summary({"a": new}) and "not reached" in summary({"pb2": new}), "summary")
+
+
+def options_stand_before_or_after_figures():
+    for order in (["--hours", "2", "pb9", "pb10"], ["pb9", "pb10", "--hours", "2"]):
+        found = arguments(["jostle", "folder", "page", *order])
+        check(found.hours == 2 and found.figures == ["pb9", "pb10"], order, found)
+
+
+def numbers_of_the_paper_err_too(random):
+    """Of a printed mean that errs by 0.001 and is rounded, from beds whose truth it is."""
+    for realizations, scatter in ((6, 0.0005), (6, 0.004), (20, 0.004)):
+        printed = np.round(random.normal(0.578, 0.001, ENSEMBLES), 3)
+        ours = random.normal(0.578, scatter, (ENSEMBLES, realizations))
+        found = [judge([densities(np.array([row]), {0: number})[0]])[0][2]
+                 for row, number in zip(ours, printed)]
+        rate = found.count(DISAGREES) / ENSEMBLES
+        print(f"{realizations} beds that scatter by {scatter}, a printed mean: {rate:.3f} disagree")
+        at_most(rate, LEVEL, "a printed mean")
+    far = [judge([densities(np.array([row + 0.006]), {0: 0.578})[0]])[0][2] for row in ours]
+    check(far.count(DISAGREES) > 0.9 * ENSEMBLES, "0.006 from a printed mean")
+
+
 if __name__ == "__main__":
     generator = np.random.default_rng(20010222)
     signs(generator)
@@ -191,7 +231,10 @@ if __name__ == "__main__":
     families(generator)
     ages(generator)
     intervals()
+    numbers_of_the_paper_err_too(generator)
     intervals_of_fits()
     steady_points()
     remarks_are_those_of_their_section()
+    what_is_not_reached_keeps_what_stood_there()
+    options_stand_before_or_after_figures()
     print("verdicts: as often right as they say")
