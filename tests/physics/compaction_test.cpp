@@ -144,6 +144,38 @@ TEST_CASE("Philippe & Bideau: the way down lies above the way up and falls with 
   check_positive(falls);
 }
 
+TEST_CASE("Philippe & Bideau: the weakest taps do not pack best", "[statistics]") {
+  // Fig. 4, the left side of the bell: eps^(1/2) = 0.05 and 0.2 from the same beds.
+  const auto fractions = [](double epsilon) {
+    const Plan plan = short_plan("philippe-bideau-2001/fig4-bell.json",
+                                 {{"container", {{"width", 5}}},
+                                  {"spheres", 400},
+                                  {"protocol", {{{"tap", {{"dilate", epsilon}}}, {"count", 16}}}},
+                                  {"relax", rough_relaxation},
+                                  {"snapshots", nullptr}});
+    return run_series(plan, 6, "corrected_fraction");
+  };
+  check_positive(difference(fractions(0.0025), fractions(0.04), 11, 16));  // [8]
+}
+
+TEST_CASE("Philippe & Bideau: nearly vertical moves decompact, those of pi/4 less or not",
+          "[statistics]") {
+  const auto fractions = [](double theta0) {
+    nlohmann::json relax = rough_relaxation;
+    relax["polar"]["theta0"] = theta0;
+    const Plan plan = short_plan("philippe-bideau-2001/reduced/moves.json",
+                                 {{"container", {{"width", 5}}},
+                                  {"spheres", 400},
+                                  {"protocol", {{{"tap", {{"dilate", 0.02}}}, {"count", 10}}}},
+                                  {"relax", relax},
+                                  {"snapshots", nullptr}});
+    return run_series(plan, 8, "corrected_fraction");
+  };
+  const Series vertical = fractions(0.0982);
+  check_positive(change(vertical, 10, 0));                                      // [48]
+  check_positive(difference(vertical, fractions(0.7853981633974483), 10, 10));  // [19]
+}
+
 TEST_CASE("Rosato et al.: a poured bed lifted by 0.25 grows denser at the floor", "[statistics]") {
   // Fig. 6.
   const Plan plan = short_plan("rosato-dybenko-2010/fig6.json",
@@ -153,6 +185,14 @@ TEST_CASE("Rosato et al.: a poured bed lifted by 0.25 grows denser at the floor"
                                 {"protocol", {{{"tap", {{"lift", 0.25}}}, {"count", 8}}}},
                                 {"snapshots", nullptr}});
   check_positive(change(run_series(plan, 4, "bottom_fraction"), 0, 8));
+  // By its published rules too.
+  const Plan published = short_plan("rosato-dybenko-2010/fig4-published-stop.json",
+                                    {{"container", {{"width", 6}}},
+                                     {"spheres", 864},
+                                     {"observe", {"bottom_fraction"}},
+                                     {"protocol", {{{"tap", {{"lift", 0.25}}}, {"count", 16}}}},
+                                     {"snapshots", nullptr}});
+  check_positive(change(run_series(published, 6, "bottom_fraction"), 0, 16));  // [14]
 }
 
 TEST_CASE("Rosato et al.: a lift orders the floor, a held dilation of the same energy less",

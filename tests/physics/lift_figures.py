@@ -11,10 +11,13 @@ from verdicts import (Estimate, are_positive, are_within, is_positive, is_within
 ROUNDED, PRINTED_ERROR = 0.0005, 0.001
 
 
-def against_taps(run, taps):
+TAPERED = "Phi, edges over a layer"
+
+
+def against_taps(run, taps, observable="bulk_fraction", name="Phi"):
     rows = [[label.replace("|", "")] + [at(curve, tap) for tap in taps]
-            for label, curve in zip(run.labels, run.curves("bulk_fraction"))]
-    return ["point", f"Phi, tap {taps[0]}"] + [str(tap) for tap in taps[1:]], rows
+            for label, curve in zip(run.labels, run.curves(observable))]
+    return ["point", f"{name}, tap {taps[0]}"] + [str(tap) for tap in taps[1:]], rows
 
 
 # Windows of taps about a tap, and the taps of the table.
@@ -88,7 +91,8 @@ def from_crystal(run):
                     sweep["maximum_at_high"], between=(0.2, 0.35), found="maximum at"),
         are_steady("Phi flattens after many thousand taps", steady, "bulk_fraction",
                    [f"{lift:g}" for lift in run.values()], (last - 249, last), EQUILIBRIUM)]
-    return table(header, rows), statements
+    tapered = against_taps(run, (0, 10, 60, 200, 500), "tapered_fraction", TAPERED)
+    return f"{table(header, rows)}\n\n{table(*tapered)}", statements
 
 
 def contacts(run):
@@ -179,13 +183,14 @@ def layers(run):
         place = int(np.argmin(np.abs(places - height)))
         return np.array([1 - packings["order"]["disordered_at_height"][k, place]
                          for packings in kept])
-    rows = [[str(tap), at(bulk, tap), Estimate.of(each[:, k]).text(2)] +
+    tapered = run.curves("tapered_fraction")[0]
+    rows = [[str(tap), at(bulk, tap), at(tapered, tap), Estimate.of(each[:, k]).text(2)] +
             [f"{grown['share'][k, layer]:.2f}" for layer in range(8)]
             for k, tap in enumerate(taps)]
     heights = (1.5, 3.5, 5.5, 7.5, 9.5, 11.5)
     order_rows = [[str(tap)] + [Estimate.of(ordered(k, height)).text(3) for height in heights]
                   for k, tap in enumerate(taps)]
-    text = [table(["tap", "Phi", "grown layers"] +
+    text = [table(["tap", "Phi", TAPERED, "grown layers"] +
                   [f"share, layer {layer + 1}" for layer in range(8)], rows),
             f"Layers of tap {taps[-1]} lie at " +
             ", ".join(f"{height:.2f}" for height in grown["found_height"][-1, :6]) + " (hcp: " +

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "short_scene.hpp"
 
@@ -46,4 +47,51 @@ TEST_CASE("Rosato & Dybenko: shaking hard enough to throw the bed densifies it, 
   CHECK(more.mean() > 3 * more.standard_error());
   CHECK(std::abs(change(gentle, 0, 1).mean()) < 0.005);
   for (std::size_t r = 0; r < gentle.size(); ++r) CHECK(gentle[r][0] == strong[r][0]);  // matched
+}
+
+TEST_CASE("Rosato & Dybenko: poured grains lie looser with more friction", "[statistics]") {
+  // Fig. 7, one realization after the other from the same column.
+  const auto poured = [](double friction) {
+    const Plan plan = short_plan(
+        "rosato-dybenko-2010/fig7-9.json",
+        {{"container", {{"width", 4}}},
+         {"spheres", 256},
+         {"streams", "matched"},
+         {"observe", {"bulk_fraction"}},
+         {"engine",
+          {{"discrete_element",
+            {{"contact", {{"walton_braun", {{"stiffness", 1e4}, {"friction", friction}}}}},
+             {"rest", {{"timed", {{"seconds", 2}}}}}}}}},
+         {"snapshots", nullptr}});
+    return run_series(plan, 6, "bulk_fraction");
+  };
+  const Series without = poured(0), with = poured(0.5);
+  Moments loss;
+  for (std::size_t r = 0; r < with.size(); ++r) loss.add(without[r][0] - with[r][0]);
+  CAPTURE(loss.mean(), loss.standard_error());
+  CHECK(loss.mean() > 3 * loss.standard_error());  // [4]
+}
+
+TEST_CASE("Tapped grains without friction end denser than Monte Carlo beds from the same pours",
+          "[statistics]") {
+  const auto tapped = [](const nlohmann::json& engine) {
+    const Plan plan =
+        short_plan("both-engines.json", {{"container", {{"width", 5}}},
+                                         {"spheres", 300},
+                                         {"observe", {"bulk_fraction"}},
+                                         {"protocol", {{{"tap", {{"lift", 0.25}}}, {"count", 8}}}},
+                                         {"engine", engine},
+                                         {"snapshots", nullptr}});
+    return run_series(plan, 6, "bulk_fraction");
+  };
+  const Series trials =
+      tapped({{"discrete_element", nullptr}, {"monte_carlo", nlohmann::json::object()}});
+  const Series grains =
+      tapped({{"discrete_element",
+               {{"contact", {{"walton_braun", {{"stiffness", 1e4}, {"friction", 0}}}}},
+                {"rest", {{"timed", {{"seconds", 0.5}}}}}}}});
+  Moments more;
+  for (std::size_t r = 0; r < grains.size(); ++r) more.add(grains[r][8] - trials[r][8]);
+  CAPTURE(more.mean(), more.standard_error());
+  CHECK(more.mean() > 3 * more.standard_error());  // [6]
 }

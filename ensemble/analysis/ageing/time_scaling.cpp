@@ -253,6 +253,9 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
                               const std::string& name) {
   const Ages ages = of_ages(all, waiting_times, 2);
   const LogCurves& curves = ages.curves;
+  if (curves.influences.cols() < fewest_realizations) {
+    return cannot_decide("the logarithms need four realizations");
+  }
   if (curves.size() < 2) {
     return cannot_decide("fewer than two waiting times above 1 have curves");
   }

@@ -75,7 +75,15 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
     both[k] = first.may_be[k] && largest.may_be[k];
     one = one || both[k];
   }
-  if (!one) return "the point that orders first is not the one with the largest value (p < 0.05)";
+  std::vector<bool> unshown(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) unshown[k] = points[k].steady != Verdict::reached;
+  const std::string not_shown = labels_of(points, unshown);
+  if (!one) {
+    return fmt::format(
+        "the point that orders first is not the one with the largest value over the last taps "
+        "(p < 0.05){}",
+        not_shown.empty() ? "" : "; that these are steady is not shown at " + not_shown);
+  }
   return "not told apart: may be both, " + labels_of(points, both);
 }
 

@@ -34,6 +34,20 @@ Replicates sum(const Replicates& a, const Replicates& b, double factor = 1) {
   return both;
 }
 
+// A straight line's change over the series, in deviations about the line; 0 where there are none.
+double drift_of(std::span<const double> values, double mean) {
+  const auto n = static_cast<double>(values.size());
+  const double middle = 0.5 * (n - 1);
+  double covariance = 0, squares = 0;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    covariance += (static_cast<double>(t) - middle) * (values[t] - mean);
+    squares += (values[t] - mean) * (values[t] - mean);
+  }
+  const double slope = 12 * covariance / (n * (n * n - 1));
+  const double about = std::max(squares - slope * covariance, 0.0) / n;
+  return about > 0 ? slope * (n - 1) / std::sqrt(about) : 0;
+}
+
 CompactivityStep step_between(std::span<const SteadyVolumes> states, std::size_t from,
                               const VolumeBins& bins) {
   const SteadyVolumes &first = states[from], &second = states[from + 1];
@@ -86,6 +100,7 @@ void SteadyVolumes::add(std::span<const double> volumes) {
   highest_ = means_.empty() ? high : std::max(highest_, high);
   means_.push_back(moments.mean());
   variances_.push_back(moments.sigma() * moments.sigma());
+  drifts_.push_back(drift_of(volumes, moments.mean()));
 }
 
 void SteadyVolumes::count(std::span<const double> volumes, const VolumeBins& bins) {
@@ -183,8 +198,24 @@ std::vector<Jackknifed> inverse_compactivity(std::span<const CompactivityStep> s
   return found;
 }
 
-CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps) {
+Jackknifed drift_together(std::span<const SteadyVolumes> states) {
+  if (states.empty()) return {not_a_number, {}};
+  Moments drifts;
+  for (std::size_t r = 0; r < states.front().realizations(); ++r) {
+    double sum = 0;
+    for (const SteadyVolumes& state : states) sum += state.drifts()[r];
+    drifts.add(sum / static_cast<double>(states.size()));
+  }
+  Jackknifed drift{drifts.mean(), {}};
+  if (drifts.count() > 1)
+    drift.error = {drifts.standard_error(), static_cast<double>(drifts.count() - 1)};
+  return drift;
+}
+
+CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps,
+                                         const Jackknifed& drift) {
   CompactivityVerdict verdict;
+  verdict.drift_p = p_value(drift.value, drift.error);
   std::vector<double> p;  // difference and curvature of each step in turn
   std::vector<double> detectable;
   std::size_t overlapping = 0;
@@ -216,6 +247,11 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";
   } else if (realizations < 2) {
     verdict.statement = "cannot decide with 1 realization: errors need two";
+  } else if (verdict.drift_p < CompactivityVerdict::level) {
+    verdict.statement = fmt::format(
+        "cannot decide: the states together still drift, by {:.2g} deviations of single taps over "
+        "theirs (p = {:.2g}); take later taps ({})",
+        drift.value, verdict.drift_p, tests);
   } else if (std::fmin(verdict.difference_p, verdict.curvature_p) < CompactivityVerdict::level) {
     verdict.statement = fmt::format("disagree: {}", tests);
   } else if (verdict.separation < CompactivityVerdict::least_separation) {

@@ -36,13 +36,16 @@ class SteadyVolumes {
   double mean(std::size_t left_out) const;
   /// About that mean: within the series and between them, sum of squares over their number.
   double variance(std::size_t left_out) const;
+  /// What a straight line through each series changes by from its first to its last value, in
+  /// deviations of the series about it, [realizations].
+  const std::vector<double>& drifts() const { return drifts_; }
   double lowest() const { return lowest_; }
   double highest() const { return highest_; }
   /// Share of the volumes in each bin, [n_bins].
   std::vector<double> histogram(std::size_t left_out, std::size_t n_bins) const;
 
  private:
-  std::vector<double> means_, variances_;  // [realizations]; variances about the own mean
+  std::vector<double> means_, variances_, drifts_;  // [realizations]; variances about the own mean
   std::vector<std::vector<double>> shares_;
   double lowest_ = 0, highest_ = 0;
 };
@@ -95,6 +98,7 @@ struct CompactivityVerdict {
   double detectable = 0;  // largest over the steps: disagreement or curvature, over the largest
                           // step of 1/X, that would have been found with probability 0.8
   double separation = 0;  // of the widest step that overlaps
+  double drift_p = 1;     // of no drift of all states together; NaN of one realization
   std::string statement;  // "agree", "disagree" or "cannot decide", and why
 
   static constexpr double level = 0.05;            // false alarms, all tests together
@@ -112,6 +116,11 @@ std::vector<CompactivityStep> compactivity_steps(std::span<const SteadyVolumes> 
 /// from the first step on that has none.
 std::vector<Jackknifed> inverse_compactivity(std::span<const CompactivityStep> steps,
                                              Replicates CompactivityStep::*estimator);
-CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps);
+/// The drift of all states together, in deviations: of each realization the mean over the states,
+/// which see what each alone does not. None below two realizations.
+Jackknifed drift_together(std::span<const SteadyVolumes> states);
+/// `drift`: of the states together. Of states that drift nothing is decided.
+CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps,
+                                         const Jackknifed& drift);
 
 }  // namespace jostle::inline ensemble

@@ -182,9 +182,18 @@ Table volume_table(std::string name, const Column& observable, const std::string
                  {"realizations", std::to_string(states.front().volumes.realizations())}};
   if (!left_out.empty())
     table.notes.emplace_back("left_out", "not steady, at " + control + " " + left_out);
+  const Jackknifed drift = drift_together(steady);
+  const auto one = [&table](const char* quantity, double value, const char* meaning) {
+    table.quantities.push_back({quantity, {}, std::vector{value}, "1", meaning, ""});
+  };
+  one("drift_together", drift.value,
+      "change of the volume over the taps of a state, in deviations of single taps, mean of those "
+      "used");
+  one("drift_together_error", error_or_nan(drift.error), "standard error over realizations");
+  one("drift_together_dof", drift.error.dof, "its degrees of freedom");
   table.notes.emplace_back("verdict", used.size() < 2
                                           ? "cannot decide: fewer than two states are steady"
-                                          : compactivity_verdict(steps).statement);
+                                          : compactivity_verdict(steps, drift).statement);
   return table;
 }
 

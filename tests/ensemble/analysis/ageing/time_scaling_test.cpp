@@ -26,8 +26,9 @@ Paths power(double mu) {
   return paths;
 }
 
-// Brownian motion in the time g: A(t, t_W) = g(t_W + t) - g(t_W).
-LogCurves one_path(std::uint64_t seed, std::uint32_t m, double (*g)(double)) {
+// Brownian motion in the time g beside a drift of all alike:
+// A(t, t_W) = g(t_W + t) - g(t_W) + (drift (g(t_W + t) - g(t_W)))^2.
+LogCurves one_path(std::uint64_t seed, std::uint32_t m, double (*g)(double), double drift = 0) {
   const AgeingGrid grid = {.waiting_times = ages, .lags = logarithmic_taps(1, 10000, 8)};
   RandomStream random = test_stream(seed);
   TapRows rows{.taps = taps_of(grid), .realizations = m, .values = {}};
@@ -36,7 +37,7 @@ LogCurves one_path(std::uint64_t seed, std::uint32_t m, double (*g)(double)) {
   for (const std::uint64_t tap : rows.taps) {
     const double here = g(static_cast<double>(tap));
     for (double& x : path) {
-      x += std::sqrt(here - before) * noise(random);
+      x += std::sqrt(here - before) * noise(random) + drift * (here - before);
       rows.values.push_back(x);
     }
     before = here;
@@ -78,10 +79,10 @@ Rates rates_of_power(double mu, std::uint32_t m, Paths paths, int n, std::uint64
 }
 
 Rates rates_of_path(const char* of, double mu, double (*g)(double), std::uint32_t m, int n,
-                    std::uint64_t seed) {
+                    std::uint64_t seed, double drift = 0) {
   Rates rates;
   for (int e = 0; e < n; ++e) {
-    rates.add(one_path(seed + static_cast<std::uint64_t>(e), m, g), mu);
+    rates.add(one_path(seed + static_cast<std::uint64_t>(e), m, g, drift), mu);
   }
   rates.print(of, m);
   return rates;
@@ -122,6 +123,8 @@ void calibrate(std::uint32_t m, int n) {
   CHECK(neither.power.excluded <= 0.1 * n);
   if (m >= 40) CHECK(neither.power.share() > 0.5);
   if (m >= 10) CHECK(rates_of_power(0, m, power(0), n, seed += 1000).logarithmic.share() > 0.5);
+  check_few_alarms(
+      rates_of_path("and a drift", 1, twice_logarithm, m, n, seed + 2000, 2).logarithmic);
 }
 
 }  // namespace
@@ -156,6 +159,11 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
   CHECK(std::isfinite(ageing_exponent(curves, {0, 100, 1000}, "a").mu));
   CHECK(logarithmic_collapse(curves, {1, 1, 1000}, "a").verdict ==
         "cannot decide: fewer than two waiting times above 1 have curves");
+  const LogCurves three = curves_of(3, 3, power(0.6));
+  CHECK(logarithmic_collapse(three, ages, "a").verdict ==
+        "cannot decide: the logarithms need four realizations");
+  CHECK(ageing_exponent(three, ages, "a").verdict ==
+        "no mu: cannot decide: mu needs four realizations");
 }
 
 TEST_CASE("Curves with no more points than F has parameters say nothing of mu") {

@@ -93,6 +93,33 @@ TEST_CASE("Histories are compared at equal values at the switch") {
                 "phi alone is not the state: after dilate 0.1 (number 0) and 0.1 (number 1) "));
 }
 
+TEST_CASE("Differences and their errors are those of a straight line, sum by sum") {
+  const std::size_t m = 7;
+  const std::vector<History> all = histories({m, 0.9, 0.5}, 0.03, 11);
+  for (const AlignedDifference& found : memory_test(all, windows).differences) {
+    const History &first = all[found.first], &second = all[found.second];
+    double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
+    for (std::size_t r = 0; r < m; ++r) {
+      const double x = second.at_switch[r] - first.at_switch[r];
+      const double y = second.after[found.window * m + r] - first.after[found.window * m + r] - x;
+      sx += x;
+      sy += y;
+      sxx += x * x;
+      sxy += x * y;
+      syy += y * y;
+    }
+    const auto n = static_cast<double>(m);
+    const double determinant = n * sxx - sx * sx;
+    const double slope = (n * sxy - sx * sy) / determinant;
+    const double value = (sy - slope * sx) / n;
+    const double about = syy - value * sy - slope * sxy;
+    CHECK(found.value == Approx(value).epsilon(1e-9));
+    CHECK(found.error.error ==
+          Approx(std::sqrt(about / (n - 2) * sxx / determinant)).epsilon(1e-6));
+    CHECK(found.error.dof == n - 2);
+  }
+}
+
 TEST_CASE("Histories that are off by the same in every realization cannot be compared") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.5, 0.5}, {1, 1, 1}},
                               {0.2, 20, {0.6, 0.6, 0.6}, {1, 1, 1}}};
