@@ -1,6 +1,9 @@
 #include "engine/dynamics.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "engine/monte_carlo/monte_carlo.hpp"
@@ -54,6 +57,7 @@ class MonteCarloDynamics final : public Dynamics {
   void tap(const Tap& tap, RandomStream& random) override {
     if (moving()) cut_short();
     state_.dropped_offsets = excite(packing_, tap, random).lateral_offsets_dropped;
+    check_height();
     begin();
   }
 
@@ -129,6 +133,17 @@ class MonteCarloDynamics final : public Dynamics {
     loop().load(packing_);
     loop().begin_tap();
     state_.progress = {};
+  }
+
+  // Up to here a place is known to 1e-7 d.
+  void check_height() const {
+    constexpr double highest = 1e9;
+    const double top = std::ranges::max(packing_.centres, {}, &Vec3::z).z;
+    if (top <= highest) return;
+    throw std::runtime_error(
+        "the bed has risen to a height of " + std::to_string(top) +
+        " d, where places are rounded by more than 1e-7 d: taps lift it further than it comes down; "
+        "a smaller eta lets it come down, or tap more gently");
   }
 
   void cut_short() {

@@ -37,6 +37,25 @@ TEST_CASE("taps from nothing to ten times the height") {
   }
 }
 
+TEST_CASE("a bed that rises for ever ends with words, before its places are lost") {
+  for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
+    Plan plan = plan_of(Dilate{0.8}, 100);
+    monte_carlo(plan).relax.sampler = sampler;
+    monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 1}};
+    Realization realization(plan, 0);
+    double highest = 0;
+    const auto to_its_end = [&] {
+      while (!realization.finished()) {
+        const Slice slice = realization.advance(1'000'000);
+        if (slice.row) highest = std::max(highest, slice.row->observables[0]);
+      }
+    };
+    CHECK_THROWS_WITH(to_its_end(), Catch::Contains("taps lift it further than it comes down"));
+    CHECK(highest > 1e7);
+    CHECK(highest < 1e9);
+  }
+}
+
 TEST_CASE("taps of 0 never raise the bed") {
   const RecordedRealization record = run_plan(plan_of(Dilate{0}, 30));
   for (std::size_t t = 1; t < record.rows.size(); ++t) {
