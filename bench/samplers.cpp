@@ -33,7 +33,7 @@ struct Course {
 };
 
 const std::array courses = {
-    Course{"polar, periodic", PeriodicBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-5, 2},
+    Course{"polar, periodic", PeriodicBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-5, 2.5},
     Course{"polar, periodic", PeriodicBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-6, 5},
     Course{"polar, walls", WalledBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-5, 0},
     Course{"polar, walls", WalledBox{16, 16}, 4096, Dilate{0.02}, PolarMove{}, 1e-6, 0},
