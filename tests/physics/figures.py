@@ -160,7 +160,7 @@ PICTURES = {
 
 HEAD = """# What the papers' figures become here
 
-Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it: `jostle check` tells its core-hours. a ± b: b is half the 68 % interval by Student's t over realizations.
+Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it, with the core-hours that this run makes of it by spheres and taps. a ± b: b is half the 68 % interval by Student's t over realizations.
 
 **Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides (these are not corrected: one in twenty errs). Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's. Pictures show numbers of the tables below them."""
 
@@ -218,7 +218,7 @@ def section(figure, run, others, page):
     verdicts = verdict_table(statements)
     parts = [f"## {figure}", f"`./dev physics {figure}`, {run.seconds / 60:.0f} core-minutes. " +
              " ".join(run.scene["description"]), f"**Here**: {setup(run)}. **The paper**: "
-             f"{paper_setup}. {claim}", full_size(run), numbers, verdicts,
+             f"{paper_setup}. {claim} {full_size(run)}".strip(), numbers, verdicts,
              remark_of(page, figure, numbers + "\n\n" + verdicts)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -238,10 +238,13 @@ def not_reached(figure, run, former):
 
 
 def full_size(run):
-    """The command that makes the figure at the paper's size, and what it costs on this machine."""
+    """The command that makes the figure at the paper's size, and what it costs on this machine, as
+    far as a run tells."""
     scene = run.full_size()
-    hours = run.core_hours(scene) if scene else None
-    return f"**Full size**: `./dev run {scene}`, about {hours} core-hours." if hours else ""
+    if scene is None:
+        return ""
+    hours = f", about {run.core_hours(scene)} core-hours" if run.seconds else ""
+    return f"**Full size**: `./dev run {scene}`{hours}."
 
 
 def summary(sections):

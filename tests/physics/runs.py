@@ -50,6 +50,7 @@ class Run:
         paper, figure = scene.split("/")
         self.scene_path = ROOT / "config" / "scenes" / paper / "reduced" / (figure + ".json")
         self.scene = json.loads(self.scene_path.read_text())
+        self.seconds = 0.0  # of one core; known once it is read
 
     def make(self, deadline=np.inf):
         """Runs what is not there yet, at low priority, and reads the rest. False: the deadline
@@ -116,11 +117,17 @@ class Run:
         return scene.relative_to(ROOT) if scene.exists() else None
 
     def core_hours(self, scene):
-        """What `jostle check` tells of a scene on this machine."""
-        answer = subprocess.run([self.jostle, "check", ROOT / scene], check=True, text=True,
-                                stdout=subprocess.PIPE)
-        found = re.search(r"([0-9.]+) core-hours", answer.stdout)
-        return found and found[1]
+        """Of a scene, as this run took by its spheres and taps (of pours alone, realizations): pilots
+        see the first taps alone, which are others than the later ones."""
+        def work(path):
+            told = subprocess.run([self.jostle, "check", ROOT / path, "--no-pilot"], check=True,
+                                  text=True, stdout=subprocess.PIPE).stdout
+            points, realizations, spheres, taps = map(int, re.search(
+                r"(\d+) sweep points? x (\d+) realizations?, (\d+) spheres, (\d+) taps",
+                told).groups())
+            return spheres * max(taps, points * realizations)
+        hours = self.seconds / 3600 * work(scene) / work(self.scene_path)
+        return f"{float(f'{hours:.2g}'):g}"
 
     def residual(self, curve, law):
         """The mean square of one realization's residuals from a law, from tap 1 on."""

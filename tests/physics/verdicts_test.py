@@ -187,6 +187,7 @@ def remarks_are_those_of_their_section():
 def what_is_not_reached_keeps_what_stood_there():
     class Run:
         scene = {"description": ["A bed."]}
+        seconds = 60
 
         def full_size(self):
             return "scene.json"
