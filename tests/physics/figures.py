@@ -248,19 +248,22 @@ def full_size(run):
 
 
 def summary(sections):
-    """One line a figure: its statements by verdict."""
-    rows = []
+    """One item a figure: how many of its statements hold, and which do not or are undecided."""
+    items = []
     for figure in FIGURES:
         text = sections.get(figure, "")
         words = re.findall(r"^\| ([^|]*) \|.*\| \*\*(agrees|disagrees|cannot decide)\*\* \|$", text,
                            re.M)
-        row = [f"[{figure}](#{figure})" if text else figure]
-        for word in ("agrees", "disagrees", "cannot decide"):
-            row.append("; ".join(statement for statement, said in words if said == word))
         if not words:
-            row[3] = "not reached" if text else "not made yet"
-        rows.append(row)
-    return table(["figure", "agrees", "disagrees", "cannot decide"], rows)
+            items.append(f"- {figure}: " + ("not reached" if text else "not made yet"))
+            continue
+        parts = [f"{sum(said == 'agrees' for _, said in words)} of {len(words)} agree"]
+        for word in ("disagrees", "cannot decide"):
+            named = [statement for statement, said in words if said == word]
+            if named:
+                parts.append(f"**{word}**: " + "; ".join(named))
+        items.append(f"- [{figure}](#{figure}): " + ". ".join(parts))
+    return "\n".join(items)
 
 
 def finished(jostle, scene, folder):

@@ -200,7 +200,10 @@ def what_is_not_reached_keeps_what_stood_there():
     former = "## a\n\none\n\n| p | f | t | - | **agrees** |\n"
     kept = not_reached("a", Run(), former)
     check(kept.startswith("## a\n\n**Not reached**") and kept.endswith("**agrees** |\n"), kept)
-    check("| [a](#a) |" not in summary({"a": new}) and "not reached" in summary({"pb2": new}), "summary")
+    check("- pb2: not reached\n" in summary({"pb2": new}), "summary")
+    verdicts = "| p | f | t | - | **agrees** |\n| q | f | t | 1 | **cannot decide** |\n"
+    check("- [pb2](#pb2): 1 of 2 agree. **cannot decide**: q\n" in summary({"pb2": verdicts}),
+          "summary")
 
 
 def options_stand_before_or_after_figures():
