@@ -157,6 +157,13 @@ def bell(run):
                     "Phi_c at 0.20 less 0.40: ", name="paired t-test"),
         are_steady("its values are those of steady states", steady, "corrected_fraction",
                    [f"{value:.2f}" for value in values], (last - last // 2 + 1, last), 4000)]
+    if last >= 4000:
+        early, late = ({key: window(curve, *taps) for key, curve in zip(end, curves)}
+                       for taps in ((901, 1000), (3901, 4000)))
+        statements.append(is_positive(
+            "its left side goes with more taps (ours, asked after a look)",
+            Estimate.of((early[0.15] - early[0.05]) - (late[0.15] - late[0.05])),
+            "Phi_c at 0.15 less 0.05, taps 901 to 1000 less 3901 to 4000: ", name="paired t-test"))
     header = [f"{first} to {end}" for first, end in windows]
     return table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps " + header[0]] + header[1:],
                  rows), statements
@@ -247,6 +254,34 @@ def hysteresis(run):
                     "at 0.05 less 0.15: ", name="paired t-test")]
     text = table(["eps^(1/2)"] + [f"Phi_c, {name}" for name in names], rows)
     return text, statements
+
+
+def turns(run):
+    """One way up, turned back at several strengths: where the way down leads to denser beds."""
+    tops = run.scene["sweep"]["zip"]["/protocol/0/ramp/dilate/sqrt_to"]
+    tables = run.analyse("hysteresis", "--observable", "corrected_fraction", "--last", 40)
+    rows, statements, ends = [], [], {}
+    for top, curve, found in zip(tops, run.curves("corrected_fraction"), tables.values()):
+        means, strengths = steps_of(curve, found), np.round(found["sqrt_epsilon"], 3)
+        turn, first, end = int(np.argmax(strengths)), means[0], means[-1]
+        change, gain = end - means[turn], means[turn] - curve[1]
+        ends[top] = end
+        rows.append([f"{top:g}", Estimate.of(first).text(), Estimate.of(means[turn]).text(),
+                     Estimate.of(end).text(), Estimate.of(change).text()])
+        if top < 0.15:
+            statements.append(are_positive(
+                f"turned back at {top:g} it is nearly frozen: the way down changes Phi_c by less "
+                "than a fifth of what the way up gained from tap 1",
+                [Estimate.of(0.2 * gain + sign * change) for sign in (1, -1)],
+                f"{Estimate.of(change).text()}; a fifth of the gain more, and less: "))
+        elif top > 0.15:
+            statements.append(is_positive(f"turned back at {top:g} the way down gains",
+                                          Estimate.of(change), "Phi_c at 0.05 less at the turn: "))
+    statements.append(is_positive(
+        f"it ends denser than from {tops[0]:g}", Estimate.of(ends[tops[-1]] - ends[tops[0]]),
+        f"Phi_c at 0.05, turned at {tops[-1]:g} less at {tops[0]:g}: ", name="paired t-test"))
+    return table(["turned at eps^(1/2)", "Phi_c at 0.05, way up", "at the turn",
+                  "at 0.05, way down", "gained on the way down"], rows), statements
 
 
 def whole_branches(branch, strengths, means):

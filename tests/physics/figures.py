@@ -14,7 +14,7 @@ from scipy import stats
 
 from ageing_figures import ageing
 from box_figures import shakes, sides, widths
-from compaction_figures import bell, compaction, fluctuations, hysteresis, moves
+from compaction_figures import bell, compaction, fluctuations, hysteresis, moves, turns
 from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
@@ -42,7 +42,10 @@ FIGURES = {
                        f"{PB_SETUP}, 4000 taps a strength, steps of 0.025 in eps^(1/2)",
                        "Above eps^(1/2) of about 0.15 the way down is a reversible branch of higher "
                        "Phi, on which Phi_c falls with eps^(1/2); below, it rises a bit more to a "
-                       "maximum. (Beds that stay below 0.15 are frozen: not run here.)"),
+                       "maximum. (Beds that stay below 0.15: pb4-turns.)"),
+    "pb4-turns": (f"{PB}/turns", turns, [], f"{PB_SETUP}, 4000 taps a strength, steps of 0.025",
+                  "Where eps^(1/2) went beyond (eps^(1/2))* of about 0.15 on the way up, Phi_c "
+                  "increases a bit more on the way down; else it is nearly frozen."),
     "pb5": (f"{PB}/fig5", ageing, [], f"{PB_SETUP}, 10 realizations; strength and ages not printed",
             "A(t, t_W) falls with the age t_W at equal lag t, and collapses."),
     "pb6-8": (f"{PB}/fig6-8", wall_profiles, [], f"{PB_SETUP}, walls, 4000 taps",
@@ -118,6 +121,7 @@ PICTURES = {
     "pb3": [Picture(STRENGTH, "sigma_Z, diameters", columns="^sigma_Z")],
     "pb4-bell": [Picture(STRENGTH, "corrected fraction", columns="to")],
     "pb4-hysteresis": [Picture(STRENGTH, "corrected fraction")],
+    "pb4-turns": [Picture("turned back at eps^(1/2)", "corrected fraction", columns="^at|way up")],
     "pb5": [Picture("waiting time, taps", "10^4 A, square diameters", columns="lag", log="xy")],
     "pb6-8": [Picture("height, diameters", PHI, across=True),
               Picture("distance to a wall, diameters", PHI, across=True, table=1)],
