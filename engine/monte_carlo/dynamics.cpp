@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "engine/monte_carlo/monte_carlo.hpp"
@@ -135,15 +134,14 @@ class MonteCarloDynamics final : public Dynamics {
     state_.progress = {};
   }
 
-  // Up to here a place is known to 1e-7 d.
+  // Beyond it the next heights would be infinite.
   void check_height() const {
-    constexpr double highest = 1e9;
-    const double top = std::ranges::max(packing_.centres, {}, &Vec3::z).z;
-    if (top <= highest) return;
+    constexpr double highest = 1e300;
+    if (std::ranges::max(packing_.centres, {}, &Vec3::z).z <= highest) return;
     throw std::runtime_error(
-        "the bed has risen to a height of " + std::to_string(top) +
-        " d, where places are rounded by more than 1e-7 d: taps lift it further than it comes down; "
-        "a smaller eta lets it come down, or tap more gently");
+        "the bed has risen beyond a height of 1e300 d: these taps lift it further than it comes "
+        "down "
+        "before the relaxation ends; a smaller eta lets it come down, or tap more gently");
   }
 
   void cut_short() {

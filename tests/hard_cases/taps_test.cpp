@@ -37,9 +37,9 @@ TEST_CASE("taps from nothing to ten times the height") {
   }
 }
 
-TEST_CASE("a bed that rises for ever ends with words, before its places are lost") {
+TEST_CASE("a bed that rises for ever ends with words, before its heights are infinite") {
   for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
-    Plan plan = plan_of(Dilate{0.8}, 100);
+    Plan plan = plan_of(Dilate{0.8}, 2000);
     monte_carlo(plan).relax.sampler = sampler;
     monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 1}};
     Realization realization(plan, 0);
@@ -51,8 +51,8 @@ TEST_CASE("a bed that rises for ever ends with words, before its places are lost
       }
     };
     CHECK_THROWS_WITH(to_its_end(), Catch::Contains("taps lift it further than it comes down"));
-    CHECK(highest > 1e7);
-    CHECK(highest < 1e9);
+    CHECK(highest > 1e299);
+    CHECK(std::isfinite(highest));
   }
 }
 

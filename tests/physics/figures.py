@@ -242,13 +242,12 @@ def not_reached(figure, run, former):
 
 
 def full_size(run):
-    """The command that makes the figure at the paper's size, and what it costs on this machine, as
-    far as a run tells."""
+    """The scene of the paper's size, and what it costs on this machine, as far as a run tells."""
     scene = run.full_size()
     if scene is None:
         return ""
     hours = f", about {run.core_hours(scene)} core-hours" if run.seconds else ""
-    return f"**Full size**: `./dev run {scene}`{hours}."
+    return f"**Full size**: [{scene.name}](../{scene}){hours}."
 
 
 def summary(sections):
