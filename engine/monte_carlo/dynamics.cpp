@@ -134,14 +134,15 @@ class MonteCarloDynamics final : public Dynamics {
     state_.progress = {};
   }
 
-  // Beyond it the next heights would be infinite.
+  // Not far beyond it heights would be infinite.
   void check_height() const {
     constexpr double highest = 1e300;
     if (std::ranges::max(packing_.centres, {}, &Vec3::z).z <= highest) return;
     throw std::runtime_error(
         "the bed has risen beyond a height of 1e300 d: these taps lift it further than it comes "
         "down "
-        "before the relaxation ends; a smaller eta lets it come down, or tap more gently");
+        "before the relaxation ends; relax more completely (smaller eta, more sweeps) or tap more "
+        "gently");
   }
 
   void cut_short() {

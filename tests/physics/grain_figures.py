@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from lift_figures import PRINTED_ERROR, ROUNDED
+from lift_figures import as_printed
 from page_text import at, table, window
 from verdicts import (Estimate, are_positive, is_positive, is_within, of_interval, undecided)
 
@@ -38,8 +38,8 @@ def poured(run):
                                                  for i in range(len(phi) - 1)],
                      f"its falls from each of {', '.join(f'{mu:g}' for mu in frictions)} to the "
                      "next: ", name="paired t-tests"),
-        is_within("without friction 0.6366, as random packings have", Estimate.of(
-            phi[0][0]).from_printed(0.6366, PRINTED_ERROR), ROUNDED, f"{at(phi[0], 0)}; from it "),
+        as_printed("without friction 0.6366 +- 0.0005, as random packings have",
+                   Estimate.of(phi[0][0]), 0.6366, 0.0005, 0.00005),
         is_within(f"{POURED} +- {RANGE} at a friction of 0.1", Estimate.of(
             phi[tenth][0] - POURED), RANGE, f"{at(phi[tenth], 0)}; from it "),
         of_interval("nearest neighbours at 0.1, cut at 1.05 d: mean 7.2713 +- 0.0558", *mean[:2],

@@ -70,8 +70,9 @@ def are_steady(paper, tables, observable, names, taps, long):
     test = "`jostle analyse steady`, each strength"
     if all(word == "reached" for word, _ in states):
         return Statement(paper, found, test, word=AGREES)
-    drifting = [p for word, p in states if word == "not reached" and np.isfinite(p)]
     if taps[1] < long:
         return Statement(paper, found, f"{test}; {taps[1]} taps are too few to refute it")
-    p = min(1.0, len(states) * min(drifting)) if drifting else np.nan
+    drifts = any(word == "not reached" for word, _ in states)
+    tested = [p for _, p in states if np.isfinite(p)]
+    p = min(1.0, len(states) * min(tested)) if drifts and tested else 1.0
     return Statement(paper, found, test, p)

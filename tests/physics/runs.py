@@ -118,7 +118,14 @@ class Run:
 
     def core_hours(self, scene):
         """Of a scene, as this run took by its spheres and taps (of pours alone, realizations): pilots
-        see the first taps alone, which are others than the later ones."""
+        see the first taps alone, which are others than the later ones. A run that was not read: what
+        `jostle check` makes of such a pilot."""
+        if not self.seconds:
+            told = subprocess.run([self.jostle, "check", ROOT / scene], check=True, text=True,
+                                  stdout=subprocess.PIPE).stdout
+            return " ".join(re.search(r"time: (about|at least).*? ([0-9.]+ core-hours)", told,
+                                      re.S).groups())
+
         def work(path):
             told = subprocess.run([self.jostle, "check", ROOT / path, "--no-pilot"], check=True,
                                   text=True, stdout=subprocess.PIPE).stdout
@@ -127,7 +134,7 @@ class Run:
                 told).groups())
             return spheres * max(taps, points * realizations)
         hours = self.seconds / 3600 * work(scene) / work(self.scene_path)
-        return f"{float(f'{hours:.2g}'):g}"
+        return f"about {float(f'{hours:.2g}'):g} core-hours"
 
     def residual(self, curve, law):
         """The mean square of one realization's residuals from a law, from tap 1 on."""

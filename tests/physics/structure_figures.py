@@ -251,8 +251,9 @@ def pore_statements(pores, taps, fraction, nu, v0, n_pores, shrunk):
         # Of the two words the table's is judged at another level.
         found = pores["tail_status"][k].decode().split(": ", 1)[-1]
         statements.append(of_program(
-            f"the tail is exponential, tap {tap}", found, "F-test of the law, which can only refute", pores["tail_p"][k],
-            False, "a Weibull tail of shape 0.7 would have been refuted"))
+            f"the tail is exponential, tap {tap}", found,
+            "F-test of the law, which can only refute", pores["tail_p"][k], False,
+            "a Weibull tail of shape 0.7 would have been refuted"))
     for k in (0, -1):
         statements.append(is_within(
             f"9550 to 10 250 pores, tap {taps[k]}", Estimate.of(n_pores[:, k] - 9900), 350,

@@ -147,7 +147,8 @@ def is_within(paper, estimate, margin, found, digits=4, scale=1.0):
 def is_zero(paper, estimate, found, digits=4, scale=1.0):
     """The paper says exactly 0: can be refuted, but not shown."""
     return Statement(paper, f"{found}{estimate.text(digits, scale)}",
-                     of_test(estimate, "t-test of 0, which can only refute"), p_two_sided(estimate), False,
+                     of_test(estimate, "t-test of 0, which can only refute"),
+                     p_two_sided(estimate), False,
                      lambda level: found_with(estimate, level, digits, scale))
 
 

@@ -221,7 +221,7 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   const Ages ages = of_ages(all, waiting_times, 1);
   const LogCurves& curves = ages.curves;
   if (curves.influences.cols() < fewest_realizations) {
-    return no_exponent(cannot_decide("mu needs four realizations"));
+    return no_exponent(cannot_decide(fmt::format("mu needs {} realizations", fewest_realizations)));
   }
   if (curves.size() < 2) {
     return no_exponent(cannot_decide("fewer than two waiting times above 0 have curves"));
@@ -254,7 +254,7 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
   const Ages ages = of_ages(all, waiting_times, 2);
   const LogCurves& curves = ages.curves;
   if (curves.influences.cols() < fewest_realizations) {
-    return cannot_decide("the logarithms need four realizations");
+    return cannot_decide(fmt::format("the logarithms need {} realizations", fewest_realizations));
   }
   if (curves.size() < 2) {
     return cannot_decide("fewer than two waiting times above 1 have curves");

@@ -34,8 +34,10 @@ Replicates sum(const Replicates& a, const Replicates& b, double factor = 1) {
   return both;
 }
 
-// A straight line's change over the series, in deviations about the line; 0 where there are none.
+// A straight line's change over the series, in deviations about the line; 0 where the values do not
+// vary about it, as two never do.
 double drift_of(std::span<const double> values, double mean) {
+  if (values.size() < 3) return 0;
   const auto n = static_cast<double>(values.size());
   const double middle = 0.5 * (n - 1);
   double covariance = 0, squares = 0;

@@ -161,9 +161,9 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
         "cannot decide: fewer than two waiting times above 1 have curves");
   const LogCurves three = curves_of(3, 3, power(0.6));
   CHECK(logarithmic_collapse(three, ages, "a").verdict ==
-        "cannot decide: the logarithms need four realizations");
+        "cannot decide: the logarithms need 4 realizations");
   CHECK(ageing_exponent(three, ages, "a").verdict ==
-        "no mu: cannot decide: mu needs four realizations");
+        "no mu: cannot decide: mu needs 4 realizations");
 }
 
 TEST_CASE("Curves with no more points than F has parameters say nothing of mu") {

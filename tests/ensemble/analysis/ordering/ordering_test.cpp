@@ -247,8 +247,16 @@ TEST_CASE("A comparison tells the point that orders first from the one that ends
   const Table table = compare();
   CHECK_THAT(note(table, "orders_first"), Catch::StartsWith("lift=0.3; may be first: lift=0.3 ("));
   CHECK_THAT(note(table, "largest_value"), Catch::StartsWith("lift=0.2; may be largest: lift=0.2"));
-  CHECK_THAT(note(table, "verdict"), Catch::Contains("is not the one with the largest value"));
+  CHECK(note(table, "verdict") ==
+        "the point that orders first is not the one with the largest value over the last taps (p < "
+        "0.05)");
 
+  SECTION("whether last taps are steady is said") {
+    points[0].steady = Verdict::cannot_decide;
+    points[2].steady = Verdict::cannot_decide;
+    CHECK_THAT(note(compare(), "verdict"),
+               Catch::EndsWith("; that these are steady is not shown at lift=0.2, lift=0.4"));
+  }
   SECTION("one that still drifts may yet become the largest") {
     points[1].steady = Verdict::not_reached;
     CHECK(note(compare(), "verdict") == "not told apart: may be both, lift=0.3");
