@@ -195,7 +195,8 @@ def setup(run):
     size = " x ".join(f"{side:.4g}" for side in (width if isinstance(width, list) else [width] * 2))
     if "/container/width" in zipped:
         size = swept("/container/width", width)
-    taps = len(run.curves("mean_height")[0]) - 1
+    lengths = sorted({len(curve) - 1 for curve in run.curves("mean_height")})
+    taps = " to ".join(str(length) for length in {lengths[0]: 0, lengths[-1]: 0})
     streams = ", matched streams" if scene.get("streams") == "matched" else ""
     return (f"{swept('/spheres', scene['spheres'])} spheres in {size} d, "
             f"{swept('/container/sides', scene['container']['sides'])}, {taps} taps, "
