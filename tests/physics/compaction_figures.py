@@ -255,8 +255,22 @@ def hysteresis(run):
         is_positive("below 0.15 the way down still rises a bit more",
                     Estimate.of(on[0.05, "down"] - on[0.15, "down"]),
                     "at 0.05 less 0.15: ", name="paired t-test")]
-    text = table(["eps^(1/2)"] + [f"Phi_c, {name}" for name in names], rows)
-    return text, statements
+    ends, nu = ends_of_branches(run)
+    statements.append(is_positive("pores shrink on the way down (ours)", Estimate.of(nu[1] - nu[2]),
+                                  "nu where it begins less where it ends: ", name="paired t-test"))
+    return "\n\n".join([table(["eps^(1/2)"] + [f"Phi_c, {name}" for name in names], rows),
+                        ends]), statements
+
+
+def ends_of_branches(run):
+    """What packings are where branches end, and nu there, [end][realization]."""
+    taps, kept = run.scene["snapshots"]["taps"], run.structure(["pores", "profile"])
+    nu, alpha = (np.array([packings[part][name] for packings in kept]).T
+                 for part, name in (("pores", "nu"), ("profile", "alpha")))
+    names = ("poured", "up to 0.40", "down to 0.05", "up again to 0.40")
+    return table(["tap", "", "nu, sphere volumes", "10^3 alpha R"], [
+        [str(tap), name, Estimate.of(nu[k]).text(), Estimate.of(alpha[k]).text(2, 1e3)]
+        for k, (tap, name) in enumerate(zip(taps, names))]), nu
 
 
 def turns(run):

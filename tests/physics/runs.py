@@ -154,7 +154,7 @@ class Run:
             subprocess.run([self.jostle, "export", self.path, "--format", "extxyz", "-o", frames,
                             "--sweep-point", str(point), "--realization", str(realization),
                             "--tap", "all", "--force"], check=True, stdout=subprocess.DEVNULL)
-            settings = {part: self.scene["structure"].get(part, {}) for part in parts}
+            settings = {part: self.scene.get("structure", {}).get(part, {}) for part in parts}
             tables = self.asked("structure", frames, "--settings", json.dumps(settings),
                                 "--no-store")["tables"]
             frames.unlink()
