@@ -196,7 +196,7 @@ def setup(run):
     if "/container/width" in zipped:
         size = swept("/container/width", width)
     lengths = sorted({len(curve) - 1 for curve in run.curves("mean_height")})
-    taps = " to ".join(str(length) for length in {lengths[0]: 0, lengths[-1]: 0})
+    taps = str(lengths[0]) + f" to {lengths[-1]}" * (len(lengths) > 1)
     streams = ", matched streams" if scene.get("streams") == "matched" else ""
     return (f"{swept('/spheres', scene['spheres'])} spheres in {size} d, "
             f"{swept('/container/sides', scene['container']['sides'])}, {taps} taps, "
