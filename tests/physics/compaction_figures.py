@@ -4,7 +4,7 @@ import numpy as np
 
 from page_text import are_steady, at, interval, parameters, table, window
 from verdicts import (DISAGREES, UNDECIDED, Estimate, Statement, are_positive, is_positive,
-                      is_within, is_zero, of_interval, of_program, undecided)
+                      is_within, is_zero, limits_text, of_interval, of_program, undecided)
 
 
 def compaction(run):
@@ -49,8 +49,7 @@ def greater(paper, values, fits, name, reached=(0.0, 0.0)):
     what = f"{name} less Phi_b reached" if any(reached) else name
     if overlap(first, second):
         return undecided(paper, f"{what}: " + ", ".join(
-            f"{low:.4g} to {high:.4g} at {value:g}"
-            for value, (low, high) in zip(values, (first, second))),
+            f"{limits_text(*ends)} at {value:g}" for value, ends in zip(values, (first, second))),
             "95 % intervals: they overlap or have no end")
     return of_interval(paper, *first, above=second[1],
                        found=f"{what} at {values[0]:g} (at {values[1]:g} at most {second[1]:.4g})")

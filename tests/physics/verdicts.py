@@ -239,6 +239,12 @@ def judge(statements):
     return judged
 
 
+def limits_text(low, high):
+    return (f"{low:.4g} to {high:.4g}" if np.isfinite(low) and np.isfinite(high) else
+            f"above {low:.4g}" if np.isfinite(low) else
+            f"below {high:.4g}" if np.isfinite(high) else "no limits")
+
+
 def of_interval(paper, low, high, found, above=None, between=None):
     """The paper's number is above a value or between two: by a 95 % interval, which stands for
     itself and takes no part in Holm's correction."""
@@ -247,7 +253,4 @@ def of_interval(paper, low, high, found, above=None, between=None):
     least, most = (above, np.inf) if between is None else between
     word = AGREES if low >= least and high <= most else (
         DISAGREES if high < least or low > most else UNDECIDED)
-    limits = (f"{low:.4g} to {high:.4g}" if np.isfinite(low) and np.isfinite(high) else
-              f"above {low:.4g}" if np.isfinite(low) else
-              f"below {high:.4g}" if np.isfinite(high) else "no limits")
-    return Statement(paper, f"{found}: {limits}", "95 % interval", word=word)
+    return Statement(paper, f"{found}: {limits_text(low, high)}", "95 % interval", word=word)
