@@ -213,6 +213,22 @@ def options_stand_before_or_after_figures():
         check(found.hours == 2 and found.figures == ["pb9", "pb10"], order, found)
 
 
+def exponentials(random):
+    """B = exp(8 eps^(1/2)) with errors of ln B of 0.1 to 1, and one that bends by ten of them."""
+    strengths = [0.005, 0.05, 0.15]
+    for error in (0.1, 1.0):
+        for bend, least, most in ((0, 0, 0.01), (10, 0.99, 1)):
+            found = 0
+            for noise in random.normal(0, 1, (ENSEMBLES, 3)):
+                ln_b = 8 * np.sqrt(strengths) + error * (noise + np.array([0, bend, 0]))
+                fits = [fit(B=[float(np.exp(one - 1.96 * error)), float(np.exp(one + 1.96 * error))])
+                        for one in ln_b]
+                found += judge([exponential_in_strength(strengths, fits)])[0][2] == DISAGREES
+            print(f"B with an error of ln B of {error}, bent by {bend}: {found / ENSEMBLES:.3f} refuted")
+            at_most(found / ENSEMBLES, most, "an exponential B")
+            check(found >= least * ENSEMBLES, "a B that bends", found)
+
+
 def laws_are_compared_in_words():
     class Heights:
         realizations = 3
@@ -257,6 +273,7 @@ if __name__ == "__main__":
     ages(generator)
     intervals()
     numbers_of_the_paper_err_too(generator)
+    exponentials(generator)
     laws_are_compared_in_words()
     intervals_of_fits()
     steady_points()
