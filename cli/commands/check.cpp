@@ -67,12 +67,16 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   if (estimate.n_strengths > 1) {
     pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
   }
+  const char* const about = estimate.settled ? "about" : "at least";
+  const std::string a_tap = total_taps(plan) == 0
+                                ? ""
+                                : fmt::format("{} {:.0f} {} a tap, ", about,
+                                              estimate.rounds_per_tap, round_name(plan.engine));
   print_wrapped(fmt::format(
-      "  {}{}{}, {} {} at {} {}/s: {} {:.0f} {} a tap, {} {} a realization\n", plan.label,
+      "  {}{}{}, {} {} at {} {}/s: {}{} {} a realization\n", plan.label,
       plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
       unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
-      estimate.settled ? "about" : "at least", estimate.rounds_per_tap, round_name(plan.engine),
-      estimate.settled ? "about" : "at least", format_duration(estimate.realization)));
+      a_tap, about, format_duration(estimate.realization)));
 }
 
 /// What the grains' settings come to, at the first sweep points that differ in it.
@@ -149,7 +153,7 @@ void add_check(Command& app, int& code) {
                    "Leave out the short trial that time and memory are estimated from");
   command.footer(
       "Examples:\n"
-      "  jostle check scene.json              up to about ten seconds\n"
+      "  jostle check scene.json              up to about ten seconds; grains, a minute\n"
       "  jostle check scene.json --no-pilot   at once, without time and memory\n"
       "\n"
       "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");

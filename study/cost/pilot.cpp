@@ -17,7 +17,6 @@ namespace {
 
 using Clock = ProcessorClock;
 
-constexpr double trials_per_slice = 4e6;    // of the Monte Carlo engine
 constexpr double narrowest = 8;             // diameters, of a footprint that is cut
 constexpr std::uint32_t most_oversize = 5;  // times max_spheres, before depth is cut as well
 
@@ -137,14 +136,13 @@ Plan short_plan(const Plan& plan, const CutBed& bed, const std::vector<std::size
 class Pilot {
  public:
   Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
-      : plan_(plan), bed_(bed), short_(short_plan(plan, bed, piloted_stages(plan.protocol))) {
+      : plan_(plan),
+        bed_(bed),
+        short_(short_plan(plan, bed, piloted_stages(plan.protocol))),
+        left_(budget) {
     auto dynamics = std::make_unique<ShortDynamics>(dynamics_of(short_, 0));
     dynamics_ = dynamics.get();
     realization_.emplace(short_, 0, std::move(dynamics));
-    // The budget is one of trials; other engines do less in the same time.
-    left_ = static_cast<std::uint64_t>(static_cast<double>(budget) *
-                                       static_cast<double>(dynamics_->units_per_slice()) /
-                                       trials_per_slice);
   }
 
   PilotEstimate estimate() {
@@ -212,7 +210,7 @@ class Pilot {
   const Plan& plan_;
   const CutBed& bed_;
   const Plan short_;
-  std::uint64_t left_ = 0;
+  std::uint64_t left_;
   ShortDynamics* dynamics_ = nullptr;  // of the realization
   std::optional<Realization> realization_;
   Seconds moving_time_{0};

@@ -24,7 +24,7 @@ struct PilotEstimate {
 };
 
 /// Makes the start, applies taps of a few strengths of the protocol in its order and relaxes each,
-/// all within about `budget` trials (or what takes as long) besides the start; the other taps cost
+/// all within about `budget` units of the engine besides what makes the start; the other taps cost
 /// what lies between. A bed of more than `max_spheres` is cut down (cut_down) and its cost scaled
 /// up in proportion. Throws StartError where the start does not suit the container.
 PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_spheres = 20'000);

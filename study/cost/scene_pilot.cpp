@@ -5,14 +5,27 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <variant>
 
 #include "engine/starts/starts.hpp"
 
 namespace jostle::inline study {
 namespace {
 
-constexpr std::uint64_t pilot_budget = 500'000'000;  // trials, shared by the points tried
-constexpr double process_bytes = 40e6;               // libraries and bookkeeping
+constexpr double process_bytes = 40e6;  // libraries and bookkeeping
+
+/// Of the pilots of a scene.
+struct PilotLimits {
+  std::uint64_t units;    // shared by the points tried
+  std::uint32_t spheres;  // of a bed, beyond which it is cut down
+};
+
+/// A few seconds of Monte Carlo. A bed of grains comes to rest only after 1e5 to 1e6 time steps
+/// from a start, so there are more units, of smaller beds.
+PilotLimits pilot_limits(const EngineSettings& engine) {
+  if (std::holds_alternative<DiscreteElement>(engine)) return {2'000'000'000, 2'000};
+  return {500'000'000, 20'000};
+}
 
 /// First, middle and last point: costs differ along a sweep.
 std::vector<std::size_t> pilot_points(std::size_t n_points) {
@@ -21,10 +34,11 @@ std::vector<std::size_t> pilot_points(std::size_t n_points) {
   return points;
 }
 
-PilotEstimate tried(const LoadedScene& loaded, std::size_t point, std::uint64_t budget) {
+PilotEstimate tried(const LoadedScene& loaded, std::size_t point, std::size_t n_points) {
   const Plan& plan = loaded.plans[point];
+  const PilotLimits limits = pilot_limits(plan.engine);
   try {
-    return pilot(plan, budget);
+    return pilot(plan, limits.units / n_points, limits.spheres);
   } catch (const StartError& error) {
     throw BadInput(fmt::format("{}: /start: {}", loaded.files.front(), error.what()));
   } catch (const std::runtime_error& error) {
@@ -38,7 +52,7 @@ PilotEstimate tried(const LoadedScene& loaded, std::size_t point, std::uint64_t 
 ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell)
     : points_(pilot_points(loaded.plans.size())) {
   for (const std::size_t point : points_) {
-    const PilotEstimate estimate = tried(loaded, point, pilot_budget / points_.size());
+    const PilotEstimate estimate = tried(loaded, point, points_.size());
     if (tell) tell(loaded.plans[point], estimate);
     times_.push_back(estimate.realization);
     start_ = std::max(start_, estimate.start);

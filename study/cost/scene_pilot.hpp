@@ -14,8 +14,8 @@ class ScenePilot {
  public:
   using Tell = std::function<void(const Plan&, const PilotEstimate&)>;
 
-  /// About ten seconds on one core. `tell` hears of each pilot as it ends. Throws BadInput where
-  /// one fails.
+  /// About ten seconds on one core, of grains up to a minute. `tell` hears of each pilot as it
+  /// ends. Throws BadInput where one fails.
   explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {});
 
   /// Whether all met their stop rules: else times are lower bounds.

@@ -270,6 +270,17 @@ class Grains(Case):
         self.assertIn("the pilot failed: a sphere left the container, or lies deeper",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 
+    def test_the_pilot_lasts_until_a_bed_has_come_to_rest(self):
+        law = {"walton_braun": {"stiffness": 1e3, "restitution": 0.5}}
+        self.write(changed(GRAINS, container={"sides": "periodic", "width": 16}, spheres=2560,
+                           start={"random_settle": {"dilute_fraction": 0.3}},
+                           engine={"discrete_element": {"contact": law}}, protocol=[], snapshots={},
+                           sweep={"/engine/discrete_element/contact/walton_braun/friction": [0.4, 0.5]}))
+        text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
+        self.assertIn("2000 of 2560 spheres", text)
+        self.assertNotIn("at least", text)
+        self.assertNotIn("a tap", text)  # there is none
+
     def test_taps_that_dissipate_nothing_are_counted_at_the_cap(self):
         elastic = {"walton_braun": {"restitution": 1, "friction": 0}}
         self.write(changed(GRAINS, snapshots={}, protocol=[{"tap": {"lift": 0.5}, "count": 2}],

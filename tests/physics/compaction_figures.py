@@ -231,8 +231,9 @@ def steps_of(curve, found):
 
 
 def hysteresis(run):
+    last = run.scene["analyse"]["hysteresis"][0]["last"]
     found = next(iter(run.analyse("hysteresis", "--observable", "corrected_fraction", "--last",
-                                  40).values()))
+                                  last).values()))
     means = steps_of(run.curves("corrected_fraction")[0], found)
     names = ("up", "down", "up again")
     on = {(round(strength, 3), names[int(branch)]): mean for strength, branch, mean in
