@@ -1,5 +1,7 @@
 """Figures 2 to 5 of Philippe & Bideau, and their moves: curves against taps, and what hangs on the
 strength and on the settings."""
+import itertools
+
 import numpy as np
 
 from page_text import are_steady, at, interval, parameters, table, window
@@ -169,6 +171,35 @@ def bell(run):
     header = [f"{first} to {end}" for first, end in windows]
     return table(["eps^(1/2)", "Phi_c after tap 1", "mean of taps " + header[0]] + header[1:],
                  rows), statements
+
+
+def bell_and_stop(run):
+    """Two strengths on the left of the bell, each relaxed to two eta, from the same beds."""
+    etas, epsilons = run.scene["sweep"].values()
+    points = list(itertools.product(etas, np.sqrt(epsilons)))
+    curves, sweeps = (dict(zip(points, run.curves(name))) for name in
+                      ("corrected_fraction", "sweeps"))
+    (coarse, fine), (weak, strong) = etas, np.sqrt(epsilons)
+    last, taps = len(curves[points[0]]) - 1, (0, 1, 10, 100, 300)
+    end = (last - 99, last)
+    ends = {point: window(curve, *end) for point, curve in curves.items()}
+    rows = [[f"eps^(1/2) = {strength:.2f}, eta = {eta:g}"] +
+            [at(curves[eta, strength], tap) for tap in taps] +
+            [Estimate.of(ends[eta, strength]).text(), f"{np.mean(sweeps[eta, strength][1:]):.0f}"]
+            for eta, strength in points]
+    rises = {eta: ends[eta, strong] - ends[eta, weak] for eta in etas}
+    statements = [is_positive(f"the bell's left side rises, eta = {eta:g}", Estimate.of(rises[eta]),
+                              f"Phi_c at {strong:.2f} less {weak:.2f}: ", name="paired t-test")
+                  for eta in etas]
+    statements += [is_within(
+        f"a stop ten times finer leaves Phi_c as it is, at {strength:.2f} (ours: 0.005)",
+        Estimate.of(ends[fine, strength] - ends[coarse, strength]), 0.005,
+        f"at {fine:g} less {coarse:g}: ") for strength in (weak, strong)]
+    statements.append(is_within(
+        "a stop ten times finer leaves their difference as it is (ours: 0.005)",
+        Estimate.of(rises[fine] - rises[coarse]), 0.005, f"at {fine:g} less {coarse:g}: "))
+    return table(["Phi_c, tap"] + [str(tap) for tap in taps] +
+                 [f"mean of taps {end[0]} to {end[1]}", "sweeps a tap"], rows), statements
 
 
 def maximum_of(sweep, statement, symbol):

@@ -14,7 +14,8 @@ from scipy import stats
 
 from ageing_figures import ageing
 from box_figures import shakes, sides, widths
-from compaction_figures import bell, compaction, fluctuations, hysteresis, moves, turns
+from compaction_figures import (bell, bell_and_stop, compaction, fluctuations, hysteresis, moves,
+                                turns)
 from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
@@ -38,6 +39,8 @@ FIGURES = {
             "state is proportional to eps^(1/2)."),
     "pb4-bell": (f"{PB}/fig4-bell", bell, [], f"{PB_SETUP}, 4000 taps a strength",
                  "A bell with its maximum at eps^(1/2) between 0.1 and 0.2."),
+    "pb4-eta": (f"{PB}/bell-eta", bell_and_stop, [], f"{PB_SETUP}, 4000 taps a strength; eta not "
+                "printed", "At eps^(1/2) = 0.15 Phi_c is larger than at 0.05."),
     "pb4-hysteresis": (f"{PB}/fig4-hysteresis", hysteresis, [],
                        f"{PB_SETUP}, 4000 taps a strength, steps of 0.025 in eps^(1/2)",
                        "Above eps^(1/2) of about 0.15 the way down is a reversible branch of higher "
@@ -120,6 +123,7 @@ PICTURES = {
     "pb2": [Picture(TAPS, "bottom fraction", across=True, log="x")],
     "pb3": [Picture(STRENGTH, "sigma_Z, diameters", columns="^sigma_Z")],
     "pb4-bell": [Picture(STRENGTH, "corrected fraction", columns="to")],
+    "pb4-eta": [Picture(TAPS, "corrected fraction", across=True, columns=r"^\d+$", log="x")],
     "pb4-hysteresis": [Picture(STRENGTH, "corrected fraction")],
     "pb4-turns": [Picture("turned back at eps^(1/2)", "corrected fraction", columns="^at|way up")],
     "pb5": [Picture("waiting time, taps", "10^4 A, square diameters", columns="lag", log="xy")],
