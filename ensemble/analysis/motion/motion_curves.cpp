@@ -24,6 +24,14 @@ std::vector<double> each(std::size_t n, const Value& value) {
   return row;
 }
 
+/// <x^2> - <x>^2 of each realization, 0 where rounding made it negative; NaN where there is none.
+std::vector<double> about_mean(std::span<const double> square, std::span<const double> mean) {
+  return each(mean.size(), [&](std::size_t r) {
+    const double variance = square[r] - mean[r] * mean[r];
+    return variance < 0 ? 0 : variance;
+  });
+}
+
 /// fourth / (factor second^2) - 1; no number where nothing moved.
 std::vector<double> non_gaussian(std::span<const double> fourth, std::span<const double> second,
                                  double factor) {
@@ -64,10 +72,8 @@ std::vector<double> lateral_squares(const MotionRecords& records, std::size_t or
 
 std::vector<double> vertical_squares(const MotionRecords& records, std::size_t origin,
                                      std::size_t lag) {
-  const auto mean = records.row("mean_displacement", origin, lag, z),
-             square = records.row("square_displacement", origin, lag, z);
-  return each(mean.size(),
-              [&](std::size_t r) { return std::max(0.0, square[r] - mean[r] * mean[r]); });
+  return about_mean(records.row("square_displacement", origin, lag, z),
+                    records.row("mean_displacement", origin, lag, z));
 }
 
 std::vector<double> layer_lateral_squares(const MotionRecords& records, std::size_t origin,
@@ -81,11 +87,8 @@ std::vector<double> layer_lateral_squares(const MotionRecords& records, std::siz
 
 std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
                                            std::size_t lag, std::size_t layer) {
-  const auto mean = records.row("layer_settling", origin, lag, layer),
-             square =
-                 records.row("layer_square_displacement", origin, lag, n_directions * layer + z);
-  return each(mean.size(),
-              [&](std::size_t r) { return std::max(0.0, square[r] - mean[r] * mean[r]); });
+  return about_mean(records.row("layer_square_displacement", origin, lag, n_directions * layer + z),
+                    records.row("layer_settling", origin, lag, layer));
 }
 
 std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size_t origin,

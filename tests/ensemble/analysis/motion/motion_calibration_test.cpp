@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -270,6 +271,34 @@ TEST_CASE("Gaussian motion has no non-Gaussian parameter, motion of two rates ha
   // Of 512 spheres it is some 4 % low: a ratio of means of few fast ones.
   CHECK(mixed.mean() == Approx(expected).epsilon(0.1));
   CHECK(vertical.mean() == Approx(expected).epsilon(0.1));
+}
+
+TEST_CASE("A realization of which nothing is there yet counts for nothing") {
+  RandomStream random = test_stream(47);
+  const MotionRecords whole = walks(3, 1, false, 1, random);
+  MotionRecords begun(whole.settings, n_spheres, 4);  // NaN all over
+  const auto widen = [](const std::vector<double>& from, std::vector<double>& to) {
+    REQUIRE(to.size() == from.size() / 3 * 4);
+    for (std::size_t i = 0; i < from.size(); ++i) to[i / 3 * 4 + i % 3] = from[i];
+  };
+  for (std::size_t i = 0; i < whole.values.size(); ++i) widen(whole.values[i], begun.values[i]);
+  widen(whole.layer_height, begun.layer_height);
+  widen(whole.largest_step, begun.largest_step);
+  const auto expected = motion_tables("", whole), found = motion_tables("", begun);
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    REQUIRE(found[t].quantities.size() == expected[t].quantities.size());
+    for (std::size_t q = 0; q < found[t].quantities.size(); ++q) {
+      const auto* wanted = std::get_if<std::vector<double>>(&expected[t].quantities[q].values);
+      const auto* numbers = std::get_if<std::vector<double>>(&found[t].quantities[q].values);
+      if (wanted == nullptr) continue;
+      INFO(found[t].name << " " << found[t].quantities[q].name);
+      REQUIRE(numbers != nullptr);
+      CHECK(std::ranges::equal(*numbers, *wanted, [](double a, double b) {
+        return a == b || (std::isnan(a) && std::isnan(b));
+      }));
+    }
+  }
 }
 
 TEST_CASE("No error stands where there is none, and a doubtful unwrapping is told") {
