@@ -238,16 +238,20 @@ std::uint64_t point_id(const SweepPoint& point) {
   return hash == 0 ? 1 : hash;
 }
 
+std::string short_name(const std::string& pointer) {
+  const std::size_t last = pointer.rfind('/');
+  const bool is_index = pointer.find_first_not_of("0123456789", last + 1) == std::string::npos;
+  if (!is_index || last == 0) return pointer.substr(last + 1);
+  return pointer.substr(pointer.rfind('/', last - 1) + 1);
+}
+
 std::string point_label(const SweepPoint& point) {
   std::vector<std::string> parts;
   for (const auto& [pointer, value] : point.values) {
-    const auto last_token = [](const std::string& path) {
-      return path.substr(path.rfind('/') + 1);
-    };
-    const std::string name = last_token(pointer);
+    const std::string name = short_name(pointer);
     const auto same =
         std::count_if(point.values.begin(), point.values.end(),
-                      [&](const auto& other) { return last_token(other.first) == name; });
+                      [&](const auto& other) { return short_name(other.first) == name; });
     parts.push_back(fmt::format("{} = {}", same > 1 ? pointer : name, canonical_text(value)));
   }
   return joined(parts, ", ");

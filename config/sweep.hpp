@@ -24,6 +24,9 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& sweep);
 /// on neither the order of axes nor other points.
 std::uint64_t point_id(const SweepPoint& point);
 
+/// "/protocol/0/tap/dilate" -> "dilate"; of an element of a list with the list's name: "width/1".
+std::string short_name(const std::string& pointer);
+
 /// "dilate = 0.02, spheres = 512": for people.
 std::string point_label(const SweepPoint& point);
 

@@ -40,9 +40,9 @@ void require_diameters(const Packing& packing) {
 
 std::string in_words(const Region& region, const Container& container) {
   std::string words = "heights " + std::to_string(region.low);
-  words.append(" to ").append(std::to_string(region.high));
+  words.append(" to ").append(std::to_string(region.high)).append(" d");
   if (Boundary(container).has_walls()) {
-    words.append(", ").append(std::to_string(region.from_sides)).append(" from the walls");
+    words.append(", ").append(std::to_string(region.from_sides)).append(" d from the walls");
   }
   return words;
 }
@@ -59,7 +59,8 @@ void require_region(const MeasuredPacking& in) {
   const bool empty = !(in.region.high > in.region.low) || !(in.region.volume(container) > 0);
   const auto inside = [&](const Vec3& r) { return in.region.contains(container, r); };
   if (empty || std::ranges::none_of(in.packing.centres, inside)) {
-    throw std::invalid_argument("no sphere lies in the region, " + in_words(in.region, container));
+    throw std::invalid_argument("no sphere lies in the region, " + in_words(in.region, container) +
+                                ": the bed may be too low for it; give another one, \"region\"");
   }
 }
 

@@ -125,8 +125,11 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
              "volume of all cells over that of the container up to the lid, less 1: above 0 "
              "beside the curved wall of a cylinder, whose cells end at planes",
              out);
-  add_single("inconsistent_cells", static_cast<double>(cells.inconsistent),
-             "cells that voro++ could not make out", out);
+  add_single(
+      "inconsistent_cells", static_cast<double>(cells.inconsistent),
+      "cells with a face that is not as large from the other side: beside the curved wall of a "
+      "cylinder, or where voro++ could not make them out",
+      out);
   return out;
 }
 

@@ -77,8 +77,10 @@ void ObservableSeries::for_each(const TapRange& taps,
     for (; next != used_.end() && *next < range.end; ++next) {
       for (std::uint64_t t = 0; t < n_taps; ++t) series[t] = block[t * width + *next - range.first];
       if (!std::ranges::all_of(series, [](double value) { return std::isfinite(value); })) {
-        throw BadInput(fmt::format("{} is not a number at every tap from {} to {}", label_.name,
-                                   taps.first, taps.end - 1));
+        throw BadInput(
+            fmt::format("{} is not a number at every tap from {} to {}: no sphere may lie "
+                        "where it is taken",
+                        label_.name, taps.first, taps.end - 1));
       }
       take(series);
     }

@@ -26,6 +26,13 @@ namespace jostle::inline cli {
 
 namespace {
 
+/// Below the help of one kind: an example, and where the rest of its command line is told.
+void add_example(Command kind, const std::string& example) {
+  kind.footer("Example:\n  " + example +
+              "\n\nThe files, --sweep-point and options of the output stand before the analysis: "
+              "jostle analyse --help.");
+}
+
 SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
   SpectrumSettings settings;
   if (arguments.last > 0) settings.last = arguments.last;
@@ -155,6 +162,7 @@ void add_steady(AnalysisKinds& kinds, int& code) {
                              code = run_analyses(arguments, analyses);
                            });
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
+  add_example(kind, "jostle analyse quickstart.h5 steady --observable mean_height --last 50");
 }
 
 void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -177,6 +185,7 @@ void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    });
   kinds.add_option(kind, "--band", a.band,
                    "LOWEST:HIGHEST frequency of the slope, in 1/taps (default: all)");
+  add_example(kind, "jostle analyse fig3.h5 spectrum --observable mean_height --band 0.001:0.1");
 }
 
 void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -194,6 +203,7 @@ void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    [](Option option) { option.separated_by(','); });
   kinds.add_option(kind, "--lags", a.lags, "Taps t, likewise (default: ten a decade)",
                    [](Option option) { option.separated_by(',').between(1, 1000000000); });
+  add_example(kind, "jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99");
 }
 
 void add_hysteresis(AnalysisKinds& kinds, int& code) {
@@ -207,11 +217,14 @@ void add_hysteresis(AnalysisKinds& kinds, int& code) {
                   code = run_analyses(arguments, analyses);
                 });
   kinds.add_last(kind, "Taps at the end of each step (default: a quarter of the shortest)");
+  add_example(kind, "jostle analyse fig4.h5 hysteresis --observable bulk_fraction");
 }
 
 void add_motion(AnalysisKinds& kinds, int& code) {
-  kinds.add_of_bed("motion", "How far spheres moved: displacements, overlaps and chi_4, layers",
-                   [&code](AnalyseArguments& arguments) { code = run_each(arguments, motion_of); });
+  Command kind = kinds.add_of_bed(
+      "motion", "How far spheres moved: displacements, overlaps and chi_4, layers",
+      [&code](AnalyseArguments& arguments) { code = run_each(arguments, motion_of); });
+  add_example(kind, "jostle analyse motion.h5 motion");
 }
 
 void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -239,6 +252,7 @@ void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--equilibrium", a.equilibrium,
                    "The observable whose last taps are compared (default: the same)");
   kinds.add_last(kind, "Taps at the end that are compared (default: a quarter)");
+  add_example(kind, "jostle analyse lifts.h5 ordering --observable grown_layers --threshold 5");
 }
 
 void add_sweep(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -253,6 +267,7 @@ void add_sweep(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--reference", a.reference,
                    "Point on the axis that all others are compared with (default: neighbours)");
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
+  add_example(kind, "jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000");
 }
 
 void add_volumes(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -272,6 +287,7 @@ void add_volumes(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    "What is swept: its name, or JSON pointer into the scene (default: the first)");
   kinds.add_option(kind, "--spheres", a.spheres,
                    "Whose volume it is (default: those of the observable's window)");
+  add_example(kind, "jostle analyse bell.h5 volumes --observable mean_height --last 1000");
 }
 
 void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
@@ -286,6 +302,7 @@ void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    "Last taps of windows after the switch, separated by commas (default: 1, 3, "
                    "10, 30, ...)",
                    [](Option option) { option.separated_by(',').between(1, 1000000000); });
+  add_example(kind, "jostle analyse memory.h5 memory --observable corrected_fraction");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void require_window(HeightWindow window) {
   if (!(window.low < window.high)) {
     throw std::invalid_argument("profile: the height window from " + std::to_string(window.low) +
                                 " to " + std::to_string(window.high) +
-                                " is empty; the packing may be too low for it");
+                                " d is empty; the packing may be too low for it");
   }
 }
 

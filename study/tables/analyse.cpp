@@ -104,7 +104,7 @@ void add_tables(const Surroundings& around, const char* kind,
     const ObservableSeries series(file, point, request.observable);
     Table table;
     try {
-      if (series.n_realizations() == 0) throw BadInput("there is no realization with taps");
+      require_taps(file, point, series.n_realizations());
       table = make_table(series, request.settings, around);
     } catch (const BadInput& refusal) {
       table.notes = {{"refused", refusal.what()}};

@@ -75,6 +75,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
       throw BadInput(fmt::format("the points tap in different ways before the switch ({}, {})",
                                  switches.front().before.name, here.before.name));
     const ObservableSeries& all = series.emplace_back(file, point, request.observable);
+    require_taps(file, point, all.n_realizations());
     if (all.n_rows() <= here.tap + 1)
       throw BadInput(fmt::format("sweep point {} has not reached the last stage", point));
     last = std::min({last, here.last.count, all.n_rows() - 1 - here.tap});

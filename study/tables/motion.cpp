@@ -18,9 +18,11 @@ std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint3
   std::vector<Table> tables;
   for (const std::uint32_t point : points) {
     const auto records = file.motion(point);
-    if (!records) continue;
     const std::string& label = file.study().points[point].label;
-    for (Table& table : motion_tables(point_name(point) + "/motion/", *records)) {
+    const std::string name = point_name(point) + "/motion/";
+    for (Table& table : records ? motion_tables(name, *records)
+                                : std::vector<Table>{{.name = name + "displacement",
+                                  .notes = {{"refused", "no realization has taps"}}}}) {
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
     }

@@ -18,6 +18,9 @@ namespace jostle::inline study {
 /// all were.
 std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
 
+/// Throws BadInput where no realization of the point has taps: all failed, or none is begun.
+void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations);
+
 /// volumes/<observable>, over strengths; of points whose own protocol goes through several
 /// strengths point_PPPP/volumes/<observable>, over the steps of its last branch. With other values
 /// swept too, one table for every combination, numbered.

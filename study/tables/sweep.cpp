@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "config/json/json_text.hpp"
+#include "config/sweep.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
 #include "fitting/fit.hpp"
@@ -39,7 +40,7 @@ struct Member {
   Column label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
   std::string taps;                                // whose mean the value is: "151 to 200"
-  std::string no_value;                            // why it has none, where a fit says so
+  std::string no_value;                            // why it has none, where that is known
   bool error_is_no_basis = false;                  // a fit's, of too few realizations
 };
 
@@ -103,13 +104,18 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, s
     throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
   }
   member.x = value->number();
-  member.swept = {against.substr(against.rfind('/') + 1), "1", against};
+  std::string name = short_name(against);
+  std::ranges::replace(name, '/', '_');
+  member.swept = {name, "1", against};
 }
 
 /// The mean of the last taps, of each realization.
 void set_value(Member& member, const ObservableSeries& series, std::optional<std::uint64_t> last,
                std::uint32_t n_realizations) {
-  if (series.n_realizations() == 0) return;
+  if (series.n_realizations() == 0) {
+    member.no_value = "no realization has taps";
+    return;
+  }
   const AnalysedSeries taps = last_taps(series, last, 4, 1);
   const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
   member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
@@ -207,15 +213,20 @@ Streams streams_of(std::span<const Member> members) {
   return paired ? Streams::matched : Streams::independent;
 }
 
-/// The point of the curve at this place of its axis.
-std::size_t point_at(const SweepCurve& curve, double x) {
+/// The point of the curve at this place of its axis, to the digits in which places are printed.
+std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
+  constexpr double as_printed = 5e-6;
+  std::optional<std::size_t> nearest;
   std::vector<std::string> places;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
-    if (std::abs(curve.x()[i] - x) <= 1e-9 * std::abs(x)) return i;
-    places.push_back(fmt::format("{:.6g}", curve.x()[i]));
+    const double place = curve.x()[i];
+    places.push_back(fmt::format("{:.6g}", place));
+    if (std::abs(place - x) > as_printed * std::abs(place)) continue;
+    if (!nearest || std::abs(place - x) < std::abs(curve.x()[*nearest] - x)) nearest = i;
   }
-  throw BadInput(
-      fmt::format("reference {}: there is no such point; there are {}", x, joined(places, ", ")));
+  if (nearest) return *nearest;
+  throw BadInput(fmt::format("reference {}: there is no such point; there are, of {}, {}", x, axis,
+                             joined(places, ", ")));
 }
 
 /// Which taps are averaged, and which points have no value.
@@ -259,7 +270,7 @@ Table curve_table(std::string name, std::span<const Member> members,
   const SweepCurve curve =
       means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
   std::optional<std::size_t> point;
-  if (reference) point = point_at(curve, *reference);
+  if (reference) point = point_at(curve, *reference, members.front().swept.name);
   Table table =
       sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
   add_notes(members, table);
@@ -318,6 +329,9 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       members.push_back(std::move(member));
     }
   }
+  if (settings.quantity == "value" &&
+      std::ranges::all_of(members, [](const Member& member) { return !member.no_value.empty(); }))
+    throw BadInput("no realization has taps, at any sweep point");
   return members;
 }
 

@@ -207,6 +207,7 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
   std::map<std::string, Sources> groups;  // by the other values of the sweep
   for (const std::uint32_t point : points) {
     const ObservableSeries series(file, point, observable);
+    require_taps(file, point, series.n_realizations());
     if (const auto branch = last_branch(scenes, point, settings.last)) {
       add_table(file, scenes, points, *branch, request, point_name(point) + "/" + name, tables);
       continue;

@@ -88,6 +88,12 @@ TEST_CASE("Values with the same name are labelled by their whole pointer") {
         "/protocol/0/count = 1, /protocol/1/count = 2");
 }
 
+TEST_CASE("An element of a list is named with its list") {
+  CHECK(short_name("/protocol/0/tap/dilate") == "dilate");
+  CHECK(short_name("/container/width/1") == "width/1");
+  CHECK(short_name("/spheres") == "spheres");
+}
+
 TEST_CASE("A point's id is a function of its own values") {
   const auto few = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.01, 0.05]})"));
   const auto more = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.005, 0.01, 0.02, 0.05]})"));

@@ -170,8 +170,8 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   };
   if (complete.size() < 3) {
     say(
-        fmt::format("{} realizations reached every tap asked for: fits need 3, so run more of "
-                    "them, or ask for earlier taps",
+        fmt::format("{} of the realizations reached every tap asked for: fits need 3, so run more "
+                    "of them, or ask for earlier taps",
                     complete.size()));
     return fits;
   }

@@ -106,14 +106,15 @@ void OrderingAnalysis::add_times(Table& table) const {
 void OrderingAnalysis::add_law(Table& table) const {
   const auto fit = weibull(times_, last_);
   const WeibullFit law = fit.value_or(WeibullFit{nan, nan, {nan, nan}, {nan, nan}, nan});
-  put(table,
-      one("weibull_shape", law.shape, "1", "of S = exp(-(t/scale)^shape); 1: memoryless", thoman));
+  put(table, one("weibull_shape", law.shape, "1",
+                 "of S = exp(-(t/scale)^shape), tap n being t = n - 1/2; 1: memoryless", thoman));
   add_limits(table, "weibull_shape", law.shape_68, "68", "1", thoman);
   add_limits(table, "weibull_shape", law.shape_95, "95", "1", thoman);
-  put(table, one("weibull_scale", law.scale, "taps", "by which 63 % have ordered", thoman));
+  put(table, one("weibull_scale", law.scale, "taps",
+                 "t by which 63 % have ordered, tap n being t = n - 1/2", thoman));
   put(table, one("memoryless_p", law.memoryless_p, "1", "of shape = 1, two-sided", thoman));
   const GrowthRates growth = growth_.result();
-  add_growth(table, "growth_per_decade", growth.per_decade, series_.units,
+  add_growth(table, "growth_per_decade", growth.per_decade, series_.units + "/decade",
              "slope on log10 t from tap 1 on, decades weighing alike");
   add_growth(table, "growth_per_tap", growth.per_tap, series_.units + "/tap",
              "slope on t from tap 1 on");

@@ -112,8 +112,12 @@ std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
     return "cannot decide: there are no errors to test a maximum by";
   }
   const std::string test = fmt::format("p = {:.2g}, two lines", found.p);
-  if (found.found())
-    return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")";
+  if (found.found()) {
+    const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
+    return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")" +
+           (open ? "; the 95 % interval of its place, by a test of its own, reaches the sweep's end"
+                 : "");
+  }
   const auto& y = curve.fitted_y();
   const auto top = std::ranges::max_element(y);
   if (std::isnan(found.x) && (top == y.begin() || top + 1 == y.end())) {

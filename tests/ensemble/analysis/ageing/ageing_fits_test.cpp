@@ -230,9 +230,9 @@ TEST_CASE("Too few realizations for a fit are named, with what to do") {
   CHECK(fits.realizations == 2);
   CHECK(std::isnan(fits.own[0].tau.value));
   CHECK(fits.shared[2].verdict ==
-        "2 realizations reached every tap asked for: fits need 3, so run more of them, or ask for "
-        "earlier taps");
-  CHECK(fits.collapse.verdict.starts_with("cannot decide: 2 realizations"));
+        "2 of the realizations reached every tap asked for: fits need 3, so run more of them, or "
+        "ask for earlier taps");
+  CHECK(fits.collapse.verdict.starts_with("cannot decide: 2 of the realizations"));
 }
 
 TEST_CASE("A table of ageing has values for all places of its axes") {

@@ -105,6 +105,24 @@ TEST_CASE("No point counts more because its realizations agree by accident") {
   CHECK(first.dof == 6);
 }
 
+TEST_CASE("A maximum whose place may be the sweep's end says so") {
+  const auto verdict = [](double last) {
+    std::vector<std::vector<double>> values;
+    for (const double y : {0.0, 0.04, last}) {
+      std::vector<double>& point = values.emplace_back();
+      for (int r = 0; r < 6; ++r) point.push_back(y + (r % 2 == 0 ? 0.0171 : -0.0171));
+    }
+    return maximum(SweepCurve({0.15, 0.25, 0.4}, values, Streams::independent), 3);
+  };
+  const SweepMaximum near = verdict(0.02);  // 1.85 errors below the highest point
+  CHECK(near.found());
+  CHECK(std::isnan(near.x_high));
+  CHECK(near.verdict.ends_with("reaches the sweep's end"));
+  const SweepMaximum far = verdict(-0.02);
+  CHECK(far.x_high == 0.4);
+  CHECK(far.verdict.ends_with("two lines)"));
+}
+
 TEST_CASE("What is no maximum is not called one") {
   const std::vector<double> x = {1, 2, 3, 4, 5};
   const std::vector<ErrorOf> error = known(std::vector<double>(5, 0.1));
