@@ -114,7 +114,8 @@ void check_motion(const Scene& scene, std::vector<Fault>& faults) {
   if (!scene.motion || !sound(faults, "/motion") || !sound(faults, "/protocol")) return;
   const std::uint64_t taps = total_taps(scene.protocol);
   if (taps == 0) {
-    faults.push_back({"/motion", "needs a tap, but the protocol has none"});
+    faults.push_back(
+        {"/motion", "needs a tap, but the protocol has none: leave it out, or add a tap"});
     return;
   }
   const MotionSettings settings = motion_settings(*scene.motion, taps);
@@ -122,8 +123,11 @@ void check_motion(const Scene& scene, std::vector<Fault>& faults) {
   TapCheck("/motion/lags", taps, faults)(settings.lags, 1);
   if (!sound(faults, "/spheres")) return;
   if (settings.layers > scene.n_spheres)
-    faults.push_back({"/motion/layers", fmt::format("{} layers of {}", settings.layers,
-                                                    counted(scene.n_spheres, "sphere"))});
+    faults.push_back(
+        {"/motion/layers",
+         fmt::format("{} layers of {}: give at most as many (the "
+                     "default is {})",
+                     settings.layers, counted(scene.n_spheres, "sphere"), MotionChoice{}.layers)});
   check_amounts(settings, scene, faults);
 }
 

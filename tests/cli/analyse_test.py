@@ -142,7 +142,7 @@ class Analysed(Case):
             self.assertEqual([round(x, 12) for x in to_one["to"]["values"]], [0.1, 0.2])
         refused = self.jostle("analyse", *asked, "--reference", "0.25", expect=BAD_INPUT,
                               environment=UNFOLDED).stdout
-        self.assertIn("there are 0.1, 0.2, 0.3", refused)
+        self.assertIn("there are, of sqrt_epsilon, 0.1, 0.2, 0.3", refused)
 
     def test_what_cannot_be_analysed_is_refused_in_words(self):
         self.write(TINY)
