@@ -199,10 +199,9 @@ void add_slurm(Command& app, int& code) {
       "  jostle slurm scene.json --hours 12 --cpus 4 --jobs 2 > scene.sbatch\n"
       "  jostle slurm scene.json --hours 0.5 --cpus 1 --jobs 4 -o quick.sbatch\n"
       "\n"
-      "Time and memory come from the pilot of jostle check, up to about ten seconds, of grains up "
-      "to a\n"
-      "minute. A job is told to stop before its time is up, goes back into the queue and goes on "
-      "there.");
+      "Time and memory come from the pilot of jostle check, up to about ten seconds, of grains\n"
+      "up to a minute. A job is told to stop before its time is up, goes back into the queue and\n"
+      "goes on there.");
   command.run([arguments, &code] {
     write_script(*arguments);
     code = exit_ok;

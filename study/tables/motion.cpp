@@ -8,6 +8,14 @@
 
 namespace jostle::inline study {
 
+namespace {
+
+Table without_motion(const std::string& prefix) {
+  return {.name = prefix + "displacement", .notes = {{"refused", "no realization has taps"}}};
+}
+
+}  // namespace
+
 std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint32_t> points) {
   if (!follows_motion(file)) {
     throw BadInput(
@@ -17,12 +25,12 @@ std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint3
   }
   std::vector<Table> tables;
   for (const std::uint32_t point : points) {
-    const auto records = file.motion(point);
-    const std::string& label = file.study().points[point].label;
     const std::string name = point_name(point) + "/motion/";
-    for (Table& table : records ? motion_tables(name, *records)
-                                : std::vector<Table>{{.name = name + "displacement",
-                                  .notes = {{"refused", "no realization has taps"}}}}) {
+    const auto records = file.motion(point);
+    std::vector<Table> of_point =
+        records ? motion_tables(name, *records) : std::vector{without_motion(name)};
+    const std::string& label = file.study().points[point].label;
+    for (Table& table : of_point) {
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
     }

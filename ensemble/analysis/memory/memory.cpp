@@ -125,9 +125,8 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   if (found.corrected < level) {
     const LagWindow& at = windows[found.window];
     return fmt::format(
-        "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} (68 "
-        "%) "
-        "at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
+        "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} "
+        "(68 %) at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
         student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
         at.first, at.last, found.corrected, differences.size(), realizations);
