@@ -59,22 +59,38 @@ ObservableSeries::ObservableSeries(const ResultsFile& file, std::uint32_t point,
     if (summary.id.point != point || !usable || summary.rows == 0) continue;
     n_rows_ = used_.empty() ? summary.rows : std::min(n_rows_, summary.rows);
     used_.push_back(summary.id.realization);
+    reached_.push_back(summary.rows);
   }
+}
+
+std::string ObservableSeries::held_back() const {
+  if (used_.empty()) return {};
+  const auto [least, most] = std::ranges::minmax_element(reached_);
+  if (*least == *most) return {};
+  return fmt::format("; realization {} has come to tap {} alone, others to {}",
+                     used_[static_cast<std::size_t>(least - reached_.begin())], *least - 1,
+                     *most - 1);
 }
 
 void ObservableSeries::for_each(const TapRange& taps,
                                 const std::function<void(std::span<const double>)>& take) const {
+  for_each_of(used_, taps, take);
+}
+
+void ObservableSeries::for_each_of(const std::vector<std::uint32_t>& realizations,
+                                   const TapRange& taps,
+                                   const std::function<void(std::span<const double>)>& take) const {
   const std::uint64_t n_taps = taps.end - taps.first;
   if (n_taps == 0) return;
   const auto at_once = static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(piece_values / n_taps, 1, file_.study().realizations));
   std::vector<double> series(n_taps);
-  auto next = used_.begin();
-  while (next != used_.end()) {
+  auto next = realizations.begin();
+  while (next != realizations.end()) {
     const RealizationRange range{*next, std::min(*next + at_once, file_.study().realizations)};
     const std::uint32_t width = range.end - range.first;
     const std::vector<double> block = file_.block(point_, label_.name, taps, range);
-    for (; next != used_.end() && *next < range.end; ++next) {
+    for (; next != realizations.end() && *next < range.end; ++next) {
       for (std::uint64_t t = 0; t < n_taps; ++t) series[t] = block[t * width + *next - range.first];
       if (!std::ranges::all_of(series, [](double value) { return std::isfinite(value); })) {
         throw BadInput(
@@ -88,14 +104,20 @@ void ObservableSeries::for_each(const TapRange& taps,
 }
 
 std::vector<double> ObservableSeries::means(const TapRange& taps) const {
-  if (taps.end > n_rows_ || taps.first >= taps.end) {
-    return std::vector<double>(used_.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> means(used_.size(), std::numeric_limits<double>::quiet_NaN());
+  if (taps.first >= taps.end) return means;
+  std::vector<std::uint32_t> there;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (reached_[i] < taps.end) continue;
+    there.push_back(used_[i]);
+    places.push_back(i);
   }
-  std::vector<double> means;
-  for_each(taps, [&](std::span<const double> values) {
+  auto place = places.begin();
+  for_each_of(there, taps, [&](std::span<const double> values) {
     Moments moments;
     for (const double value : values) moments.add(value);
-    means.push_back(moments.mean());
+    means[*place++] = moments.mean();
   });
   return means;
 }

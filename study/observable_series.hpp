@@ -25,12 +25,16 @@ class ObservableSeries {
   /// Their numbers, ascending.
   const std::vector<std::uint32_t>& realizations() const { return used_; }
 
+  /// "; realization 3 has come to tap 0 alone, others to 60": where one ends what can be analysed;
+  /// else empty.
+  std::string held_back() const;
+
   /// Calls `take` with the values at these taps of one realization after another. Throws BadInput
   /// where one of them is not a number.
   void for_each(const TapRange& taps,
                 const std::function<void(std::span<const double>)>& take) const;
-  /// Mean of each realization over these taps, [n_realizations]; NaN where they are beyond the last
-  /// that all have reached. Throws BadInput as for_each().
+  /// Mean of each realization over these taps, [n_realizations]; NaN of those that have not reached
+  /// the last of them. Throws BadInput as for_each().
   std::vector<double> means(const TapRange& taps) const;
   /// All values at these taps, [n_taps, n_realizations].
   std::vector<double> values(const TapRange& taps) const;
@@ -41,7 +45,11 @@ class ObservableSeries {
   const ResultsFile& file_;
   std::uint32_t point_;
   Column label_;
-  std::vector<std::uint32_t> used_;  // realizations
+  void for_each_of(const std::vector<std::uint32_t>& realizations, const TapRange& taps,
+                   const std::function<void(std::span<const double>)>& take) const;
+
+  std::vector<std::uint32_t> used_;     // realizations
+  std::vector<std::uint64_t> reached_;  // rows of each
   std::uint64_t n_rows_ = 0;
 };
 

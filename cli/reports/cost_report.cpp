@@ -106,6 +106,12 @@ std::string doubt_of_the_reference(const CostStudy& study) {
 
 std::string shortfall_of_the_reference(const CostOfObservable& cost) {
   const PairedBias& step = cost.last_step;
+  if (step.pairs < 2) {
+    return fmt::format(
+        "What the most complete setting may itself lack is not known: {} it and the setting "
+        "before it.\n",
+        step.pairs == 0 ? "no replicate has" : "one replicate alone has");
+  }
   const std::string text =
       fmt::format("The step to the most complete setting: {}; ", over_replicates(step));
   if (!is_seen(step)) return text + "what it may itself lack is below what these replicates see.\n";
@@ -113,9 +119,9 @@ std::string shortfall_of_the_reference(const CostOfObservable& cost) {
     return text +
            "steps are not seen to shrink, so that it may itself be short by more than this step.\n";
   }
-  return text +
-         fmt::format("if steps go on to shrink, it is itself short by {}.\n",
-                     over_replicates(cost.remainder.value, cost.remainder.error, step.pairs));
+  return text + fmt::format("if steps go on to shrink, it is itself short by {}.\n",
+                            over_replicates(cost.remainder.value, cost.remainder.error,
+                                            cost.remainder.realizations));
 }
 
 /// Whether more taps would change the bias of the scene's own setting.

@@ -158,7 +158,7 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
   std::size_t longest = 0;
   for (std::uint32_t point = 0; point < n_points; ++point) {
     const std::vector<EnsembleSeries> columns = file.ensemble(point);
-    if (columns.empty()) return "";
+    if (columns.empty()) continue;  // not begun
     const EnsembleSeries& series = columns[chosen_column(columns)];
     name = series.label.name;
     curves.push_back(curve_of(series));
@@ -174,7 +174,7 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
       wrapped(fmt::format("{} over log tap, from {:.4g} to {:.4g}, and its last value:\n", name,
                           range.low, range.high),
               width);
-  for (std::size_t point = 0; point < n_points; ++point) {
+  for (std::size_t point = 0; point < curves.size(); ++point) {
     const std::string line = sparkline(curves[point], range.low, range.high, longest_line, glyphs);
     std::string label = labels[point];
     if (width_of(label) > longest) label = label.substr(0, longest);

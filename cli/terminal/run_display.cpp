@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/screen.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -38,9 +40,11 @@ std::string precision_line(const PrecisionStatus& status) {
                                   ? "not reached yet"
                                   : "NOT reached, and no more are allowed";
   const PrecisionStatus::Target& farthest = status.farthest;
-  return fmt::format("{}: target precision {}: {} of {} is {:.2g}, wanted at most {:.2g}\n",
+  const std::string value = std::isnan(farthest.value) ? "not known, of fewer than two realizations"
+                                                       : fmt::format("{:.2g}", farthest.value);
+  return fmt::format("{}: target precision {}: {} of {} is {}, wanted at most {:.2g}\n",
                      counted(status.realizations, "realization"), verdict, farthest.spread,
-                     farthest.observable, farthest.value, farthest.at_most);
+                     farthest.observable, value, farthest.at_most);
 }
 
 }  // namespace jostle::inline cli

@@ -45,17 +45,20 @@ double root_mean_square(std::span<const SettingCost> settings,
   return std::sqrt(squares / n);
 }
 
-// Of Student's t, exceeded once in five times.
-double limit_of_t(double dof) {
-  return student_two_sided(0.6, dof);
+// Of Student's t of so many pairs, exceeded once in five times.
+double limit_of_t(std::size_t pairs) {
+  return pairs < 2 ? std::numeric_limits<double>::infinity()
+                   : student_two_sided(0.6, static_cast<double>(pairs - 1));
 }
 
 // What the reference lacks, at its limit; NaN where steps are not known to shrink.
-double shortfall_limit(const Pilot& pilot, double t, double least_error) {
-  const auto error = [&](const PairedBias& step) { return std::max(step.error, least_error); };
-  const double last = std::abs(pilot.last_step.bias) + t * error(pilot.last_step);
+double shortfall_limit(const Pilot& pilot, double least_error) {
+  const auto doubt = [&](const PairedBias& step) {
+    return limit_of_t(step.pairs) * std::max(step.error, least_error);
+  };
+  const double last = std::abs(pilot.last_step.bias) + doubt(pilot.last_step);
   if (!is_seen(pilot.last_step)) return last;
-  const double before = std::abs(pilot.step_before.bias) - t * error(pilot.step_before);
+  const double before = std::abs(pilot.step_before.bias) - doubt(pilot.step_before);
   const double rest = rest_of_steps(last, before);
   return rest < last ? last : rest;
 }
@@ -123,7 +126,9 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
         rest_of_steps((sum - steps[r]) / others, (sum_before - steps_before[r]) / others));
   }
   const auto all = static_cast<double>(n);
-  return {.value = rest_of_steps(sum / all, sum_before / all), .error = jackknife_error(left_out)};
+  return {.realizations = n,
+          .value = rest_of_steps(sum / all, sum_before / all),
+          .error = jackknife_error(left_out)};
 }
 
 double sigma_limit(std::size_t n_values) {
@@ -160,19 +165,18 @@ void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot) {
 }
 
 std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot) {
-  const double t = pilot.replicates < 2 ? std::numeric_limits<double>::infinity()
-                                        : limit_of_t(static_cast<double>(pilot.replicates - 1));
   std::vector<std::uint64_t> others = pilot.has_beds;
   others[pilot.reference] = 0;
   const double least_error = root_mean_square(settings, others, &SettingCost::bias_error);
-  const double lacking = shortfall_limit(pilot, t, least_error);
+  const double lacking = shortfall_limit(pilot, least_error);
   std::vector<SettingCost> limits(settings.begin(), settings.end());
   for (std::size_t i = 0; i < limits.size(); ++i) {
     SettingCost& one = limits[i];
     const double error = pilot.has_beds[i] ? std::max(one.bias_error, least_error) : one.bias_error;
-    one.bias = i == pilot.reference ? lacking : std::abs(one.bias) + t * error + lacking;
+    one.bias = i == pilot.reference ? lacking
+                                    : std::abs(one.bias) + limit_of_t(one.pairs) * error + lacking;
     one.bias_error = 0;
-    one.sigma *= sigma_limit(pilot.replicates);
+    one.sigma *= sigma_limit(one.pairs);
   }
   return limits;
 }

@@ -41,7 +41,8 @@ bool is_seen(const PairedBias& bias);
 
 /// What a ladder's last setting still lacks.
 struct Remainder {
-  double value = 0;  // NaN where steps do not shrink: r outside 0 .. 0.9
+  std::size_t realizations = 0;  // that all three settings have
+  double value = 0;              // NaN where steps do not shrink: r outside 0 .. 0.9
   double error = 0;  // jackknife over realizations; NaN where it is not defined without one of them
 };
 
@@ -56,6 +57,7 @@ struct SettingCost {
   double bias = 0, bias_error = 0;  // of the observable
   double sigma = 0;                 // deviation between realizations
   double realization_seconds = 0;   // of a whole one, on one core
+  std::size_t pairs = 0;            // realizations that it and the reference both have
 };
 
 struct Recommendation {
@@ -70,12 +72,11 @@ struct Recommendation {
 std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, double target);
 
 /// By what a deviation of so many values (at least 2) is multiplied for a limit that the true one
-/// of a Gaussian exceeds once in five times: 1.35 for 8, 2.5 for 3. Infinite below 2.
+/// of a Gaussian exceeds once in five times: 1.35 for 8, 2.12 for 3. Infinite below 2.
 double sigma_limit(std::size_t n_values);
 
 /// What beside its settings a pilot has to say of them.
 struct Pilot {
-  std::size_t replicates = 0;
   std::size_t reference = 0;            // of settings: the most complete, of which biases are
   PairedBias last_step, step_before;    // to the reference, and to the setting before it
   std::vector<std::uint64_t> has_beds;  // [n_settings], 1: has the beds of the reference
@@ -85,12 +86,13 @@ struct Pilot {
 /// of a few replicates scatter by more than they differ.
 void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot);
 
-/// Settings at the limits of what the pilot knows, each exceeded once in five times: sigma by
-/// sigma_limit(); the bias by Student's t, its error no smaller than the root mean square over the
-/// settings of one bed, since of many settings one has a small error by chance. To each bias comes
-/// what the reference itself lacks: the limit of its last step where that is not seen, which takes
-/// for granted that further steps shrink at least by half; else the rest of a series whose ratio is
-/// at the limit of these two steps. Biases are NaN where that series has no end. bias_error is 0.
+/// Settings at the limits of what the pilot knows, each exceeded once in five times, by the pairs
+/// that each has: sigma by sigma_limit(); the bias by Student's t, its error no smaller than the
+/// root mean square over the settings of one bed, since of many settings one has a small error by
+/// chance. To each bias comes what the reference itself lacks: the limit of its last step where
+/// that is not seen, which takes for granted that further steps shrink at least by half; else the
+/// rest of a series whose ratio is at the limit of these two steps. Biases are NaN where that
+/// series has no end. bias_error is 0.
 std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot);
 
 /// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].

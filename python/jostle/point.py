@@ -86,6 +86,11 @@ class Point:
         """Whether any of its realizations has a tap stored."""
         return f"observables/{self._name}" in self._file
 
+    @property
+    def has_taps(self) -> bool:
+        """Whether any of its realizations has taps and did not fail: else means have no numbers."""
+        return any(status in ("running", "done") for status in self.status)
+
     def _group(self, folder: str) -> h5py.Group:
         group = self._file.get(f"{folder}/{self._name}")
         if group is None:

@@ -158,7 +158,8 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
     cost.setting_costs.push_back({.bias = is_choice ? cost.biases.back().bias : not_a_number,
                                   .bias_error = cost.biases.back().error,
                                   .sigma = deviation(at(p, pilot_taps_)),
-                                  .realization_seconds = realization_seconds(p)});
+                                  .realization_seconds = realization_seconds(p),
+                                  .pairs = cost.biases.back().pairs});
   }
   for (std::size_t p = 0; p < settings_.size() && middle_tap() > 0; ++p) {
     cost.growths.push_back(bias_growth(at(p, middle_tap()), at(best.last, middle_tap()),
@@ -169,9 +170,8 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
   cost.remainder =
       is_seen(cost.last_step)
           ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
-          : Remainder{not_a_number, not_a_number};
-  const Pilot pilot{.replicates = replicates_,
-                    .reference = best.last,
+          : Remainder{0, not_a_number, not_a_number};
+  const Pilot pilot{.reference = best.last,
                     .last_step = cost.last_step,
                     .step_before = paired_bias(at(best.before, pilot_taps_), at(0, pilot_taps_)),
                     .has_beds = has_beds()};

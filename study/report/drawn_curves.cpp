@@ -125,6 +125,15 @@ constexpr std::size_t most_snapshot_points = 24, most_snapshot_realizations = 64
 
 }  // namespace
 
+std::vector<std::uint32_t> begun_realizations(const ResultsFile& file, std::uint32_t point) {
+  std::vector<std::uint32_t> begun;
+  for (const RealizationSummary& one : file.realizations()) {
+    if (one.id.point == point && one.rows > 0 && one.status != RealizationStatus::failed)
+      begun.push_back(one.id.realization);
+  }
+  return begun;
+}
+
 DrawnRoom DrawnRoom::of_one_in(std::size_t n_files) {
   const DrawnRoom all;
   const std::size_t n = std::max<std::size_t>(1, n_files);
@@ -182,13 +191,15 @@ std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const Wante
                                             std::vector<std::string>& left_out) {
   const std::vector<std::uint32_t> begun = begun_points(file, wanted);
   std::vector<DrawnSnapshots> all;
-  const std::uint32_t realizations = file.study().realizations;
+  std::size_t realizations = 0;
   for (const std::uint32_t point : spread(begun, most_snapshot_points)) {
     const Snapshots& kept = file.study().points[point].snapshots;
     const std::vector<std::uint64_t> taps = spread(kept.taps, most_histograms);
     SnapshotMeans means;
-    for (const std::size_t r : evenly_spread(realizations, most_snapshot_realizations)) {
-      means.add(*file.realization({point, static_cast<std::uint32_t>(r)}), taps);
+    const std::vector<std::uint32_t> there = begun_realizations(file, point);
+    realizations = std::max(realizations, there.size());
+    for (const std::uint32_t r : spread(there, most_snapshot_realizations)) {
+      means.add(*file.realization({point, r}), taps);
     }
     if (!means.empty()) all.push_back(means.means(point, kept.bin_width));
   }

@@ -11,6 +11,7 @@
 
 #include "ensemble/parallel.hpp"
 #include "results/export/particle_columns.hpp"
+#include "study/report/drawn_results.hpp"
 #include "study/report/page_json.hpp"
 #include "study/report/thinning.hpp"
 
@@ -31,13 +32,16 @@ constexpr std::size_t most_points = 100, most_realizations = 20;
 /// Realizations of a sweep point that keep positions.
 struct KeptPoint {
   std::uint32_t n_spheres = 0;
+  std::size_t of = 0;  // realizations that there are
   std::vector<KeptRealization> realizations;
 };
 
 KeptPoint kept_of(const ResultsFile& file, std::uint32_t point) {
   KeptPoint kept;
-  for (const std::size_t r : evenly_spread(file.study().realizations, most_realizations)) {
-    KeptRealization one{{point, static_cast<std::uint32_t>(r)}, {}};
+  const std::vector<std::uint32_t> there = begun_realizations(file, point);
+  kept.of = there.size();
+  for (const std::uint32_t r : spread(there, most_realizations)) {
+    KeptRealization one{{point, r}, {}};
     for (const SnapshotOutline& outline : file.realization(one.id)->snapshots()) {
       if (outline.n_spheres[kept_positions] == 0) continue;
       one.taps.push_back(outline.tap);
@@ -176,11 +180,13 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
                    std::vector<std::string>& left_out) {
   std::vector<KeptPoint> points;
   std::uint32_t largest = 0;
+  std::size_t most_there = 0;
   const std::size_t n_points = file.study().points.size();
   for (const std::size_t point : evenly_spread(n_points, most_points)) {
     KeptPoint kept = kept_of(file, static_cast<std::uint32_t>(point));
     if (kept.realizations.empty()) continue;
     largest = std::max(largest, kept.n_spheres);
+    most_there = std::max(most_there, kept.of);
     points.push_back(std::move(kept));
   }
   if (points.empty()) return Json::array();
@@ -196,7 +202,7 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
                     "points, taps and realizations",
                     chosen.packings.size(), chosen.of));
   }
-  if (n_points > most_points || file.study().realizations > most_realizations) {
+  if (n_points > most_points || most_there > most_realizations) {
     left_out.push_back(
         fmt::format("packings are those of at most {} sweep points and {} realizations of each",
                     most_points, most_realizations));

@@ -154,14 +154,15 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
   const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
   const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
   if (available < least) {
-    throw BadInput(fmt::format("needs at least {} taps; there {} {}", least,
-                               available == 1 ? "is" : "are", available));
+    throw BadInput(fmt::format("needs at least {} taps; there {} {}{}", least,
+                               available == 1 ? "is" : "are", available, series.held_back()));
   }
   if (wanted < least) {
     throw BadInput(fmt::format("asks for the last {} taps; at least {} are needed", wanted, least));
   }
   if (wanted > available) {
-    throw BadInput(fmt::format("asks for the last {} taps; there are {}", wanted, available));
+    throw BadInput(fmt::format("asks for the last {} taps; there are {}{}", wanted, available,
+                               series.held_back()));
   }
   return {.observable = series.label().name,
           .units = series.label().units,

@@ -65,7 +65,10 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
   bool matched = true;
   std::vector<std::uint32_t> realizations;
-  for (const std::uint32_t point : points) {
+  const std::vector<std::string> reasons = reasons_left_out(file, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!reasons[i].empty()) continue;
+    const std::uint32_t point = points[i];
     const Switch here = switch_of(scenes, point);
     if (!switches.empty() && !(here.last.tap == switches.front().last.tap))
       throw BadInput(
@@ -75,7 +78,6 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
       throw BadInput(fmt::format("the points tap in different ways before the switch ({}, {})",
                                  switches.front().before.name, here.before.name));
     const ObservableSeries& all = series.emplace_back(file, point, request.observable);
-    require_taps(file, point, all.n_realizations());
     if (all.n_rows() <= here.tap + 1)
       throw BadInput(fmt::format("sweep point {} has not reached the last stage", point));
     last = std::min({last, here.last.count, all.n_rows() - 1 - here.tap});
@@ -86,6 +88,9 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
     });
     switches.push_back(here);
   }
+  const std::string left_out = left_out_text(file, points, reasons);
+  if (switches.size() < 2)
+    throw BadInput("needs two sweep points at least that have taps; left out: " + left_out);
   if (realizations.empty()) throw BadInput("there is no realization that all points have");
   std::vector<LagWindow> windows = windows_within(request.settings, last);
   std::vector<History> histories;
@@ -104,6 +109,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   const Control& before = switches.front().before;
   Table table = memory_table("", series.front().label(), before.name, before.units, histories,
                              memory_test(histories, std::move(windows)));
+  if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
   table.notes.emplace_back("streams", matched ? "matched" : "independent");
   return table;
 }

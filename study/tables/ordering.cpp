@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "config/json/json_text.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/analyse.hpp"
+#include "study/tables/over_points.hpp"
 
 namespace jostle::inline study {
 
@@ -64,23 +64,21 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
   const std::size_t n = file.study().realizations;
   ComparedValue value{settings.equilibrium.empty() ? observable : settings.equilibrium, "", ""};
   std::vector<OrderingPoint> compared;
-  std::vector<std::string> left_out;
+  const std::vector<std::string> reasons = reasons_left_out(file, points);
   try {
-    for (const std::uint32_t number : points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!reasons[i].empty()) continue;
+      const std::uint32_t number = points[i];
       const ObservableSeries series(file, number, observable);
       const std::string& label = file.study().points[number].label;
-      if (series.n_realizations() == 0) {
-        left_out.push_back(label);
-        continue;
-      }
       OrderingPoint point{.label = label, .times = ordering_of(series, settings).times(n)};
       set_last_values(ObservableSeries(file, number, value.observable), settings, n, point, value);
       compared.push_back(std::move(point));
     }
     if (compared.size() < 2) throw BadInput("fewer than two sweep points have taps to compare");
     Table table = ordering_comparison(observable, settings, value, compared, streams);
-    if (!left_out.empty())
-      table.notes.emplace_back("left_out", joined(left_out, "; ") + ": no realization has taps");
+    const std::string left_out = left_out_text(file, points, reasons);
+    if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
     return table;
   } catch (const BadInput& refusal) {
     return {.name = "ordering/" + observable, .notes = {{"refused", refusal.what()}}};

@@ -18,6 +18,16 @@ namespace jostle::inline study {
 /// all were.
 std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
 
+/// Why points have no part in what compares them, empty where they have: none of their realizations
+/// has taps, or together they have come less far than those of a point whose run is as long, so
+/// that other taps would be compared. [points]
+std::vector<std::string> reasons_left_out(const ResultsFile& file,
+                                          std::span<const std::uint32_t> points);
+
+/// "dilate = 0.05: no realization has taps; ..."; empty where all have a part.
+std::string left_out_text(const ResultsFile& file, std::span<const std::uint32_t> points,
+                          const std::vector<std::string>& reasons);
+
 /// Throws BadInput where no realization of the point has taps: all failed, or none is begun.
 void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -22,6 +23,7 @@
 #include "study/observable_series.hpp"
 #include "study/scenes/point_scenes.hpp"
 #include "study/tables/analyse.hpp"
+#include "study/tables/over_points.hpp"
 
 namespace jostle::inline study {
 
@@ -112,10 +114,6 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, s
 /// The mean of the last taps, of each realization.
 void set_value(Member& member, const ObservableSeries& series, std::optional<std::uint64_t> last,
                std::uint32_t n_realizations) {
-  if (series.n_realizations() == 0) {
-    member.no_value = "no realization has taps";
-    return;
-  }
   const AnalysedSeries taps = last_taps(series, last, 4, 1);
   const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
   member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
@@ -313,13 +311,18 @@ std::vector<Member> members_of(std::span<SweptFile> files,
   for (SweptFile& swept : files) {
     const ResultsFile* const file = &swept.file();
     const PointScenes& scenes = swept.scenes();
-    for (std::uint32_t point = 0; point < file->study().points.size(); ++point) {
+    std::vector<std::uint32_t> points(file->study().points.size());
+    std::iota(points.begin(), points.end(), 0u);
+    const std::vector<std::string> reasons = reasons_left_out(*file, points);
+    for (const std::uint32_t point : points) {
       Member member;
       const ObservableSeries series(*file, point, observable);
       member.label = series.label();
       const StudyPoint& studied = file->study().points[point];
       set_x(member, studied, scenes, point, settings.against);
-      if (settings.quantity == "value") {
+      if (settings.quantity == "value" && !reasons[point].empty()) {
+        member.no_value = reasons[point];
+      } else if (settings.quantity == "value") {
         set_value(member, series, settings.last, file->study().realizations);
       } else {
         const MadeTables& tables = swept.tables();

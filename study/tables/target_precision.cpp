@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ensemble/moments.hpp"
 
@@ -23,7 +24,8 @@ double largest_spread(const ResultsFile& file, std::uint32_t point, const Spread
     }
     const double error = moments.standard_error();  // NaN below two, where sigma is 0
     const double spread = target.spread == Spread::sigma && error >= 0 ? moments.sigma() : error;
-    if (!(spread <= largest)) largest = spread;
+    if (std::isnan(spread)) return spread;
+    largest = std::max(largest, spread);
   }
   return largest;
 }
@@ -45,8 +47,10 @@ PrecisionStatus precision_status(const ResultsFile& file, const TargetPrecision&
     for (const SpreadTarget& target : until.targets) {
       const double value = largest_spread(file, point, target);
       found.push_back({target.spread, value, target.at_most});
-      const double excess = value / target.at_most;
-      if (rows.empty() || !(excess <= status.farthest.value / status.farthest.at_most))
+      // One that is not known is farther than all that are.
+      const double excess = value / target.at_most,
+                   most = status.farthest.value / status.farthest.at_most;
+      if (rows.empty() || (!std::isnan(most) && !(excess <= most)))
         status.farthest = {target.observable, name_of(target.spread), value, target.at_most};
       rows.push_back(rows.size());
       points.push_back(point);

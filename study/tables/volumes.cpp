@@ -205,9 +205,12 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
   const auto& [observable, settings] = request;
   const std::string name = "volumes/" + observable;
   std::map<std::string, Sources> groups;  // by the other values of the sweep
-  for (const std::uint32_t point : points) {
+  const std::vector<std::string> reasons = reasons_left_out(file, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t point = points[i];
     const ObservableSeries series(file, point, observable);
-    require_taps(file, point, series.n_realizations());
+    if (points.size() == 1) require_taps(file, point, series.n_realizations());
+    if (!reasons[i].empty()) continue;
     if (const auto branch = last_branch(scenes, point, settings.last)) {
       add_table(file, scenes, points, *branch, request, point_name(point) + "/" + name, tables);
       continue;
@@ -225,6 +228,8 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
     add_table(file, scenes, points, sources, request,
               groups.size() == 1 ? name : fmt::format("{}_{:04}", name, tables.size()), tables);
     if (!others.empty()) tables.back().notes.emplace_back("at", others);
+    const std::string left_out = left_out_text(file, points, reasons);
+    if (!left_out.empty()) tables.back().notes.emplace_back("points_left_out", left_out);
   }
 }
 

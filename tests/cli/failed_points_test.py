@@ -1,6 +1,10 @@
-"""Sweeps of which a point, or every point, has failed: what is left is analysed, and says so."""
+"""Sweeps of which a point, or every point, has failed or lags behind: what is left is analysed, and
+says so."""
+import signal
+import time
 import unittest
 
+import h5py
 from support import BAD_INPUT, UNFOLDED, Case, changed
 
 # A crystal stands between periodic sides that its rows fit: not in 4 d along y.
@@ -41,8 +45,33 @@ class FailedPoints(Case):
         ordering = ("ordering", "--observable", "mean_height", "--threshold", "5", "--hold", "3")
         self.assertRegex(self.analyse(*ordering).stdout,
                          r"left_out +width/1 = 4: no realization has taps")
-        memory = self.analyse("memory", "--observable", "mean_height", expect=BAD_INPUT)
-        self.assertRegex(memory.stdout, r"refused +no realization has taps at width/1 = 4")
+        memory = self.analyse("memory", "--observable", "mean_height")
+        self.assertRegex(memory.stdout, r"left_out +width/1 = 4: no realization has taps")
+
+    def test_points_of_other_taps_are_not_compared(self):
+        widths = [WIDTHS[0], WIDTHS[2], WIDTHS[3]]
+        scene = changed(SCENE, realizations=1, sweep={"/container/width/1": widths})
+        scene.pop("motion")
+        self.run_with_failures(scene)
+        longer = changed(scene, protocol=[*scene["protocol"][:1],
+                                          {**scene["protocol"][1], "count": 1_000_000}])
+        self.write(longer)
+        process = self.popen("run", "scene.json", "-o", "widths.h5", "--resume", "--quiet",
+                             "--threads", "1")
+        time.sleep(1.5)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        with h5py.File(self.folder / "widths.h5") as file:
+            rows = [int(file[f"observables/point_{point:04}/rows"][0]) for point in range(3)]
+        self.assertGreater(rows[0], 30)
+        self.assertEqual(rows[1:], [25, 25])
+        why = f"its realizations have come to tap 24 together, others to {rows[0] - 1}"
+        self.assertIn(f"at 5.196 {why}; at 6.928 {why}", self.analyse(*SWEEP).stdout)
+        ordering = ("ordering", "--observable", "mean_height", "--threshold", "5", "--hold", "3")
+        self.assertIn("fewer than two sweep points have taps to compare",
+                      self.analyse(*ordering).stdout)
+        refused = self.analyse("memory", "--observable", "mean_height", expect=BAD_INPUT).stdout
+        self.assertIn("needs two sweep points at least that have taps; left out: width/1 = ", refused)
 
     def test_a_point_is_named_as_it_is_listed(self):
         self.run_with_failures(SCENE)

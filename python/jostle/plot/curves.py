@@ -19,7 +19,7 @@ LAYER = (2 / 3) ** 0.5  # diameters from one close-packed layer to the next
 
 def _chosen(results: Results, points: Iterable[int] | int | None) -> list[Point]:
     if points is None:
-        return [point for point in results.points if point.begun]
+        return [point for point in results.points if point.has_taps]
     return [results.points[number] for number in _several(points)]
 
 
@@ -40,6 +40,8 @@ def compaction(results: Results, observable: str, *, points: Iterable[int] | int
     largest = 1
     chosen = _chosen(results, points)
     for point in chosen:
+        if not point.has_taps:
+            raise NotThere(f"sweep point {point.index}: none of its realizations has taps")
         tap, mean = point.tap.astype(float), point.mean[observable]
         (line,) = ax.plot(tap, mean, label=point.label or results.scene["name"])
         if band != "none":
@@ -62,9 +64,10 @@ def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | int
     ax = axes_or_current(ax)
     snapshots = results.points[point].snapshots
     height, kept = snapshots["height"], snapshots["tap"].tolist()
-    for tap in ([kept[0], kept[-1]] if taps is None else _several(taps)):
-        if tap not in kept:
-            raise NotThere(f"no histogram of tap {tap}; kept: {', '.join(map(str, kept))}")
+    reached = [tap for tap, n in zip(kept, snapshots["height_histogram"]) if np.isfinite(n).any()]
+    for tap in ([*dict.fromkeys((*reached[:1], *reached[-1:]))] if taps is None else _several(taps)):
+        if tap not in reached:
+            raise NotThere(f"no histogram of tap {tap}; kept: {', '.join(map(str, reached))}")
         ax.plot(height, np.nanmean(snapshots["height_histogram"][kept.index(tap)], axis=0),
                 label=f"tap {tap}")
     if layers:

@@ -22,13 +22,14 @@ def _require(table: Table, names: str, command: str) -> None:
 
 def fit(table: Table, *, ax: Axes | None = None) -> Axes:
     """A law over the curve that it was fitted to: a table of /fits."""
-    _require(table, "t x x_error fitted", "jostle fit")
+    _require(table, "t x fitted", "jostle fit")
     ax = axes_or_current(ax)
     t = table["t"]
     observable = table.notes.get("observable", "X")
-    dof = float(table.notes.get("realizations", np.inf)) - 1
-    half = half_width(table["x_error"], dof)
-    ax.fill_between(t, table["x"] - half, table["x"] + half, color="0.85", linewidth=0)
+    if "x_error" in table:  # not of one realization
+        dof = float(table.notes.get("realizations", np.inf)) - 1
+        half = half_width(table["x_error"], dof)
+        ax.fill_between(t, table["x"] - half, table["x"] + half, color="0.85", linewidth=0)
     ax.plot(t, table["x"], "o", color="0.4", markersize=3, label=observable.replace("_", " "))
     ax.plot(t, table["fitted"], color="C3", zorder=2,
             label=f"{table.name.rsplit('/', 1)[-1]}: {table.notes.get('law', '')}")

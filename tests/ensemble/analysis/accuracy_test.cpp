@@ -181,10 +181,10 @@ std::vector<SettingCost> limits_of_a_pilot(const MadeLadder& made, std::size_t r
     settings.push_back({.bias = bias.bias,
                         .bias_error = bias.error,
                         .sigma = moments.sigma(),
-                        .realization_seconds = made.seconds(s)});
+                        .realization_seconds = made.seconds(s),
+                        .pairs = replicates});
   }
-  const Pilot pilot{.replicates = replicates,
-                    .reference = made.reference,
+  const Pilot pilot{.reference = made.reference,
                     .last_step = paired_bias(values[made.reference], values[made.before]),
                     .step_before = paired_bias(values[made.before], values[made.own]),
                     .has_beds = std::vector<std::uint64_t>(made.n_settings, 1)};
@@ -227,9 +227,9 @@ TEST_CASE("What is recommended reaches its target in four of five cases") {
 }
 
 TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
-  const std::vector<SettingCost> settings(3, {.sigma = 0.01, .realization_seconds = 1});
-  Pilot pilot{.replicates = 30,
-              .reference = 2,
+  const std::vector<SettingCost> settings(3,
+                                          {.sigma = 0.01, .realization_seconds = 1, .pairs = 30});
+  Pilot pilot{.reference = 2,
               .last_step = {.pairs = 30, .bias = 0.002, .error = 1e-4},
               .step_before = {.pairs = 30, .bias = 0.002, .error = 1e-4},
               .has_beds = {1, 1, 1}};
@@ -242,8 +242,26 @@ TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
   const double slower = step / (0.003 - t * 1e-4);
   CHECK(at_limits(settings, pilot)[0].bias == Approx(step * slower / (1 - slower)));
   CHECK(ratio < 0.5);
-  pilot.replicates = 1;
-  CHECK_FALSE(cheapest(at_limits(settings, pilot), 1));
+  const std::vector<SettingCost> alone(3, {.sigma = 0.01, .realization_seconds = 1, .pairs = 1});
+  CHECK_FALSE(cheapest(at_limits(alone, pilot), 1));
+}
+
+TEST_CASE("Limits are by the pairs that a setting has, not by those that were planned") {
+  std::vector<SettingCost> settings(
+      3, {.bias = 0.01, .bias_error = 0.004, .sigma = 0.02, .realization_seconds = 1, .pairs = 6});
+  settings[1].pairs = 3;  // the others failed
+  const Pilot pilot{.reference = 2,
+                    .last_step = {.pairs = 2, .bias = 0.001, .error = 0.001},
+                    .step_before = {.pairs = 6, .bias = 0.01, .error = 0.001},
+                    .has_beds = {0, 0, 0}};
+  const std::vector<SettingCost> limits = at_limits(settings, pilot);
+  const double of_6 = 0.919544, of_3 = 1.060660, of_2 = 1.376382;  // Student's t, tables
+  const double lacking = 0.001 + of_2 * 0.001;
+  CHECK(limits[0].bias == Approx(0.01 + of_6 * 0.004 + lacking).epsilon(1e-5));
+  CHECK(limits[1].bias == Approx(0.01 + of_3 * 0.004 + lacking).epsilon(1e-5));
+  CHECK(limits[2].bias == Approx(lacking).epsilon(1e-5));
+  CHECK(limits[0].sigma == Approx(0.02 * std::sqrt(5 / 2.342534)).epsilon(1e-4));  // chi2, tables
+  CHECK(limits[1].sigma == Approx(0.02 * std::sqrt(2 / 0.446287)).epsilon(1e-4));
 }
 
 TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {
