@@ -58,6 +58,24 @@ class Figures(Case):
         np.testing.assert_array_equal(points[:, 1], table["x"])
         np.testing.assert_array_equal(law[:, 1], table["fitted"])
 
+    def test_a_fit_to_one_realization_is_drawn_without_a_band(self):
+        table = self.open(made(changed(BED, realizations=1, analyse=None, structure=None))) \
+            .tables.one("inverse_log")
+        self.assertNotIn("x_error", table)
+        jostle.plot.fit(table, ax=self.ax)
+        self.assertEqual(len([line for line in self.drawn() if len(line) == 64]), 2)
+
+    def test_points_without_taps_are_not_drawn(self):
+        # Of a share: realization 0 of point 0, not of point 1.
+        share = self.open(made(changed(TINY, realizations=1, sweep={
+            "/protocol/0/tap/dilate": [0.02, 0.05]}), "--shard", "1/2"))
+        there = [point.has_taps for point in share.points]
+        self.assertEqual(sorted(there), [False, True])
+        jostle.plot.compaction(share, "mean_height", ax=self.ax)
+        self.assertEqual(len(self.drawn()), 1)
+        with self.assertRaisesRegex(jostle.NotThere, "none of its realizations has taps"):
+            jostle.plot.compaction(share, "mean_height", points=there.index(False), ax=self.ax)
+
     def test_ageing_is_drawn_measured_and_scaled(self):
         table = self.open(made(BED)).tables.one("ageing")
         jostle.plot.ageing(table, ax=self.ax)
