@@ -182,8 +182,10 @@ std::string change_of(const PointSeries& series) {
   if (shown == series.columns.end()) shown = series.columns.begin();
   if (shown == series.columns.end()) return "";
   const std::size_t last = series.reached.size() - 1;
+  const bool as_many = shown->count[0] == shown->count[last];
   const auto at = [&](std::size_t tap) {
-    return fmt::format("{} at tap {}", value_with_error(shown->mean[tap], shown->error[tap]), tap);
+    return fmt::format("{} at tap {}{}", value_with_error(shown->mean[tap], shown->error[tap]), tap,
+                       as_many ? "" : fmt::format(" (M = {})", shown->count[tap]));
   };
   std::string text = fmt::format("; {} {}", shown->label.name, at(0));
   return last == 0 ? text : text + ", " + at(last);

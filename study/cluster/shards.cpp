@@ -114,16 +114,18 @@ void count_missing(Gathered& study, const Study& stored) {
 /// What is left takes what was done took, row by row of the same sweep point, or of all where that
 /// has not begun.
 void estimate_left(Gathered& study) {
-  double seconds = 0, rows = 0, left = 0;
+  double seconds = 0, rows = 0, rows_left = 0, left = 0;
   for (const PointWork& point : study.points) {
     seconds += point.seconds;
     rows += static_cast<double>(point.rows);
+    rows_left += static_cast<double>(point.rows_left);
   }
   study.status.used = Seconds(seconds);
-  if (rows == 0) return;
+  if (rows == 0 && rows_left > 0) return;
   for (const PointWork& point : study.points) {
-    const double a_row =
-        point.rows > 0 ? point.seconds / static_cast<double>(point.rows) : seconds / rows;
+    const double a_row = point.rows > 0 ? point.seconds / static_cast<double>(point.rows)
+                         : rows > 0     ? seconds / rows
+                                        : 0;
     left += a_row * static_cast<double>(point.rows_left);
   }
   study.status.left = Seconds(left);
