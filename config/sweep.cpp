@@ -240,7 +240,8 @@ std::uint64_t point_id(const SweepPoint& point) {
 
 std::string short_name(const std::string& pointer) {
   const std::size_t last = pointer.rfind('/');
-  const bool is_index = pointer.find_first_not_of("0123456789", last + 1) == std::string::npos;
+  const bool is_index = last + 1 < pointer.size() &&
+                        pointer.find_first_not_of("0123456789", last + 1) == std::string::npos;
   if (!is_index || last == 0) return pointer.substr(last + 1);
   return pointer.substr(pointer.rfind('/', last - 1) + 1);
 }

@@ -60,7 +60,7 @@ void require_region(const MeasuredPacking& in) {
   const auto inside = [&](const Vec3& r) { return in.region.contains(container, r); };
   if (empty || std::ranges::none_of(in.packing.centres, inside)) {
     throw std::invalid_argument("no sphere lies in the region, " + in_words(in.region, container) +
-                                ": the bed may be too low for it; give another one, \"region\"");
+                                ": the bed may be too low for it; choose another \"region\"");
   }
 }
 

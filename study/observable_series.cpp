@@ -67,7 +67,7 @@ std::string ObservableSeries::held_back() const {
   if (used_.empty()) return {};
   const auto [least, most] = std::ranges::minmax_element(reached_);
   if (*least == *most) return {};
-  return fmt::format("; realization {} has come to tap {} alone, others to {}",
+  return fmt::format("; realization {} has reached only tap {}, the farthest tap {}",
                      used_[static_cast<std::size_t>(least - reached_.begin())], *least - 1,
                      *most - 1);
 }
@@ -94,8 +94,8 @@ void ObservableSeries::for_each_of(const std::vector<std::uint32_t>& realization
       for (std::uint64_t t = 0; t < n_taps; ++t) series[t] = block[t * width + *next - range.first];
       if (!std::ranges::all_of(series, [](double value) { return std::isfinite(value); })) {
         throw BadInput(
-            fmt::format("{} is not a number at every tap from {} to {}: no sphere may lie "
-                        "where it is taken",
+            fmt::format("{} is not a number at every tap from {} to {}: perhaps no sphere lies "
+                        "where it is measured",
                         label_.name, taps.first, taps.end - 1));
       }
       take(series);

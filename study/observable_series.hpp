@@ -25,8 +25,8 @@ class ObservableSeries {
   /// Their numbers, ascending.
   const std::vector<std::uint32_t>& realizations() const { return used_; }
 
-  /// "; realization 3 has come to tap 0 alone, others to 60": where one ends what can be analysed;
-  /// else empty.
+  /// "; realization 3 has reached only tap 0, the farthest tap 60": where they have not come
+  /// equally far; else empty.
   std::string held_back() const;
 
   /// Calls `take` with the values at these taps of one realization after another. Throws BadInput
@@ -42,12 +42,12 @@ class ObservableSeries {
   std::vector<double> rows(std::span<const std::uint64_t> taps) const;
 
  private:
-  const ResultsFile& file_;
-  std::uint32_t point_;
-  Column label_;
   void for_each_of(const std::vector<std::uint32_t>& realizations, const TapRange& taps,
                    const std::function<void(std::span<const double>)>& take) const;
 
+  const ResultsFile& file_;
+  std::uint32_t point_;
+  Column label_;
   std::vector<std::uint32_t> used_;     // realizations
   std::vector<std::uint64_t> reached_;  // rows of each
   std::uint64_t n_rows_ = 0;

@@ -108,9 +108,9 @@ std::string shortfall_of_the_reference(const CostOfObservable& cost) {
   const PairedBias& step = cost.last_step;
   if (step.pairs < 2) {
     return fmt::format(
-        "What the most complete setting may itself lack is not known: {} it and the setting "
-        "before it.\n",
-        step.pairs == 0 ? "no replicate has" : "one replicate alone has");
+        "What the most complete setting may itself lack is not known: {} finished both it and the "
+        "setting before it.\n",
+        step.pairs == 0 ? "no replicate" : "one replicate alone");
   }
   const std::string text =
       fmt::format("The step to the most complete setting: {}; ", over_replicates(step));
@@ -167,7 +167,7 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
         "relaxations beyond the ladder change {}.\n",
         wanted, study.settings()[choice->setting].name,
         counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
-        limit.bias, limit.sigma, study.pilot_taps(), study.replicates(),
+        limit.bias, limit.sigma, study.pilot_taps(), limit.pairs,
         is_seen(cost.last_step) ? "less and less, as its last two steps do"
                                 : "half as much a step as its last step, or less");
   }

@@ -40,7 +40,7 @@ std::string precision_line(const PrecisionStatus& status) {
                                   ? "not reached yet"
                                   : "NOT reached, and no more are allowed";
   const PrecisionStatus::Target& farthest = status.farthest;
-  const std::string value = std::isnan(farthest.value) ? "not known, of fewer than two realizations"
+  const std::string value = std::isnan(farthest.value) ? "not known (fewer than two realizations)"
                                                        : fmt::format("{:.2g}", farthest.value);
   return fmt::format("{}: target precision {}: {} of {} is {}, wanted at most {:.2g}\n",
                      counted(status.realizations, "realization"), verdict, farthest.spread,

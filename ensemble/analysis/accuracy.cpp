@@ -159,7 +159,14 @@ std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, do
 }
 
 void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot) {
-  const double pooled = root_mean_square(settings, pilot.has_beds, &SettingCost::sigma);
+  double squares = 0, dof = 0;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const SettingCost& one = settings[i];
+    if (!pilot.has_beds[i] || one.values < 2 || !std::isfinite(one.sigma)) continue;
+    squares += static_cast<double>(one.values - 1) * one.sigma * one.sigma;
+    dof += static_cast<double>(one.values - 1);
+  }
+  const double pooled = std::sqrt(squares / dof);
   for (std::size_t i = 0; i < settings.size(); ++i)
     if (pilot.has_beds[i] && std::isfinite(settings[i].sigma)) settings[i].sigma = pooled;
 }
@@ -176,7 +183,7 @@ std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const 
     one.bias = i == pilot.reference ? lacking
                                     : std::abs(one.bias) + limit_of_t(one.pairs) * error + lacking;
     one.bias_error = 0;
-    one.sigma *= sigma_limit(one.pairs);
+    one.sigma *= sigma_limit(one.values);
   }
   return limits;
 }

@@ -57,7 +57,8 @@ struct SettingCost {
   double bias = 0, bias_error = 0;  // of the observable
   double sigma = 0;                 // deviation between realizations
   double realization_seconds = 0;   // of a whole one, on one core
-  std::size_t pairs = 0;            // realizations that it and the reference both have
+  std::size_t values = 0;           // realizations that it has, of which sigma is
+  std::size_t pairs = 0;            // those that the reference has too, of which the bias is
 };
 
 struct Recommendation {
@@ -82,12 +83,12 @@ struct Pilot {
   std::vector<std::uint64_t> has_beds;  // [n_settings], 1: has the beds of the reference
 };
 
-/// The mean square over the settings that share their beds, in the place of each one's sigma: those
-/// of a few replicates scatter by more than they differ.
+/// The mean square over the settings that share their beds, by degrees of freedom, in the place of
+/// each one's sigma: those of a few replicates scatter by more than they differ.
 void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot);
 
-/// Settings at the limits of what the pilot knows, each exceeded once in five times, by the pairs
-/// that each has: sigma by sigma_limit(); the bias by Student's t, its error no smaller than the
+/// Settings at the limits of what the pilot knows, each exceeded once in five times: sigma by
+/// sigma_limit() of its values; the bias of its pairs by Student's t, its error no smaller than the
 /// root mean square over the settings of one bed, since of many settings one has a small error by
 /// chance. To each bias comes what the reference itself lacks: the limit of its last step where
 /// that is not seen, which takes for granted that further steps shrink at least by half; else the

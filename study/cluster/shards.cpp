@@ -122,10 +122,9 @@ void estimate_left(Gathered& study) {
   }
   study.status.used = Seconds(seconds);
   if (rows == 0 && rows_left > 0) return;
+  const double of_any = rows > 0 ? seconds / rows : 0;
   for (const PointWork& point : study.points) {
-    const double a_row = point.rows > 0 ? point.seconds / static_cast<double>(point.rows)
-                         : rows > 0     ? seconds / rows
-                                        : 0;
+    const double a_row = point.rows > 0 ? point.seconds / static_cast<double>(point.rows) : of_any;
     left += a_row * static_cast<double>(point.rows_left);
   }
   study.status.left = Seconds(left);

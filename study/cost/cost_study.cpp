@@ -20,6 +20,11 @@ double deviation(std::span<const double> values) {
   return moments.standard_error() * std::sqrt(static_cast<double>(moments.count()));
 }
 
+std::size_t number_of(std::span<const double> values) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(values, [](double value) { return !std::isnan(value); }));
+}
+
 std::string part_name(PilotSetting::Part part) {
   switch (part) {
     case PilotSetting::Part::scene:
@@ -159,6 +164,7 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
                                   .bias_error = cost.biases.back().error,
                                   .sigma = deviation(at(p, pilot_taps_)),
                                   .realization_seconds = realization_seconds(p),
+                                  .values = number_of(at(p, pilot_taps_)),
                                   .pairs = cost.biases.back().pairs});
   }
   for (std::size_t p = 0; p < settings_.size() && middle_tap() > 0; ++p) {

@@ -125,7 +125,7 @@ constexpr std::size_t most_snapshot_points = 24, most_snapshot_realizations = 64
 
 }  // namespace
 
-std::vector<std::uint32_t> begun_realizations(const ResultsFile& file, std::uint32_t point) {
+std::vector<std::uint32_t> realizations_with_taps(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint32_t> begun;
   for (const RealizationSummary& one : file.realizations()) {
     if (one.id.point == point && one.rows > 0 && one.status != RealizationStatus::failed)
@@ -196,7 +196,7 @@ std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const Wante
     const Snapshots& kept = file.study().points[point].snapshots;
     const std::vector<std::uint64_t> taps = spread(kept.taps, most_histograms);
     SnapshotMeans means;
-    const std::vector<std::uint32_t> there = begun_realizations(file, point);
+    const std::vector<std::uint32_t> there = realizations_with_taps(file, point);
     realizations = std::max(realizations, there.size());
     for (const std::uint32_t r : spread(there, most_snapshot_realizations)) {
       means.add(*file.realization({point, r}), taps);

@@ -57,7 +57,7 @@ struct DrawnTable {
 
 /// Realizations of a sweep point that have taps and did not fail, ascending: of a share or an
 /// unfinished run not all that were planned.
-std::vector<std::uint32_t> begun_realizations(const ResultsFile& file, std::uint32_t point);
+std::vector<std::uint32_t> realizations_with_taps(const ResultsFile& file, std::uint32_t point);
 
 /// Sweep points that are wanted; none: all.
 using WantedPoints = std::vector<std::uint32_t>;

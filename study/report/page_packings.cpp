@@ -38,7 +38,7 @@ struct KeptPoint {
 
 KeptPoint kept_of(const ResultsFile& file, std::uint32_t point) {
   KeptPoint kept;
-  const std::vector<std::uint32_t> there = begun_realizations(file, point);
+  const std::vector<std::uint32_t> there = realizations_with_taps(file, point);
   kept.of = there.size();
   for (const std::uint32_t r : spread(there, most_realizations)) {
     KeptRealization one{{point, r}, {}};

@@ -150,8 +150,10 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
 }
 
 AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
-                         std::uint64_t divisor, std::uint64_t least) {
-  const std::uint64_t available = series.n_rows() == 0 ? 0 : series.n_rows() - 1;
+                         std::uint64_t divisor, std::uint64_t least,
+                         std::optional<std::uint64_t> rows) {
+  const std::uint64_t n_rows = std::min(series.n_rows(), rows.value_or(series.n_rows()));
+  const std::uint64_t available = n_rows == 0 ? 0 : n_rows - 1;
   const std::uint64_t wanted = n_taps.value_or(std::max(least, available / divisor));
   if (available < least) {
     throw BadInput(fmt::format("needs at least {} taps; there {} {}{}", least,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "config/grids.hpp"
+#include "config/json/json_text.hpp"
 #include "ensemble/analysis/memory/memory.hpp"
 #include "study/bad_input.hpp"
 #include "study/observable_series.hpp"
@@ -65,10 +66,8 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
   bool matched = true;
   std::vector<std::uint32_t> realizations;
-  const std::vector<std::string> reasons = reasons_left_out(file, points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!reasons[i].empty()) continue;
-    const std::uint32_t point = points[i];
+  std::vector<std::string> left_out;
+  for (const std::uint32_t point : points) {
     const Switch here = switch_of(scenes, point);
     if (!switches.empty() && !(here.last.tap == switches.front().last.tap))
       throw BadInput(
@@ -77,9 +76,15 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
     if (!switches.empty() && here.before.name != switches.front().before.name)
       throw BadInput(fmt::format("the points tap in different ways before the switch ({}, {})",
                                  switches.front().before.name, here.before.name));
-    const ObservableSeries& all = series.emplace_back(file, point, request.observable);
-    if (all.n_rows() <= here.tap + 1)
-      throw BadInput(fmt::format("sweep point {} has not reached the last stage", point));
+    const ObservableSeries here_all(file, point, request.observable);
+    if (here_all.n_rows() <= here.tap + 1) {
+      left_out.push_back(fmt::format("{}: {}", file.study().points[point].label,
+                                     here_all.n_rows() == 0
+                                         ? "no realization has taps"
+                                         : "not all its realizations have reached the last stage"));
+      continue;
+    }
+    const ObservableSeries& all = series.emplace_back(here_all);
     last = std::min({last, here.last.count, all.n_rows() - 1 - here.tap});
     matched = matched && scenes.at(point).streams == Streams::matched;
     if (switches.empty()) realizations = all.realizations();
@@ -88,9 +93,8 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
     });
     switches.push_back(here);
   }
-  const std::string left_out = left_out_text(file, points, reasons);
   if (switches.size() < 2)
-    throw BadInput("needs two sweep points at least that have taps; left out: " + left_out);
+    throw BadInput("needs two sweep points at least; left out: " + joined(left_out, "; "));
   if (realizations.empty()) throw BadInput("there is no realization that all points have");
   std::vector<LagWindow> windows = windows_within(request.settings, last);
   std::vector<History> histories;
@@ -109,7 +113,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   const Control& before = switches.front().before;
   Table table = memory_table("", series.front().label(), before.name, before.units, histories,
                              memory_test(histories, std::move(windows)));
-  if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
+  if (!left_out.empty()) table.notes.emplace_back("left_out", joined(left_out, "; "));
   table.notes.emplace_back("streams", matched ? "matched" : "independent");
   return table;
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "config/json/json_text.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/over_points.hpp"
@@ -13,11 +14,14 @@ namespace jostle::inline study {
 namespace {
 
 void set_last_values(const ObservableSeries& series, const OrderingSettings& settings,
-                     std::size_t n_realizations, OrderingPoint& point, ComparedValue& value) {
-  const AnalysedSeries last = last_taps(series, settings.last, 4, 1);
+                     std::uint64_t rows, std::size_t n_realizations, OrderingPoint& point,
+                     ComparedValue& value) {
+  const AnalysedSeries last = last_taps(series, settings.last, 4, 1, rows);
   const TapRange range{last.first_tap, last.last_tap + 1};
   value.units = last.units;
-  value.taps = fmt::format("{} to {}", last.first_tap, last.last_tap);
+  const std::string taps = fmt::format("{} to {}", last.first_tap, last.last_tap);
+  if (value.taps.find(taps) == std::string::npos)  // others where protocols differ in length
+    value.taps.append(value.taps.empty() ? "" : ", ").append(taps);
   point.last_values.assign(n_realizations, std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> means = series.means(range);
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -64,21 +68,31 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
   const std::size_t n = file.study().realizations;
   ComparedValue value{settings.equilibrium.empty() ? observable : settings.equilibrium, "", ""};
   std::vector<OrderingPoint> compared;
-  const std::vector<std::string> reasons = reasons_left_out(file, points);
+  std::vector<ReachedTaps> reached;
+  for (const std::uint32_t point : points) {
+    const ObservableSeries series(file, point, observable);
+    reached.push_back({file.study().points[point].taps, series.n_rows()});
+  }
+  const SharedTaps shared = shared_taps(reached);
+  std::vector<std::string> left_out;
   try {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!reasons[i].empty()) continue;
       const std::uint32_t number = points[i];
-      const ObservableSeries series(file, number, observable);
       const std::string& label = file.study().points[number].label;
+      if (!shared.reasons[i].empty()) {
+        left_out.push_back(label + ": " + shared.reasons[i]);
+        continue;
+      }
+      const ObservableSeries series(file, number, observable);
       OrderingPoint point{.label = label, .times = ordering_of(series, settings).times(n)};
-      set_last_values(ObservableSeries(file, number, value.observable), settings, n, point, value);
+      set_last_values(ObservableSeries(file, number, value.observable), settings, shared.rows[i], n,
+                      point, value);
       compared.push_back(std::move(point));
     }
-    if (compared.size() < 2) throw BadInput("fewer than two sweep points have taps to compare");
+    if (compared.size() < 2)
+      throw BadInput("needs two sweep points at least; left out: " + joined(left_out, "; "));
     Table table = ordering_comparison(observable, settings, value, compared, streams);
-    const std::string left_out = left_out_text(file, points, reasons);
-    if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
+    if (!left_out.empty()) table.notes.emplace_back("left_out", joined(left_out, "; "));
     return table;
   } catch (const BadInput& refusal) {
     return {.name = "ordering/" + observable, .notes = {{"refused", refusal.what()}}};

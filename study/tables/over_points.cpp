@@ -16,45 +16,29 @@ std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint3
                      points.size(), all);
 }
 
-std::vector<std::string> reasons_left_out(const ResultsFile& file,
-                                          std::span<const std::uint32_t> points) {
-  std::map<std::uint32_t, std::uint64_t> rows;  // of points, that all their realizations have
-  for (const RealizationSummary& one : file.realizations()) {
-    const bool usable =
-        one.status == RealizationStatus::done || one.status == RealizationStatus::running;
-    if (!usable || one.rows == 0) continue;
-    const auto [at, first] = rows.try_emplace(one.id.point, one.rows);
-    if (!first) at->second = std::min(at->second, one.rows);
-  }
-  const auto planned = [&](std::uint32_t point) { return file.study().points[point].taps; };
-  std::map<std::uint64_t, std::uint64_t> farthest;  // of runs that are as long
-  for (const std::uint32_t point : points) {
-    if (rows.contains(point))
-      farthest[planned(point)] = std::max(farthest[planned(point)], rows.at(point));
-  }
-  std::vector<std::string> reasons;
-  for (const std::uint32_t point : points) {
-    if (!rows.contains(point)) {
-      reasons.emplace_back("no realization has taps");
-    } else if (rows.at(point) < farthest.at(planned(point))) {
-      reasons.push_back(fmt::format("its realizations have come to tap {} together, others to {}",
-                                    rows.at(point) - 1, farthest.at(planned(point)) - 1));
+SharedTaps shared_taps(std::span<const ReachedTaps> points) {
+  std::map<std::uint64_t, std::uint64_t> farthest, shared;  // rows, by the planned taps
+  for (const ReachedTaps& one : points)
+    farthest[one.planned] = std::max(farthest[one.planned], one.rows);
+  const auto last = [](std::uint64_t rows) { return rows - 1; };
+  SharedTaps found;
+  for (const ReachedTaps& one : points) {
+    const std::uint64_t most = farthest.at(one.planned);
+    std::string reason;
+    if (one.rows == 0) {
+      reason = "no realization has taps";
+    } else if (2 * last(one.rows) < last(most)) {
+      reason = fmt::format("its realizations have all reached tap {}, those of others tap {}",
+                           last(one.rows), last(most));
     } else {
-      reasons.emplace_back();
+      const auto [at, first] = shared.try_emplace(one.planned, one.rows);
+      if (!first) at->second = std::min(at->second, one.rows);
     }
+    found.reasons.push_back(std::move(reason));
   }
-  return reasons;
-}
-
-std::string left_out_text(const ResultsFile& file, std::span<const std::uint32_t> points,
-                          const std::vector<std::string>& reasons) {
-  std::string text;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (reasons[i].empty()) continue;
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", file.study().points[points[i]].label,
-                        reasons[i]);
-  }
-  return text;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    found.rows.push_back(found.reasons[i].empty() ? shared.at(points[i].planned) : 0);
+  return found;
 }
 
 void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations) {

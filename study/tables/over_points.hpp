@@ -18,15 +18,20 @@ namespace jostle::inline study {
 /// all were.
 std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
 
-/// Why points have no part in what compares them, empty where they have: none of their realizations
-/// has taps, or together they have come less far than those of a point whose run is as long, so
-/// that other taps would be compared. [points]
-std::vector<std::string> reasons_left_out(const ResultsFile& file,
-                                          std::span<const std::uint32_t> points);
+/// How far a sweep point has come.
+struct ReachedTaps {
+  std::uint64_t planned = 0;  // taps of its protocol
+  std::uint64_t rows = 0;     // that all its realizations have, tap 0 included; 0: none has taps
+};
 
-/// "dilate = 0.05: no realization has taps; ..."; empty where all have a part.
-std::string left_out_text(const ResultsFile& file, std::span<const std::uint32_t> points,
-                          const std::vector<std::string>& reasons);
+/// What points that are compared have in common. Only those of equally long protocols are held
+/// against each other.
+struct SharedTaps {
+  std::vector<std::uint64_t> rows;   // [points] whose last taps are compared, the same for all
+  std::vector<std::string> reasons;  // [points] why one is left out: it has no taps, or less than
+                                     // half of what another has; else empty
+};
+SharedTaps shared_taps(std::span<const ReachedTaps> points);
 
 /// Throws BadInput where no realization of the point has taps: all failed, or none is begun.
 void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations);

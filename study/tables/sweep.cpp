@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -33,6 +32,9 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// One sweep point of one file as a point of the curve.
 struct Member {
+  const ResultsFile* file = nullptr;
+  std::uint32_t point = 0;
+  ReachedTaps reached;
   double x = not_a_number;
   SweptValue swept;
   std::string others;                // values of the sweep that do not vary with x
@@ -59,12 +61,18 @@ std::optional<std::size_t> tap_line(std::string_view pointer) {
   return error == std::errc{} && of_tap ? std::optional(line) : std::nullopt;
 }
 
-/// What is swept, and the values of the sweep that do not vary with it.
-/// The pointer of the sweep that ends with a name, as labels of points have it.
+/// The name of an axis: "dilate", "width_1".
+std::string axis_name(const std::string& pointer) {
+  std::string name = short_name(pointer);
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+/// The pointer of the sweep that ends with a name, as labels of points and axes have it.
 std::string pointer_named(const std::string& name, const StudyPoint& swept) {
   std::string found;
   for (const auto& [pointer, value] : swept.sweep_values) {
-    if (!pointer.ends_with("/" + name)) continue;
+    if (!pointer.ends_with("/" + name) && axis_name(pointer) != name) continue;
     if (!found.empty()) {
       throw BadInput(
           fmt::format("{} and {} are swept: name one of them by its JSON pointer", found, pointer));
@@ -78,6 +86,7 @@ std::string pointer_named(const std::string& name, const StudyPoint& swept) {
   return found;
 }
 
+/// What is swept, and the values of the sweep that do not vary with it.
 void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
            std::string against) {
   if (against.empty()) {
@@ -106,20 +115,26 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, s
     throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
   }
   member.x = value->number();
-  std::string name = short_name(against);
-  std::ranges::replace(name, '/', '_');
-  member.swept = {name, "1", against};
+  member.swept = {axis_name(against), "1", against};
 }
 
-/// The mean of the last taps, of each realization.
-void set_value(Member& member, const ObservableSeries& series, std::optional<std::uint64_t> last,
-               std::uint32_t n_realizations) {
-  const AnalysedSeries taps = last_taps(series, last, 4, 1);
-  const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
-  member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
-  member.realizations.assign(n_realizations, not_a_number);
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    member.realizations[series.realizations()[i]] = means[i];
+/// The mean of the last taps that the points have in common, of each realization.
+void set_values(std::span<Member> members, const std::string& observable,
+                std::optional<std::uint64_t> last) {
+  std::vector<ReachedTaps> reached;
+  for (const Member& member : members) reached.push_back(member.reached);
+  const SharedTaps shared = shared_taps(reached);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Member& member = members[i];
+    member.no_value = shared.reasons[i];
+    if (!member.no_value.empty()) continue;
+    const ObservableSeries series(*member.file, member.point, observable);
+    const AnalysedSeries taps = last_taps(series, last, 4, 1, shared.rows[i]);
+    const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
+    member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
+    member.realizations.assign(member.file->study().realizations, not_a_number);
+    for (std::size_t r = 0; r < means.size(); ++r)
+      member.realizations[series.realizations()[r]] = means[r];
   }
 }
 
@@ -211,18 +226,19 @@ Streams streams_of(std::span<const Member> members) {
   return paired ? Streams::matched : Streams::independent;
 }
 
-/// The point of the curve at this place of its axis, to the digits in which places are printed.
+/// The point of the curve at this place of its axis, to the four digits that tables have of it,
+/// where these leave one.
 std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
-  constexpr double as_printed = 5e-6;
-  std::optional<std::size_t> nearest;
+  const auto in_table = [](double place) { return fmt::format("{:.4g}", place); };
+  std::vector<std::size_t> alike;
   std::vector<std::string> places;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
     const double place = curve.x()[i];
+    if (std::abs(place - x) <= 5e-6 * std::abs(place)) return i;  // to the digits listed below
+    if (in_table(place) == in_table(x)) alike.push_back(i);
     places.push_back(fmt::format("{:.6g}", place));
-    if (std::abs(place - x) > as_printed * std::abs(place)) continue;
-    if (!nearest || std::abs(place - x) < std::abs(curve.x()[*nearest] - x)) nearest = i;
   }
-  if (nearest) return *nearest;
+  if (alike.size() == 1) return alike.front();
   throw BadInput(fmt::format("reference {}: there is no such point; there are, of {}, {}", x, axis,
                              joined(places, ", ")));
 }
@@ -236,7 +252,7 @@ void add_notes(std::span<const Member> members, Table& table) {
       taps.push_back(member.taps);
     if (!member.no_value.empty()) {
       left_out.append(left_out.empty() ? "" : "; ")
-          .append(fmt::format("at {:.4g} {}", member.x, member.no_value));
+          .append(fmt::format("at {:.4g}: {}", member.x, member.no_value));
     }
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
@@ -311,20 +327,18 @@ std::vector<Member> members_of(std::span<SweptFile> files,
   for (SweptFile& swept : files) {
     const ResultsFile* const file = &swept.file();
     const PointScenes& scenes = swept.scenes();
-    std::vector<std::uint32_t> points(file->study().points.size());
-    std::iota(points.begin(), points.end(), 0u);
-    const std::vector<std::string> reasons = reasons_left_out(*file, points);
-    for (const std::uint32_t point : points) {
+    for (std::uint32_t point = 0; point < file->study().points.size(); ++point) {
       Member member;
+      member.file = file;
+      member.point = point;
       const ObservableSeries series(*file, point, observable);
       member.label = series.label();
       const StudyPoint& studied = file->study().points[point];
+      member.reached = {studied.taps, series.n_rows()};
       set_x(member, studied, scenes, point, settings.against);
-      if (settings.quantity == "value" && !reasons[point].empty()) {
-        member.no_value = reasons[point];
-      } else if (settings.quantity == "value") {
-        set_value(member, series, settings.last, file->study().realizations);
-      } else {
+      if (member.reached.rows == 0) {
+        member.no_value = "no realization has taps";
+      } else if (settings.quantity != "value") {
         const MadeTables& tables = swept.tables();
         set_derived(member, tables.analyses, tables.fits, point, observable, settings.quantity);
       }
@@ -332,8 +346,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       members.push_back(std::move(member));
     }
   }
-  if (settings.quantity == "value" &&
-      std::ranges::all_of(members, [](const Member& member) { return !member.no_value.empty(); }))
+  if (std::ranges::all_of(members, [](const Member& one) { return one.reached.rows == 0; }))
     throw BadInput("no realization has taps, at any sweep point");
   return members;
 }
@@ -396,6 +409,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
         groups[member.others].push_back(std::move(member));
       }
       for (std::size_t i = 0; i < order.size(); ++i) {
+        if (request.settings.quantity == "value")
+          set_values(groups[order[i]], request.observable, request.settings.last);
         Table table = curve_table(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
                                   groups[order[i]], request.settings.reference);
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "config/grids.hpp"
+#include "config/json/json_text.hpp"
 #include "ensemble/analysis/hysteresis.hpp"
 #include "ensemble/analysis/volumes/volume_table.hpp"
 #include "ensemble/protocol_steps.hpp"
@@ -31,6 +32,7 @@ struct Source {
 struct Sources {
   std::string control, units;
   std::vector<Source> all;
+  std::vector<std::string> left_out;  // points, and why
 };
 
 /// Whose volume an observable is that of; `mean`: its mean. Nothing of one that measures order.
@@ -89,6 +91,7 @@ std::vector<std::uint32_t> common_realizations(const ResultsFile& file, const So
   std::vector<std::uint32_t> common;
   for (const Source& source : sources.all) {
     const ObservableSeries series(file, source.point, observable);
+    require_taps(file, source.point, series.n_realizations());
     if (source.taps.last >= series.n_rows())
       throw BadInput(
           fmt::format("tap {} is not reached at sweep point {}", source.taps.last, source.point));
@@ -172,7 +175,7 @@ std::optional<Sources> last_branch(const PointScenes& scenes, std::uint32_t poin
       protocol, last.value_or(std::max<std::uint64_t>(SteadyStateTest::fewest_taps, shortest / 4)));
   const auto* steps = std::get_if<ProtocolSteps>(&found);
   if (!steps) return std::nullopt;
-  Sources sources{steps->control, steps->units, {}};
+  Sources sources{steps->control, steps->units, {}, {}};
   const std::vector<std::vector<std::size_t>> all = branches(steps->strengths);
   for (const std::size_t step : all.back()) {
     const StepTaps taps = steps->windows[step];
@@ -205,31 +208,33 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
   const auto& [observable, settings] = request;
   const std::string name = "volumes/" + observable;
   std::map<std::string, Sources> groups;  // by the other values of the sweep
-  const std::vector<std::string> reasons = reasons_left_out(file, points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t point = points[i];
+  for (const std::uint32_t point : points) {
     const ObservableSeries series(file, point, observable);
-    if (points.size() == 1) require_taps(file, point, series.n_realizations());
-    if (!reasons[i].empty()) continue;
     if (const auto branch = last_branch(scenes, point, settings.last)) {
       add_table(file, scenes, points, *branch, request, point_name(point) + "/" + name, tables);
       continue;
     }
     const SweptPlace place =
         swept_place(file.study().points[point], scenes, point, settings.against);
-    const AnalysedSeries taps = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
     Sources& group = groups[place.others];
-    group.control = place.name;
-    group.units = place.units;
-    group.all.push_back({point, place.x, {taps.first_tap, taps.last_tap}});
+    try {
+      require_taps(file, point, series.n_realizations());
+      const AnalysedSeries taps = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
+      group.control = place.name;
+      group.units = place.units;
+      group.all.push_back({point, place.x, {taps.first_tap, taps.last_tap}});
+    } catch (const BadInput& refusal) {
+      group.left_out.push_back(
+          fmt::format("{}: {}", file.study().points[point].label, refusal.what()));
+    }
   }
   for (auto& [others, sources] : groups) {
     std::ranges::stable_sort(sources.all, {}, &Source::strength);
     add_table(file, scenes, points, sources, request,
               groups.size() == 1 ? name : fmt::format("{}_{:04}", name, tables.size()), tables);
     if (!others.empty()) tables.back().notes.emplace_back("at", others);
-    const std::string left_out = left_out_text(file, points, reasons);
-    if (!left_out.empty()) tables.back().notes.emplace_back("points_left_out", left_out);
+    if (!sources.left_out.empty())
+      tables.back().notes.emplace_back("points_left_out", joined(sources.left_out, "; "));
   }
 }
 

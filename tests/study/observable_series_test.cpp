@@ -6,7 +6,6 @@
 #include "results/live_run.hpp"
 #include "results/run_store.hpp"
 #include "study/report/drawn_results.hpp"
-#include "study/tables/over_points.hpp"
 #include "tests/results/synthetic.hpp"
 #include "tests/results/temporary_folder.hpp"
 
@@ -36,14 +35,8 @@ TEST_CASE("Of a run that was stopped every realization gives the taps that it ha
   CHECK(early[1] == Approx((expected(2, 1) + expected(2, 2)) / 2));
   CHECK(late[0] == Approx((expected(0, 2) + expected(0, 3) + expected(0, 4)) / 3));
   CHECK(std::isnan(late[1]));
-  CHECK(series.held_back() == "; realization 2 has come to tap 2 alone, others to 6");
+  CHECK(series.held_back() == "; realization 2 has reached only tap 2, the farthest tap 6");
   CHECK(ObservableSeries(file, 1, observable).held_back().empty());
-
-  const std::vector<std::uint32_t> points = {0, 1, 2};
-  const std::vector<std::string> reasons = reasons_left_out(file, points);
-  CHECK(reasons[0] == "its realizations have come to tap 2 together, others to 6");
-  CHECK(reasons[1].empty());
-  CHECK(reasons[2] == "no realization has taps");
-  CHECK(begun_realizations(file, 0) == std::vector<std::uint32_t>{0, 2});
-  CHECK(begun_realizations(file, 2).empty());
+  CHECK(realizations_with_taps(file, 0) == std::vector<std::uint32_t>{0, 2});
+  CHECK(realizations_with_taps(file, 2).empty());
 }

@@ -115,7 +115,8 @@ std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
     return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")" +
-           (open ? "; the 95 % interval of its place, by a test of its own, reaches the sweep's end"
+           (open ? "; the 95 % interval of its place, by a test of its own, reaches an end of the "
+                   "sweep"
                  : "");
   }
   const auto& y = curve.fitted_y();

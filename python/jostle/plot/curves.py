@@ -42,6 +42,7 @@ def compaction(results: Results, observable: str, *, points: Iterable[int] | int
     for point in chosen:
         if not point.has_taps:
             raise NotThere(f"sweep point {point.index}: none of its realizations has taps")
+    for point in chosen:
         tap, mean = point.tap.astype(float), point.mean[observable]
         (line,) = ax.plot(tap, mean, label=point.label or results.scene["name"])
         if band != "none":
@@ -65,6 +66,8 @@ def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | int
     snapshots = results.points[point].snapshots
     height, kept = snapshots["height"], snapshots["tap"].tolist()
     reached = [tap for tap, n in zip(kept, snapshots["height_histogram"]) if np.isfinite(n).any()]
+    if not reached:
+        raise NotThere(f"sweep point {point} has no histogram")
     for tap in ([*dict.fromkeys((*reached[:1], *reached[-1:]))] if taps is None else _several(taps)):
         if tap not in reached:
             raise NotThere(f"no histogram of tap {tap}; kept: {', '.join(map(str, reached))}")

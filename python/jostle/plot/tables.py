@@ -26,7 +26,7 @@ def fit(table: Table, *, ax: Axes | None = None) -> Axes:
     ax = axes_or_current(ax)
     t = table["t"]
     observable = table.notes.get("observable", "X")
-    if "x_error" in table:  # not of one realization
+    if "x_error" in table:  # absent for a single realization
         dof = float(table.notes.get("realizations", np.inf)) - 1
         half = half_width(table["x_error"], dof)
         ax.fill_between(t, table["x"] - half, table["x"] + half, color="0.85", linewidth=0)

@@ -182,6 +182,7 @@ std::vector<SettingCost> limits_of_a_pilot(const MadeLadder& made, std::size_t r
                         .bias_error = bias.error,
                         .sigma = moments.sigma(),
                         .realization_seconds = made.seconds(s),
+                        .values = replicates,
                         .pairs = replicates});
   }
   const Pilot pilot{.reference = made.reference,
@@ -227,8 +228,8 @@ TEST_CASE("What is recommended reaches its target in four of five cases") {
 }
 
 TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
-  const std::vector<SettingCost> settings(3,
-                                          {.sigma = 0.01, .realization_seconds = 1, .pairs = 30});
+  const std::vector<SettingCost> settings(
+      3, {.sigma = 0.01, .realization_seconds = 1, .values = 30, .pairs = 30});
   Pilot pilot{.reference = 2,
               .last_step = {.pairs = 30, .bias = 0.002, .error = 1e-4},
               .step_before = {.pairs = 30, .bias = 0.002, .error = 1e-4},
@@ -242,14 +243,16 @@ TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
   const double slower = step / (0.003 - t * 1e-4);
   CHECK(at_limits(settings, pilot)[0].bias == Approx(step * slower / (1 - slower)));
   CHECK(ratio < 0.5);
-  const std::vector<SettingCost> alone(3, {.sigma = 0.01, .realization_seconds = 1, .pairs = 1});
+  const std::vector<SettingCost> alone(
+      3, {.sigma = 0.01, .realization_seconds = 1, .values = 1, .pairs = 1});
   CHECK_FALSE(cheapest(at_limits(alone, pilot), 1));
 }
 
 TEST_CASE("Limits are by the pairs that a setting has, not by those that were planned") {
   std::vector<SettingCost> settings(
-      3, {.bias = 0.01, .bias_error = 0.004, .sigma = 0.02, .realization_seconds = 1, .pairs = 6});
+      3, {.bias = 0.01, .bias_error = 0.004, .sigma = 0.02, .values = 6, .pairs = 6});
   settings[1].pairs = 3;  // the others failed
+  settings[1].values = 4;
   const Pilot pilot{.reference = 2,
                     .last_step = {.pairs = 2, .bias = 0.001, .error = 0.001},
                     .step_before = {.pairs = 6, .bias = 0.01, .error = 0.001},
@@ -261,7 +264,16 @@ TEST_CASE("Limits are by the pairs that a setting has, not by those that were pl
   CHECK(limits[1].bias == Approx(0.01 + of_3 * 0.004 + lacking).epsilon(1e-5));
   CHECK(limits[2].bias == Approx(lacking).epsilon(1e-5));
   CHECK(limits[0].sigma == Approx(0.02 * std::sqrt(5 / 2.342534)).epsilon(1e-4));  // chi2, tables
-  CHECK(limits[1].sigma == Approx(0.02 * std::sqrt(2 / 0.446287)).epsilon(1e-4));
+  CHECK(limits[1].sigma == Approx(0.02 * std::sqrt(3 / 1.005174)).epsilon(1e-4));
+  // Deviations count by their degrees of freedom.
+  settings[1].sigma = 0.04;
+  Pilot pooling = pilot;
+  pooling.has_beds = {1, 1, 0};
+  pool_sigma(settings, pooling);
+  const double pooled = std::sqrt((5 * 0.02 * 0.02 + 3 * 0.04 * 0.04) / 8);
+  CHECK(settings[0].sigma == Approx(pooled));
+  CHECK(settings[1].sigma == Approx(pooled));
+  CHECK(settings[2].sigma == 0.02);
 }
 
 TEST_CASE("A bias that is not known is no choice, and its error counts as bias") {

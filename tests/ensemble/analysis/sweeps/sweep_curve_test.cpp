@@ -117,7 +117,7 @@ TEST_CASE("A maximum whose place may be the sweep's end says so") {
   const SweepMaximum near = verdict(0.02);  // 1.85 errors below the highest point
   CHECK(near.found());
   CHECK(std::isnan(near.x_high));
-  CHECK(near.verdict.ends_with("reaches the sweep's end"));
+  CHECK(near.verdict.ends_with("reaches an end of the sweep"));
   const SweepMaximum far = verdict(-0.02);
   CHECK(far.x_high == 0.4);
   CHECK(far.verdict.ends_with("two lines)"));
