@@ -365,7 +365,7 @@ class Analysed(Case):
                     known[x] = fit["value"][place]
                 else:
                     unknown += 1
-                    self.assertIn(f"at {x:.4g} {fit['statement'][place].decode()}",
+                    self.assertIn(f"at {x:.4g}: {fit['statement'][place].decode()}",
                                   drawn.attrs["note_left_out"])
             self.assertEqual(dict(zip((round(x, 12) for x in drawn["sqrt_epsilon"][:]),
                                       drawn["X_inf"][:])), known)
