@@ -20,7 +20,8 @@ void set_last_values(const ObservableSeries& series, const OrderingSettings& set
   const TapRange range{last.first_tap, last.last_tap + 1};
   value.units = last.units;
   const std::string taps = fmt::format("{} to {}", last.first_tap, last.last_tap);
-  if (value.taps.find(taps) == std::string::npos)  // others where protocols differ in length
+  const bool is_known = (", " + value.taps + ",").find(", " + taps + ",") != std::string::npos;
+  if (!is_known)  // several, where protocols differ in length
     value.taps.append(value.taps.empty() ? "" : ", ").append(taps);
   point.last_values.assign(n_realizations, std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> means = series.means(range);

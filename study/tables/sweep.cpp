@@ -15,9 +15,6 @@
 #include "config/sweep.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
-#include "fitting/fit.hpp"
-#include "fitting/intervals/distributions.hpp"
-#include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/observable_series.hpp"
 #include "study/scenes/point_scenes.hpp"
@@ -138,86 +135,12 @@ void set_values(std::span<Member> members, const std::string& observable,
   }
 }
 
-const Quantity* quantity_named(const Table& table, const std::string& name) {
-  for (const Quantity& quantity : table.quantities) {
-    if (quantity.name == name) return &quantity;
-  }
-  return nullptr;
-}
-
-double number_at(const Quantity* quantity, std::size_t place) {
-  const auto* numbers = quantity ? std::get_if<std::vector<double>>(&quantity->values) : nullptr;
-  return numbers && place < numbers->size() ? (*numbers)[place] : not_a_number;
-}
-
-/// An error as tables hold it; where they do not give its degrees of freedom it is taken for known.
-ErrorOf error_of(double error, double dof) {
-  if (std::isnan(error)) return {};
-  return {error, std::isnan(dof) ? std::numeric_limits<double>::infinity() : dof};
-}
-
-/// A single value of an analysis with its error.
-bool take_single(Member& member, const Table& table, const std::string& name) {
-  const Quantity* const found = quantity_named(table, name);
-  if (!found || !found->axes.empty()) return false;
-  member.y = number_at(found, 0);
-  member.y_error = error_of(number_at(quantity_named(table, name + "_error"), 0),
-                            number_at(quantity_named(table, name + "_dof"), 0));
-  member.label = {name, found->units, found->long_name, found->source};
-  return true;
-}
-
-std::string text_at(const Quantity* quantity, std::size_t place) {
-  const auto* texts = quantity ? std::get_if<std::vector<std::string>>(&quantity->values) : nullptr;
-  return texts && place < texts->size() ? (*texts)[place] : "";
-}
-
-/// Of three realizations and fewer too many points have no closed interval, and those that have one
-/// scatter less than they should: their errors are no basis of a curve's.
-constexpr double fewest_dof_of_a_point = 3;
-
-/// The error of which Student's t makes the longer side of the 68 % interval of the fit.
-ErrorOf error_of_interval(const Table& table, std::size_t place) {
-  const double dof = number_at(quantity_named(table, "error_dof"), 0);
-  const double value = number_at(quantity_named(table, "value"), place);
-  const std::size_t end = 2 * place;  // [parameter, level], 68 % first
-  const double side = std::max(number_at(quantity_named(table, "interval_upper"), end) - value,
-                               value - number_at(quantity_named(table, "interval_lower"), end));
-  if (!(side > 0 && dof >= fewest_dof_of_a_point)) return {};
-  return {side / two_sided(interval_levels[0], dof), dof};
-}
-
-bool take_parameter(Member& member, const Table& table, const std::string& name) {
-  const auto point = parameter_point(table, name);
-  if (!point) return false;
-  member.y = point->value;
-  member.y_error = point->error;
-  member.no_value = point->no_value;
-  member.error_is_no_basis = point->no_value.empty() && !point->error.known();
-  member.label = {name, "1", "parameter of a fit", ""};
-  return true;
-}
-
-/// "kww/rho_inf" of fits, "steady/sigma" of analyses.
-void set_derived(Member& member, std::span<const Table> analyses, std::span<const Table> fits,
-                 std::uint32_t point, const std::string& observable, const std::string& quantity) {
-  const std::size_t slash = quantity.find('/');
-  if (slash == std::string::npos) {
-    throw BadInput(
-        fmt::format("{}: expected value, or analysis/quantity or law/parameter", quantity));
-  }
-  const std::string kind = quantity.substr(0, slash), name = quantity.substr(slash + 1);
-  for (const Table& table : analyses) {
-    if (table.name != fmt::format("{}/{}/{}", point_name(point), kind, observable)) continue;
-    if (take_single(member, table, name)) return;
-  }
-  for (const Table& table : fits) {
-    if (table.name != fmt::format("{}/{}/{}", point_name(point), observable, kind)) continue;
-    if (take_parameter(member, table, name)) return;
-  }
-  throw BadInput(
-      fmt::format("{} of {} is not kept for sweep point {}: make the analysis or the fit first",
-                  quantity, observable, point));
+void set(Member& member, DerivedValue&& derived) {
+  member.y = derived.value;
+  member.y_error = derived.error;
+  member.label = std::move(derived.label);
+  member.no_value = std::move(derived.no_value);
+  member.error_is_no_basis = derived.error_is_no_basis;
 }
 
 Streams streams_of(std::span<const Member> members) {
@@ -230,14 +153,18 @@ Streams streams_of(std::span<const Member> members) {
 /// where these leave one.
 std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
   const auto in_table = [](double place) { return fmt::format("{:.4g}", place); };
+  std::optional<std::size_t> nearest;
   std::vector<std::size_t> alike;
   std::vector<std::string> places;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
     const double place = curve.x()[i];
-    if (std::abs(place - x) <= 5e-6 * std::abs(place)) return i;  // to the digits listed below
+    const double off = std::abs(place - x);
+    const bool as_listed = off <= 5e-6 * std::abs(place);  // to the digits below
+    if (as_listed && (!nearest || off < std::abs(curve.x()[*nearest] - x))) nearest = i;
     if (in_table(place) == in_table(x)) alike.push_back(i);
     places.push_back(fmt::format("{:.6g}", place));
   }
+  if (nearest) return *nearest;
   if (alike.size() == 1) return alike.front();
   throw BadInput(fmt::format("reference {}: there is no such point; there are, of {}, {}", x, axis,
                              joined(places, ", ")));
@@ -339,8 +266,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       if (member.reached.rows == 0) {
         member.no_value = "no realization has taps";
       } else if (settings.quantity != "value") {
-        const MadeTables& tables = swept.tables();
-        set_derived(member, tables.analyses, tables.fits, point, observable, settings.quantity);
+        set(member, derived_value(swept.tables(), point, observable, settings.quantity));
       }
       member.stream = {studied.seed, scenes.at(point).streams == Streams::matched ? 0 : studied.id};
       members.push_back(std::move(member));
@@ -364,24 +290,6 @@ SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::
   Member member;
   set_x(member, swept, scenes, point, against);
   return {member.x, member.swept.name, member.swept.units, member.others};
-}
-
-std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
-  for (const Quantity& axis : fit.axes) {
-    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
-    if (axis.name != "parameter" || !names) continue;
-    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
-    if (place == names->size()) return std::nullopt;
-    const std::string found = text_at(quantity_named(fit, "identifiability"), place);
-    if (found == name_of(Identifiability::identified) || found == name_of(Identifiability::wide))
-      return ParameterPoint{number_at(quantity_named(fit, "value"), place),
-                            error_of_interval(fit, place), ""};
-    return ParameterPoint{not_a_number,
-                          {},
-                          found.empty() ? "fitted by an earlier version: fit it again"
-                                        : text_at(quantity_named(fit, "statement"), place)};
-  }
-  return std::nullopt;
 }
 
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,

@@ -1,34 +1,17 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "config/scene.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "ensemble/statistics/student_tests.hpp"
 #include "results/results_file.hpp"
+#include "study/tables/derived_value.hpp"
 
 namespace jostle::inline study {
 
 class PointScenes;
-
-/// Tables just made of a file, not yet stored in it.
-struct MadeTables {
-  std::vector<Table> fits = {}, analyses = {};
-};
-
-/// What a kept fit gives to a curve of a parameter against what is swept.
-struct ParameterPoint {
-  double value;          // NaN without one
-  ErrorOf error;         // Student's t makes the longer side of its 68 % interval of it
-  std::string no_value;  // why there is none
-};
-
-/// A value where the 95 % interval is closed; what has no limit on one side is no point of a curve.
-/// None of a table that has no such parameter.
-std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name);
 
 /// Where a sweep point stands on a curve.
 struct SweptPlace {

@@ -1,4 +1,4 @@
-#include "study/tables/sweep.hpp"
+#include "study/tables/derived_value.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/column.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "ensemble/statistics/student_tests.hpp"
+
+// What a sweep takes from tables of analyses and fits: one number of a sweep point with its error.
+namespace jostle::inline study {
+
+/// Tables just made of a file, not yet stored in it.
+struct MadeTables {
+  std::vector<Table> fits = {}, analyses = {};
+};
+
+/// What a kept fit gives to a curve of a parameter against what is swept.
+struct ParameterPoint {
+  double value;          // NaN without one
+  ErrorOf error;         // Student's t makes the longer side of its 68 % interval of it
+  std::string no_value;  // why there is none
+};
+
+/// A value where the 95 % interval is closed; what has no limit on one side is no point of a curve.
+/// None of a table that has no such parameter.
+std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name);
+
+struct DerivedValue {
+  double value;  // NaN without one
+  ErrorOf error;
+  Column label;
+  std::string no_value;    // why there is none
+  bool error_is_no_basis;  // a fit's, of too few realizations
+};
+
+/// "steady/sigma" of analyses, "kww/rho_inf" of fits. Throws BadInput where it is not among the
+/// tables, or is no such name.
+DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
+                           const std::string& observable, const std::string& quantity);
+
+}  // namespace jostle::inline study
