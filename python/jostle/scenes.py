@@ -30,8 +30,9 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
           program: Path | None = None) -> Checked:
     """Raises SceneError with every fault of a scene; else says what it means.
 
-    pilot: also try some taps (up to ten seconds, of grains a minute) for estimates of time and memory. Without the program,
-    the JSON Schema is asked where jsonschema is installed; docs/scene.md lists what it cannot see.
+    pilot: also try some taps (up to ten seconds, of grains a minute) for estimates of time and memory.
+    Without the program, the JSON Schema is asked where jsonschema is installed; docs/scene.md lists what
+    it cannot see.
     """
     try:
         with scene_file(scene) as file:
