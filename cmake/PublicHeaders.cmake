@@ -126,6 +126,7 @@ set(JOSTLE_PUBLIC_HEADERS
     study/self_checks.hpp
     study/tables/analyse.hpp
     study/tables/curve_file.hpp
+    study/tables/derived_value.hpp
     study/tables/fit_source.hpp
     study/tables/fits.hpp
     study/tables/half_widths.hpp
