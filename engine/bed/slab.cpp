@@ -46,6 +46,14 @@ double cut_area(double z, double height) {
   return squared > 0 ? pi * squared : 0;
 }
 
+// Spheres that fill all of a slab, as one does at its equator in a tube as wide, exceed it by
+// rounding alone. Spheres that overlap may exceed it by more, and that is shown.
+double fraction_of(double solid, double volume) {
+  constexpr double rounding = 1e-9;
+  const double fraction = solid / volume;
+  return fraction > 1 && fraction < 1 + rounding ? 1 : fraction;
+}
+
 }  // namespace
 
 double sphere_volume_in_slab(double z, double low, double high) {
@@ -71,7 +79,7 @@ double solids_fraction(const Packing& packing, HeightWindow window) {
     add(-boundary.height);
   }
   const double depth = is_cut ? 1 : window.high - window.low;
-  return solid / (footprint_area(packing.container) * depth);
+  return fraction_of(solid, footprint_area(packing.container) * depth);
 }
 
 double tapered_solids_fraction(const Packing& packing, HeightWindow window, double taper) {
@@ -92,7 +100,7 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
     solid += cap_integral(high - 0.5 * taper, high + 0.5 * taper) -
              cap_integral(low - 0.5 * taper, low + 0.5 * taper);
   }
-  return solid / taper / (footprint_area(packing.container) * depth);
+  return fraction_of(solid / taper, footprint_area(packing.container) * depth);
 }
 
 HeightWindow resolve(const Window& window, const Packing& packing) {
