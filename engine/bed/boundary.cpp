@@ -33,7 +33,19 @@ struct Fill {
   }
 };
 
+double into_period(double x, double width) {
+  if (x >= 0 && x < width) return x;
+  return wrap_coordinate(x - std::floor(x / width) * width, width);
+}
+
 }  // namespace
+
+Vec3 into_periods(const Boundary& boundary, Vec3 r) {
+  if (boundary.periodic_x) r.x = into_period(r.x, boundary.width_x);
+  if (boundary.periodic_y) r.y = into_period(r.y, boundary.width_y);
+  if (boundary.periodic_z) r.z = into_period(r.z, boundary.height);
+  return r;
+}
 
 Boundary::Boundary(const Container& container) {
   std::visit(Fill{*this}, container);

@@ -42,6 +42,9 @@ inline Vec3 wrapped(const Boundary& boundary, Vec3 r) {
   return r;
 }
 
+/// Brings r, any number of periods away, into the box.
+Vec3 into_periods(const Boundary& boundary, Vec3 r);
+
 /// The shortest vector from b to a, both wrapped.
 inline Vec3 separation(const Boundary& boundary, Vec3 a, Vec3 b) {
   Vec3 d = a - b;

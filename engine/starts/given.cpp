@@ -10,19 +10,6 @@ namespace jostle::inline engine {
 
 namespace {
 
-// A coordinate any number of periods away, brought into [0, width).
-double into_period(double x, double width) {
-  if (x >= 0 && x < width) return x;
-  return wrap_coordinate(x - std::floor(x / width) * width, width);
-}
-
-Vec3 into_box(const Boundary& boundary, Vec3 r) {
-  if (boundary.periodic_x) r.x = into_period(r.x, boundary.width_x);
-  if (boundary.periodic_y) r.y = into_period(r.y, boundary.width_y);
-  if (boundary.periodic_z) r.z = into_period(r.z, boundary.height);
-  return r;
-}
-
 std::string in_diameters(double depth) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g", depth);
@@ -68,7 +55,7 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
       refuse(name + " has a coordinate that is not a finite number; correct the file");
     }
-    const Vec3 r = into_box(boundary, centre);
+    const Vec3 r = into_periods(boundary, centre);
     if (r.z < -far_outside || r.x < -far_outside || r.y < -far_outside ||
         r.x > boundary.width_x + far_outside || r.y > boundary.width_y + far_outside) {
       refuse(name + " lies outside the container; check that its lengths are in diameters and " +

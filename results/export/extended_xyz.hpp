@@ -11,11 +11,12 @@
 
 namespace jostle::inline results {
 
-/// One frame of an extended XYZ file, counted from 0; the last if none is named. Throws
-/// ResultsError.
+/// Reads one frame of an extended XYZ file, counted from 0; the last if none is named. Centres are
+/// inside the container's periods, from its corner. Throws ResultsError, also where another frame
+/// has a fault.
 Packing read_extended_xyz(const std::string& path, std::optional<std::uint64_t> frame);
 
-/// All of its frames, one at least. Throws ResultsError.
+/// Reads all frames, one at least. Throws ResultsError.
 std::vector<Packing> read_extended_xyz_frames(const std::string& path);
 
 /// Frames with their columns and taps, that read back to the same bits.

@@ -122,6 +122,11 @@ void write_h5md(const std::string& path, Frames frames) {
           fmt::format("H5MD keeps frames of one number of spheres: frame {} has {}, the first {}; "
                       "export them one by one",
                       frame.tap, n, n_spheres));
+    if (frame.packing.container.index() != frames.front().packing.container.index())
+      throw std::invalid_argument(
+          fmt::format("H5MD keeps frames of one kind of container: frame {} has another than the "
+                      "first; export them one by one",
+                      frame.tap));
   }
   TemporaryFile temporary(path);
   naming_file(temporary.name(), [&] {

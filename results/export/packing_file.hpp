@@ -18,11 +18,9 @@ struct PackingSelector {
   std::optional<std::uint64_t> tap{};  // the last kept snapshot if absent
 };
 
-/// Reads one packing: from our HDF5, or from extended XYZ (name ends in .xyz or .extxyz) with
-/// `Lattice`, `Properties=...:pos:R:3...` and lengths in diameters. The container of an XYZ file is
-/// its `container` key if it has one, else told by `pbc`: "T T F" periodic, "T T T" fully periodic,
-/// "F F F" walls. Throws ResultsError if there is no such packing or it is malformed; overlaps are
-/// not looked for.
+/// Reads one packing: from our HDF5, or from extended XYZ (name ends in .xyz or .extxyz), by the
+/// rules of docs/format.md#extended-xyz. Throws ResultsError if there is no such packing or it is
+/// malformed; overlaps are not looked for.
 Packing read_packing(const std::string& path, const PackingSelector& selector = {});
 
 /// Writes one frame of extended XYZ that reads back to the same bits.

@@ -32,7 +32,7 @@ Packing wrapped_inside(const Packing& packing) {
   const Boundary boundary(packing.container);
   for (std::size_t i = 0; i < moved.centres.size(); ++i) {
     Vec3& r = moved.centres[i];
-    r = wrapped(boundary, r);
+    r = into_periods(boundary, r);
     const bool within = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
                         r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
                         boundary_depth(boundary, r) <= sphere_radius;

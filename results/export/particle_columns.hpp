@@ -32,7 +32,7 @@ struct ExportedFrame {
 };
 
 /// The packing with its centres inside the container, where cells and neighbours are sought; those
-/// of another program may be a period away. Throws std::invalid_argument naming a sphere that no
+/// of another program may be periods away. Throws std::invalid_argument naming a sphere that no
 /// period brings inside.
 Packing wrapped_inside(const Packing& packing);
 

@@ -2,11 +2,13 @@
 
 #include <bit>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
 
+#include "results/export/h5md.hpp"
 #include "results/export/packing_file.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
@@ -33,7 +35,7 @@ Packing hard_to_write() {
           {{Limits::denorm_min(), -0.0, Limits::min()},
            {2.5, 123 * Limits::denorm_min(), 1e-300},
            {1 + Limits::epsilon(), 1 - Limits::epsilon() / 2, 0.1 + 0.2},
-           {2.0 / 3, 3.3, 5.0999999999999996}}};
+           {2.0 / 3, 3.3, std::nextafter(5.1, 0.0)}}};
 }
 
 void write(const std::vector<ExportedFile>& files) {
@@ -126,6 +128,14 @@ TEST_CASE("a centre outside a tube is refused where the square around the tube h
                     Contains("sphere 1 lies outside the container"));
   CHECK_THROWS_WITH(particle_columns({tube, {{0.1, 3.9, 0.5}, {2, 2, 0.5}}}),
                     Contains("sphere 0 lies outside the container"));
+}
+
+TEST_CASE("H5MD keeps frames of one kind of container") {
+  const TemporaryFolder folder;
+  const std::vector<ExportedFrame> frames = {one_sphere(0),
+                                             {1, {WalledBox{3, 3}, {{1.5, 1.5, 1.5}}}, {}}};
+  CHECK_THROWS_WITH(write_h5md(folder / "a.h5md", frames),
+                    Contains("frame 1 has another than the first"));
 }
 
 TEST_CASE("a LAMMPS dump holds a frame a tap, to the last bit") {

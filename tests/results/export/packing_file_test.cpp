@@ -15,10 +15,11 @@ namespace {
 
 Packing some_packing(const Container& container) {
   std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(0, 10);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const double x = width_x(container), y = width_y(container);
   Packing packing{container, {}};
   for (int i = 0; i < 100; ++i)
-    packing.centres.push_back({uniform(random), uniform(random) / 3, uniform(random) * 1e-7});
+    packing.centres.push_back({uniform(random) * x, uniform(random) * y, uniform(random) * 1e-6});
   return packing;
 }
 
@@ -31,7 +32,7 @@ Packing read_text(const std::string& text, const PackingSelector& selector = {})
 }  // namespace
 
 TEST_CASE("extended XYZ reads back to the same bits in every container") {
-  const Container container = GENERATE(as<Container>{}, PeriodicBox{16, 1.0 / 3}, WalledBox{4, 5},
+  const Container container = GENERATE(as<Container>{}, PeriodicBox{16, 7.0 / 3}, WalledBox{4, 5},
                                        Cylinder{19.3}, FullyPeriodicBox{3, 4, 5.1});
   const TemporaryFolder folder;
   const Packing packing = some_packing(container);
@@ -70,6 +71,24 @@ TEST_CASE("malformed extended XYZ is refused with its line") {
                     Contains("the file ends after 1 of 2 spheres"));
   CHECK_THROWS_WITH(read_text("1\n" + box + "\nX 1 2\n"), Contains("line 3: too few columns"));
   CHECK_THROWS_WITH(read_text("1\n" + box + "\nX 1 nan 3\n"), Contains("not a finite number"));
+}
+
+TEST_CASE("the corner and the periods of extended XYZ are taken off its positions") {
+  const std::string box = "Lattice=\"4 0 0 0 5 0 0 0 6\" container=";
+  CHECK(read_text("1\n" + box + "periodic Origin=\"-2 1 3\"\nX -11 12.5 4\n").centres ==
+        std::vector<Vec3>{{3, 1.5, 1}});
+  CHECK(read_text("1\n" + box + "fully_periodic\nX 4 -0.5 20\n").centres ==
+        std::vector<Vec3>{{0, 4.5, 2}});
+  CHECK(read_text("1\n" + box + "walls Origin={1,1,1}\nX 2 2 -9\n").centres ==
+        std::vector<Vec3>{{1, 1, -10}});
+}
+
+TEST_CASE("a frame is refused for a fault in another frame, whichever is asked for") {
+  const std::string box = "Lattice=\"4 0 0 0 5 0 0 0 6\" pbc=\"T T F\"";
+  const std::string good = "1\n" + box + "\nX 1 2 3\n";
+  const std::string sized = "1\n" + box + " Properties=pos:R:3:radius:R:1\n1 2 3 0.3\n";
+  CHECK_THROWS_WITH(read_text(good + sized, {.tap = 0}), Contains("line 6: radius is 0.3"));
+  CHECK_THROWS_WITH(read_text(sized + good), Contains("line 3: radius is 0.3"));
 }
 
 TEST_CASE("a packing is read from a snapshot of a results file") {

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/bed/container.hpp"
+#include "engine/bed/vec3.hpp"
+
+// What the comment line of an extended XYZ frame says of the spheres below it.
+namespace jostle::inline results {
+
+/// A column, or several, that holds sizes of spheres: all must have the model's.
+struct SizeColumns {
+  std::string name;       // as the file spells it
+  std::size_t first = 0;  // index of a word in a line
+  std::size_t n = 1;
+  double model = 0;         // the only size that the model has: radius 0.5 or diameter 1
+  bool zero_means = false;  // 0 stands for "the radius", as in OVITO's aspherical shapes
+};
+
+struct ExtendedXyzHeader {
+  Container container;
+  Vec3 origin;  // of the container's corner, diameters
+  std::size_t positions = 1;
+  std::size_t n_columns = 4;
+  std::vector<SizeColumns> sizes;
+};
+
+/// Reads a comment line. Throws std::invalid_argument: whatever changes the meaning of the
+/// positions is understood or refused (docs/format.md#extended-xyz).
+ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment);
+
+/// Words between blanks.
+std::vector<std::string> words_of(const std::string& line);
+/// A finite number, or std::invalid_argument.
+double finite_number(const std::string& word);
+/// A whole number above 0, or std::invalid_argument.
+std::size_t positive_count(const std::string& word);
+
+/// Throws std::invalid_argument where the sizes that `name` gives, from `least` to `most`, are not
+/// the model's.
+void require_model_size(const std::string& name, double least, double most, double model);
+
+}  // namespace jostle::inline results

@@ -1,0 +1,179 @@
+"""Extended XYZ: whatever changes the meaning of positions is read right by every command, or refused by every one."""
+
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from support import BAD_INPUT, BROKEN, Case, TINY, changed
+
+START = changed(TINY, realizations=1, protocol=[{"tap": {"dilate": 0.02}, "count": 1}],
+                relax={"polar": {}, "stop": {"sweeps": 3}}, observe=["mean_height", "bottom_fraction"],
+                snapshots={"taps": [0]}, start={"file": "a.xyz"})
+del START["sweep"]
+REGION = '{"profile": {}, "coordination": {"cut": 1.1}, "region": {"heights": [0.6, 1.5], "from_sides": 0}}'
+HEADER = 'Lattice="4 0 0 0 4 0 0 0 5" Properties=species:S:1:pos:R:3 pbc="T T F"'
+
+
+def frame(rows, header=HEADER, count=None):
+    lines = [str(len(rows) if count is None else count), header]
+    return "\n".join(lines + [" ".join(str(word) for word in row) for row in rows]) + "\n"
+
+
+class ExtendedXyz(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(TINY)
+        self.run_scene()
+        self.jostle("export", "tiny.h5", "--format", "extxyz", "-o", "exported.xyz")
+        lines = (self.folder / "exported.xyz").read_text().splitlines()[2:]
+        self.centres = [[float(word) for word in line.split()[1:4]] for line in lines]
+        self.rows = [["X", *centre] for centre in self.centres]
+        self.expected = self.read_by_all(frame(self.rows))
+
+    def read_by_all(self, text, tap=None, frames=1):
+        """What every command makes of a file: structure's numbers, an export's centres, a start's."""
+        self.write(text, "a.xyz")
+        tap = frames - 1 if tap is None else tap
+        printed = self.jostle("structure", "a.xyz", "--settings", REGION, "--tap", tap, "--json").stdout
+        numbers = {name: np.array(quantity["values"], dtype=float)
+                   for table in json.loads(printed)["tables"]
+                   for name, quantity in table["quantities"].items()
+                   if all(isinstance(value, (int, float, list)) for value in quantity["values"])}
+        self.jostle("export", "a.xyz", "--format", "lammps", "-o", "a.dump", "--force", "--tap", tap)
+        dump = (self.folder / "a.dump").read_text().splitlines()
+        exported = np.array([[float(word) for word in line.split()[2:5]] for line in dump[9:]])
+        self.write(changed(START, start={"file": {"path": "a.xyz", "frame": tap}}))
+        self.run_scene("-o", "start.h5", "--force")
+        with h5py.File(self.folder / "start.h5") as file:
+            started = file["particles/point_0000_realization_00000/position/value"][0]
+        return numbers, exported, started
+
+    def read_alike(self, text, **which):
+        numbers, exported, started = self.read_by_all(text, **which)
+        self.assertEqual(numbers.keys(), self.expected[0].keys())
+        for name, values in numbers.items():
+            np.testing.assert_allclose(values, self.expected[0][name], rtol=0, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(exported, self.centres, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(started, self.centres, rtol=0, atol=1e-12)
+
+    def refused_by_all(self, text, says):
+        self.write(text, "a.xyz")
+        self.write(START)
+        commands = [["structure", "a.xyz", "--part", "profile"], ["structure", "a.xyz", "--tap", "0"],
+                    ["check", "scene.json", "--no-pilot"], ["run", "scene.json", "-o", "start.h5", "--force"],
+                    ["cost", "scene.json", "--replicates", "2", "-o", "c.h5", "--force"]]
+        commands += [["export", "a.xyz", "--format", form, "-o", "out", "--force", "--tap", tap]
+                     for form in ("extxyz", "lammps", "vtp", "h5md") for tap in ("all", "0")]
+        for command in commands:
+            with self.subTest(command=command, says=says):
+                done = self.jostle(*command, expect=None)
+                self.assertIn(done.returncode, (BAD_INPUT, BROKEN), command)
+                self.assertRegex(done.stderr, rf"a\.xyz: line \d+: .*{says}")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_the_reference_is_what_was_exported(self):
+        numbers, exported, started = self.expected
+        self.assertTrue(0.4 < numbers["phi_region"].item() < 0.75)
+        self.assertTrue(4 < numbers["n_c"].item() < 8)
+        np.testing.assert_array_equal(exported, self.centres)
+        np.testing.assert_array_equal(started, self.centres)
+
+    def shifted(self, dx, dy, dz):
+        return [["X", x + dx, y + dy, z + dz] for x, y, z in self.centres]
+
+    def test_an_origin_moves_the_container_along_each_direction(self):
+        for corner in ((0, 0, 2), (-2, -2, 0), (1.5, 0, 0), (0, -3.25, 0), (-2, 3, -1)):
+            with self.subTest(corner=corner):
+                origin = " ".join(map(str, corner))
+                self.read_alike(frame(self.shifted(*corner), f'{HEADER} Origin="{origin}"'))
+        self.read_alike(frame(self.shifted(0, 0, 2), f"{HEADER} origin=[0,0,2]"))
+        self.refused_by_all(frame(self.rows, HEADER + ' Origin="0 0"'), "Origin has 2 numbers")
+        self.refused_by_all(frame(self.rows, HEADER + ' Origin="0 0 x"'), "not a finite number")
+
+    def test_coordinates_any_number_of_periods_away_are_those_of_their_images(self):
+        for periods in (1, 2, -3, 1000):
+            with self.subTest(periods=periods):
+                self.read_alike(frame(self.shifted(4.0 * periods, 0, 0)))
+        mixed = [["X", x + 4.0 * (i % 5 - 2), y - 4.0 * (i % 7), z] for i, (x, y, z) in enumerate(self.centres)]
+        self.read_alike(frame(mixed))
+
+    def test_layouts_of_columns(self):
+        table = [(i, *centre) for i, centre in enumerate(self.centres)]
+        layouts = {
+            "pos:R:3": [(x, y, z) for _, x, y, z in table],
+            "id:I:1:velo:R:3:pos:R:3:radius:R:1": [(i, 9, 8, 7, x, y, z, 0.5) for i, x, y, z in table],
+            "species:S:1:pos:R:3:diameter:R:1:fixed:L:1": [("C", x, y, z, 1.0, "T") for _, x, y, z in table],
+            "pos:R:3:Radius:R:1:aspherical_shape:R:3": [(x, y, z, "0.5000000", 0, 0, 0) for _, x, y, z in table]}
+        for properties, rows in layouts.items():
+            with self.subTest(properties=properties):
+                self.read_alike(frame(rows, HEADER.replace("species:S:1:pos:R:3", properties)))
+                self.read_alike(frame(rows, HEADER.replace("species:S:1:pos:R:3", properties)
+                                      .replace("Properties", "properties")))
+        self.read_alike(frame(self.rows, HEADER.replace("Properties=species:S:1:pos:R:3 ", "")))
+        with_size = [[*row, 0.3] for row in self.rows]
+        self.refused_by_all(frame(with_size, HEADER.replace("Properties=species:S:1:pos:R:3 ", "")),
+                            "too many columns: 5 and not 4")
+        for properties, says in (("species:S:1:pos:R:3:pos:R:3", "pos twice"), ("species:S:1:pos:R:2", "pos:R:2"),
+                                 ("species:S:1:pos:I:3", "pos:I:3"), ("species:S:1:pos:R", "not all three"),
+                                 ("species:S:1:scaled_pos:R:3", "no pos:R:3"), ("species:Q:1:pos:R:3", "type Q")):
+            self.refused_by_all(frame(self.rows, HEADER.replace("species:S:1:pos:R:3", properties)), says)
+
+    def test_sizes_that_the_model_has_not_are_refused(self):
+        for name, model in (("radius", 0.5), ("Radius", 0.5), ("diameter", 1.0), ("particle_radius", 0.5),
+                            ("aspherical_shape", 0.5)):
+            header = HEADER.replace("pos:R:3", f"pos:R:3:{name}:R:1")
+            several = [[*row, 0.3 if i % 2 else model] for i, row in enumerate(self.rows)]
+            last = [[*row, 0.3 if i == 47 else model] for i, row in enumerate(self.rows)]
+            for rows in (several, last):
+                self.refused_by_all(frame(rows, header), f"{name} is from 0.3 to {model:g}: spheres of several sizes")
+            self.refused_by_all(frame([[*row, 0.3] for row in self.rows], header),
+                                f"{name} is 0.3, and the spheres of the model have {model:g}.*Divide all lengths")
+        self.refused_by_all(frame(self.rows, HEADER + " radius=0.3"), "radius is 0.3")
+        self.refused_by_all(frame(self.rows, HEADER + ' Diameter="0.5"'), "diameter is 0.5")
+        self.refused_by_all(frame(self.rows, HEADER + " units=mm"), "must be in diameters")
+        self.read_alike(frame(self.rows, HEADER + " radius=0.5 units=diameters"))
+
+    def test_containers_that_contradict_themselves_are_refused(self):
+        for words, says in (('pbc="T F T" container=periodic', "contradicts container=periodic"),
+                            ('pbc="F F F" container=periodic', "contradicts container=periodic"),
+                            ('pbc="T T F" container=walls', "contradicts container=walls"),
+                            ('pbc="T T T" container=cylinder', "contradicts container=cylinder"),
+                            ('pbc="T T F" container=fully_periodic', "contradicts container=fully_periodic"),
+                            ('pbc="T F T"', "no container of jostle"), ('pbc="T T"', "three times T or F"),
+                            ('pbc="2 1 0"', "three times T or F"), ("container=box", "container=box is not known"),
+                            ('pbc="T T F" pbc="F F F"', "names pbc twice"), ("", "neither container")):
+            self.refused_by_all(frame(self.rows, HEADER.replace('pbc="T T F"', words)), says)
+        for words in ("container=periodic", 'container=periodic pbc="T T F"', "pbc=[true,true,false]",
+                      "pbc='1 1 0'", 'PBC = "t t f" note="pbc=F F F"'):
+            self.read_alike(frame(self.rows, HEADER.replace('pbc="T T F"', words)))
+
+    def test_lattices_that_no_container_has_are_refused(self):
+        for lattice, says in (("4 0.1 0 0 4 0 0 0 5", "right-angled"), ("4 0 0 0 4 0 1 0 5", "right-angled"),
+                              ("0 4 0 4 0 0 0 0 5", "right-angled"), ("4 4 5", "3 numbers, not 9"),
+                              ("2 0 0 0 4 0 0 0 5", "its own image"), ("-4 0 0 0 4 0 0 0 5", "above 0"),
+                              ("4 0 0 0 4 0 0 0 -5", "negative"), ("4 0 0 0 4 0 0 0 inf", "finite")):
+            self.refused_by_all(frame(self.rows, HEADER.replace("4 0 0 0 4 0 0 0 5", lattice)), says)
+        tube = HEADER.replace('pbc="T T F"', "container=cylinder").replace("4 0 0 0 4", "4 0 0 0 5")
+        self.refused_by_all(frame(self.rows, tube), "one diameter")
+
+    def test_wrong_counts_are_refused_in_whichever_frame_they_are(self):
+        self.refused_by_all(frame(self.rows, count=47), "is not a count")
+        self.refused_by_all(frame(self.rows, count=49), "the file ends after 48 of 49")
+        good = frame(self.rows)
+        numbered = frame([[i, *row[1:]] for i, row in enumerate(self.rows)], count=47)
+        self.refused_by_all(numbered, "alone on the line")
+        self.refused_by_all(good + frame(self.rows, count=49), "the file ends after 48 of 49")
+        self.refused_by_all(good + frame([[*row, 0.3] for row in self.rows],
+                                         HEADER.replace("pos:R:3", "pos:R:3:radius:R:1")), "radius is 0.3")
+
+    def test_each_frame_is_read_by_its_own_header(self):
+        frames = (frame(self.shifted(0, 0, 2), HEADER + ' Origin="0 0 2"')
+                  + frame([row[1:] for row in self.shifted(8, 0, 0)], HEADER.replace("species:S:1:", "")) + "\n")
+        for tap in (0, 1):
+            self.read_alike(frames, tap=tap, frames=2)
+
+
+if __name__ == "__main__":
+    unittest.main()
