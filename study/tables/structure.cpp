@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <tuple>
 
 #include "config/json/json_text.hpp"
 #include "config/scene.hpp"
@@ -189,6 +190,25 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   return ensemble;
 }
 
+/// Whether two packings have the same centres, in whichever order.
+bool same_centres(const Packing& a, const Packing& b) {
+  const auto sorted = [](std::vector<Vec3> centres) {
+    std::ranges::sort(centres, {}, [](Vec3 r) { return std::tuple(r.z, r.y, r.x); });
+    return centres;
+  };
+  return a.centres.size() == b.centres.size() && top_height(a) == top_height(b) &&
+         sorted(a.centres) == sorted(b.centres);
+}
+
+/// Whether two files hold the same packing as the same frame. Different realizations may start from
+/// one packing: the first frame decides only where a file has no other.
+bool share_a_frame(const std::vector<Packing>& a, const std::vector<Packing>& b) {
+  const std::size_t n = std::min(a.size(), b.size());
+  for (std::size_t k = n > 1 ? 1 : 0; k < n; ++k)
+    if (same_centres(a[k], b[k])) return true;
+  return false;
+}
+
 }  // namespace
 
 std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::uint32_t> points,
@@ -234,7 +254,7 @@ std::vector<Table> structure_of(std::span<const std::string> files,
           files.front()));
     }
     const auto twin = std::ranges::find_if(packings, [&](const std::vector<Packing>& other) {
-      return std::ranges::equal(other, packings.back(), {}, &Packing::centres, &Packing::centres);
+      return &other == &packings.back() || share_a_frame(other, packings.back());
     });
     if (twin != packings.end() - 1) {
       throw BadInput(fmt::format("{}: the same packings as in {}, and not another realization",

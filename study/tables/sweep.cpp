@@ -20,6 +20,7 @@
 #include "study/scenes/point_scenes.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/over_points.hpp"
+#include "study/tables/same_realizations.hpp"
 
 namespace jostle::inline study {
 
@@ -143,10 +144,22 @@ void set(Member& member, DerivedValue&& derived) {
   member.error_is_no_basis = derived.error_is_no_basis;
 }
 
+/// Throws BadInput where only some points share their random numbers: their errors are neither
+/// those of pairs nor those of independent points.
 Streams streams_of(std::span<const Member> members) {
-  const bool paired = std::ranges::all_of(
-      members, [&](const Member& member) { return member.stream == members.front().stream; });
-  return paired ? Streams::matched : Streams::independent;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> streams;
+  for (const Member& member : members) streams.push_back(member.stream);
+  std::ranges::sort(streams);
+  const auto repeated = std::ranges::unique(streams);
+  const std::size_t n = streams.size() - repeated.size();
+  if (n == 1) return Streams::matched;
+  if (n == members.size()) return Streams::independent;
+  throw BadInput(fmt::format(
+      "some of the {} points share starts and random numbers (one seed, matched streams), others "
+      "do "
+      "not: the points are neither paired nor independent. Analyse files of one seed together, and "
+      "those of another by themselves",
+      members.size()));
 }
 
 /// The point of the curve at this place of its axis, to the four digits that tables have of it,
@@ -298,6 +311,7 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
   if (requests.empty()) return tables;
   std::vector<SweptFile> swept;
   try {
+    if (files.size() > 1) require_different_ensembles(files);
     for (const ResultsFile* file : files) {
       swept.emplace_back(*file, file == files.front() ? made : MadeTables{});
     }
