@@ -16,8 +16,8 @@ It needs numpy and h5py; xarray, pandas, matplotlib and jsonschema for what is n
 
 from .commands import analyse, cost, export, fit, report, run, structure
 from .contacts import Contacts
-from .errors import (Fault, JostleError, NotThere, ProgramError, ProgramMissing, RealizationsFailed,
-                     ResultsError, RunStopped, SceneError, UnfinishedRun)
+from .errors import (BadArgument, Fault, JostleError, NoSuchPoint, NotThere, ProgramError, ProgramMissing,
+                     RealizationsFailed, ResultsError, RunStopped, SceneError, UnfinishedRun, WrongType)
 from .fits import Fit, FittedCurve, Parameter
 from .point import Box, Point
 from .program import program_path
@@ -28,11 +28,11 @@ from .tables import Quantity, Table, Tables
 
 __version__ = "0.2.0"
 
-__all__ = ["Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NotThere",
-           "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity", "RealizationsFailed",
-           "Results", "ResultsError", "RunStopped", "SceneError", "Table", "Tables", "UnfinishedRun",
-           "analyse", "check", "cost", "export", "fit", "half_width", "open", "plot", "program_path",
-           "report", "run", "schema", "structure"]
+__all__ = ["BadArgument", "Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NoSuchPoint",
+           "NotThere", "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity",
+           "RealizationsFailed", "Results", "ResultsError", "RunStopped", "SceneError", "Table",
+           "Tables", "UnfinishedRun", "WrongType", "analyse", "check", "cost", "export", "fit",
+           "half_width", "open", "plot", "program_path", "report", "run", "schema", "structure"]
 
 
 def __getattr__(name: str) -> object:

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import math
 import os
+import re
+import reprlib
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from . import results as results_files
-from .errors import RealizationsFailed, RunStopped
+from .errors import BadArgument, RealizationsFailed, RunStopped, WrongType
 from .fits import FittedCurve, fitted_curves
-from .program import BAD_INPUT, FAILED, OK, STOPPED, Path, call, refusal
+from .guards import path_text, takes_arguments
+from .program import FAILED, OK, STOPPED, Path, answer, call, refusal
 from .results import Results
 from .tables import Table, table_from_json
 
 Scene = Mapping[str, Any]
+_NAME = r"[A-Za-z0-9][A-Za-z0-9._-]*"  # of a scene
 
 
 @contextlib.contextmanager
@@ -25,7 +30,7 @@ def scene_file(scene: Scene | Path) -> Iterator[str]:
     """A scene's file: its path, or that of a dict, written for a while. Packings that a dict starts from
     are named from the current folder, where it is written then."""
     if not isinstance(scene, Mapping):
-        yield os.fspath(scene)
+        yield path_text(scene, "scene")
         return
     text = scene_text(scene)
     beside = os.getcwd() if '"file"' in text else None
@@ -36,40 +41,59 @@ def scene_file(scene: Scene | Path) -> Iterator[str]:
 
 
 def scene_text(scene: Scene) -> str:
-    return json.dumps(scene, indent=1, default=_plain)
+    return _json_text(scene, "a scene", indent=1)
 
 
-def _plain(value: Any) -> Any:
+def _json_text(value: Any, what: str, indent: int | None = None) -> str:
+    try:
+        return json.dumps(value, indent=indent, default=functools.partial(_plain, what))
+    except TypeError as error:
+        raise WrongType(f"{what} has JSON values alone: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise BadArgument(f"{what} cannot be written as JSON: {error}; it must not contain itself, nor be "
+                          "nested deeply") from error
+
+
+def _plain(what: str, value: Any) -> Any:
     """Numbers and arrays of numpy as JSON has them."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise TypeError(f"a scene has JSON values alone, and {value!r} is none")
+    raise WrongType(f"{what} has JSON values alone, and {reprlib.repr(value)} is none")
 
 
-def _options(**values: object) -> list[object]:
-    """--name value for what is given; a True is a flag; sequences are joined by commas."""
-    words: list[object] = []
-    for name, value in values.items():
-        option = "--" + name.replace("_", "-")
+def _option(name: str, value: object) -> list[str]:
+    """--name=value in one word, as the value may begin with a minus; the parser takes the next word for an
+    empty value there."""
+    text = os.fsdecode(value) if isinstance(value, (os.PathLike, bytes)) else str(value)
+    return [f"--{name}={text}"] if text else [f"--{name}", ""]
+
+
+def _options(**values: object) -> list[str]:
+    """--name=value for what is given; a True is a flag; sequences are joined by commas."""
+    words: list[str] = []
+    for keyword, value in values.items():
+        name = keyword.replace("_", "-")
         if value is True:
-            words.append(option)
+            words.append(f"--{name}")
         elif value is not None and value is not False:
-            several = isinstance(value, Iterable) and not isinstance(value, str)
-            words += [option, ",".join(map(str, value)) if several else value]  # type: ignore[arg-type]
+            several = isinstance(value, Iterable) and not isinstance(value, (str, bytes, os.PathLike))
+            words += _option(name, ",".join(map(str, value)) if several else value)  # type: ignore[arg-type]
     return words
 
 
-def _output(scene: Scene | Path, output: Path | None) -> Path:
+def _output(scene: Scene | Path, output: Path | None) -> str:
     if output is not None:
-        return output
+        return path_text(output, "output")
     if isinstance(scene, Mapping):
         named = scene.get("name", "scene")
     else:
         named = "scene"  # what cannot be read is refused by the program, in its words
-        with contextlib.suppress(OSError, ValueError), open(scene, encoding="utf-8") as file:
+        with contextlib.suppress(OSError, ValueError, RecursionError), \
+                open(path_text(scene, "scene"), encoding="utf-8") as file:
             read = json.load(file)
             named = read.get("name", named) if isinstance(read, dict) else named
-    return f"{named}.h5"
+    # A name that the program refuses must not lead anywhere before it does.
+    return f"{named if isinstance(named, str) and re.fullmatch(_NAME, named) else 'scene'}.h5"
 
 
 def _opened(done: Any, path: Path, program: Path | None) -> Results:
@@ -87,6 +111,7 @@ def _opened(done: Any, path: Path, program: Path | None) -> Results:
     raise unfinished
 
 
+@takes_arguments
 def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None = None,
         resume: bool = False, retry_failed: bool = False, force: bool = False,
         time_limit: str | None = None, checkpoint_every: str | None = None, shard: str | None = None,
@@ -101,13 +126,14 @@ def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None 
     """
     path = _output(scene, output)
     with scene_file(scene) as file:
-        done = call(["run", file, "-o", path, *([] if progress else ["--quiet"]),
+        done = call(["run", *_option("output", path), *([] if progress else ["--quiet"]),
                      *_options(threads=threads, resume=resume, retry_failed=retry_failed, force=force,
                                time_limit=time_limit, checkpoint_every=checkpoint_every, shard=shard)],
-                    program, show=progress, accept=(OK, FAILED, STOPPED))
+                    [file], program=program, show=progress, accept=(OK, FAILED, STOPPED))
     return _opened(done, path, program)
 
 
+@takes_arguments
 def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | None = None,
          target: float | None = None, budget: str | None = None, replicates: int | None = None,
          taps: int | None = None, sweep_point: int | str | None = None, resume: bool = False,
@@ -116,21 +142,24 @@ def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | N
 
     output: default NAME-cost.h5. target: recommend the cheapest way to this total error of `observable`.
     """
-    path = output if output is not None else f"{os.fspath(_output(scene, None))[:-3]}-cost.h5"
+    path = _output(scene, output) if output is not None else f"{_output(scene, None)[:-3]}-cost.h5"
     with scene_file(scene) as file:
-        done = call(["cost", file, "-o", path,
+        done = call(["cost", *_option("output", path),
                      *_options(observable=observable, target=target, budget=budget, taps=taps,
                                replicates=replicates, sweep_point=sweep_point, resume=resume,
-                               force=force)], program, accept=(OK, FAILED, STOPPED))
+                               force=force)], [file], program=program, accept=(OK, FAILED, STOPPED))
     return _opened(done, path, program), done.stdout
 
 
-def _paths(results: Results | Path | Sequence[Path]) -> list[Path]:
+def _paths(results: Results | Path | Sequence[Path]) -> list[str]:
     if isinstance(results, Results):
         return [results.path]
-    if isinstance(results, (str, os.PathLike)):
-        return [results]
-    return [one.path if isinstance(one, Results) else one for one in results]
+    if isinstance(results, (str, bytes, os.PathLike)):
+        return [path_text(results, "results")]
+    paths = [one.path if isinstance(one, Results) else path_text(one, "results") for one in results]
+    if not paths:
+        raise BadArgument("results: there is none in the list; name at least one file")
+    return paths
 
 
 def _live(results: Results | Path | Sequence[Path], live: bool) -> bool:
@@ -138,6 +167,7 @@ def _live(results: Results | Path | Sequence[Path], live: bool) -> bool:
     return live or isinstance(results, Results) and results.live
 
 
+@takes_arguments
 def fit(results: Results | Path, observable: str | None = None, *, model: str | None = None,
         law: str | None = None, start: Mapping[str, float] | None = None,
         bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -153,44 +183,45 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     model: a law, or "all" (default). law: one of your own, a formula of t and of parameters that start at
     `start` and stay between `bounds`, (lower, upper), None for no bound; it is called law_name ("own").
     """
-    named = [word for option, values in (("--fix", fix), ("--start", start))
-             for name, value in (values or {}).items() for word in (option, f"{name}={float(value)!r}")]
+    named = [f"--{option}={name}={float(value)!r}" for option, values in (("fix", fix), ("start", start))
+             for name, value in (values or {}).items()]
     for name, (lower, upper) in (bounds or {}).items():
         ends = ["" if end is None or math.isinf(end) else repr(float(end)) for end in (lower, upper)]
-        named += ["--bounds", f"{name}={':'.join(ends)}"]
-    if law is not None:
-        named.append(f"--law={law}")  # one word: it may begin with a minus
-    done = call(["fit", *_paths(results), "--json", *named,
-                 *_options(observable=observable, model=model, law_name=law_name,
+        named.append(f"--bounds={name}={':'.join(ends)}")
+    done = call(["fit", "--json", *named,
+                 *_options(observable=observable, model=model, law=law, law_name=law_name,
                            sweep_point=sweep_point, range=range, realizations=realizations,
                            resample=resample, resamples=resamples, seed=seed, no_store=not store,
-                           live=_live(results, live))], program)
-    return fitted_curves(json.loads(done.stdout))
+                           live=_live(results, live))], _paths(results), program=program)
+    return fitted_curves(answer(done))
 
 
+@takes_arguments
 def analyse(results: Results | Path | Sequence[Path], what: str,
             observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None = None,
             waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
             quantity: str | None = None, against: str | None = None, reference: float | None = None,
-             spheres: float | None = None, segment: int | None = None, window: str | None = None,
-             detrend: str | None = None, band: str | None = None, threshold: float | None = None,
-             hold: int | None = None, equilibrium: str | None = None, threads: int | None = None,
-             store: bool = True, live: bool = False, program: Path | None = None) -> list[Table]:
+            spheres: float | None = None, segment: int | None = None, window: str | None = None,
+            detrend: str | None = None, band: str | None = None, threshold: float | None = None,
+            hold: int | None = None, equilibrium: str | None = None, threads: int | None = None,
+            store: bool = True, live: bool = False, program: Path | None = None) -> list[Table]:
     """what: "steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes" or "memory" of observables, or
     "motion", which is of none; docs/analysis.md and docs/volumes.md have the equations.
 
     Kept in the files under /analysis unless store=False.
     """
     names = [observable] if isinstance(observable, str) else list(observable or [])
-    done = call(["analyse", *_paths(results), what, "--json", *(["--observable", *names] if names else []),
-                 *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
-                           quantity=quantity, against=against, reference=reference, spheres=spheres,
-                           segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
-                           hold=hold, equilibrium=equilibrium, threads=threads,
-                           no_store=not store, live=_live(results, live))], program)
-    return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
+    done = call(["analyse"], _paths(results), program=program, behind=[
+        str(what), "--json", *(word for name in names for word in _option("observable", name)),
+        *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
+                  quantity=quantity, against=against, reference=reference, spheres=spheres,
+                  segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
+                  hold=hold, equilibrium=equilibrium, threads=threads,
+                  no_store=not store, live=_live(results, live))])
+    return [table_from_json(one) for one in answer(done)["tables"]]
 
 
+@takes_arguments
 def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] | None = None,
               settings: Mapping[str, Any] | None = None, tap: Sequence[int] | None = None,
               sweep_point: int | str | None = None, threads: int | None = None, store: bool = True,
@@ -199,28 +230,30 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
 
     Kept in a results file under /structure unless store=False.
     """
-    done = call(["structure", *_paths(results), "--json",
-                 *_options(part=part, settings=None if settings is None else json.dumps(settings),
+    done = call(["structure", "--json",
+                 *_options(part=part, settings=None if settings is None else _json_text(settings, "settings"),
                            tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store,
-                           live=_live(results, live))], program)
-    return [table_from_json(one) for one in json.loads(done.stdout)["tables"]]
+                           live=_live(results, live))], _paths(results), program=program)
+    return [table_from_json(one) for one in answer(done)["tables"]]
 
 
+@takes_arguments
 def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool = False,
            force: bool = False, threads: int | None = None, program: Path | None = None) -> Path:
     """Writes one page for a browser that shows all that results hold; docs/report.md says what. Returns
     `output`."""
-    call(["report", *_paths(results), "-o", output,
-          *_options(live=_live(results, live), force=force, threads=threads)], program)
+    call(["report", *_option("output", path_text(output, "output")),
+          *_options(live=_live(results, live), force=force, threads=threads)], _paths(results), program=program)
     return output
 
 
+@takes_arguments
 def export(results: Results | Path, output: Path, *, format: str, point: int | None = None,
            realization: int | None = None, tap: Sequence[int] | str | None = None, live: bool = False,
            force: bool = False, program: Path | None = None) -> Path:
     """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
     last, "all", or some. Returns `output`."""
-    call(["export", *_paths(results), "--format", format, "-o", output,
+    call(["export", *_option("format", format), *_option("output", path_text(output, "output")),
           *_options(sweep_point=point, realization=realization, tap=tap, live=_live(results, live),
-                    force=force)], program)
+                    force=force)], _paths(results), program=program)
     return output

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
+from .guards import reads_file
 from .point import FOLDS, STATUS
 from .text import attribute
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from .results import Results
 
 
+@reads_file
 class SweptArray(BackendArray):
     """A dataset of every sweep point as one array, [axes of the sweep ..., rest ...].
 

@@ -12,12 +12,26 @@ class JostleError(Exception):
     """Base of all errors of this package."""
 
 
+class BadArgument(JostleError, ValueError):
+    """An argument that no call can mean: circular, with a NUL character, out of range."""
+
+
+class WrongType(JostleError, TypeError):
+    """An argument of a type that the function does not take."""
+
+
 class ResultsError(JostleError):
     """A file that cannot be read as results: none of jostle's, damaged, cut short, of another layout."""
 
 
-class NotThere(JostleError, LookupError):
+class NotThere(JostleError, KeyError):
     """What was asked for is not in the file; the message lists what is."""
+
+    __str__ = Exception.__str__  # KeyError shows its message in quotes
+
+
+class NoSuchPoint(NotThere, IndexError):
+    """A number that no sweep point of the file has."""
 
 
 class ProgramMissing(JostleError):

@@ -58,6 +58,9 @@ def table_frame(table: Table) -> pandas.DataFrame:
 
 
 def frame_along(table: Table, along: tuple[str, ...]) -> pandas.DataFrame:
+    unknown = [name for name in along if name not in table.axes]
+    if unknown:
+        raise NotThere(f"{table.name} has no axis {unknown[0]!r}; it has {', '.join(table.axes) or 'none'}")
     chosen = {name: quantity.values.reshape(-1) if along else [quantity.values[()]]
               for name, quantity in table.quantities.items() if quantity.axes == along}
     if not along:

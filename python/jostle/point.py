@@ -13,6 +13,7 @@ import numpy as np
 
 from .contacts import Contacts, contacts_of
 from .errors import NotThere, ResultsError
+from .guards import reading, reads_file, whole_number
 from .text import attribute, text, texts
 
 if TYPE_CHECKING:
@@ -31,11 +32,12 @@ class Box:
     edges: np.ndarray
 
 
+@reads_file
 class Columns(Mapping[str, np.ndarray]):
     """Arrays by name, read when they are asked for."""
 
-    def __init__(self, names: list[str], read: Callable[[str], np.ndarray], of: str) -> None:
-        self._names, self._read, self._of = names, read, of
+    def __init__(self, names: list[str], read: Callable[[str], np.ndarray], of: str, results: Results) -> None:
+        self._names, self._read, self._of, self._results = names, read, of, results
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._names:
@@ -55,6 +57,7 @@ class Columns(Mapping[str, np.ndarray]):
         return f"<{self._of}: {', '.join(self._names)}>"
 
 
+@reads_file
 class Point:
     """Sweep point `index` of a file. A point whose realizations have not begun has zero taps.
 
@@ -66,8 +69,12 @@ class Point:
     def __init__(self, results: Results, index: int) -> None:
         self._results, self.index = results, index
         self._name = f"point_{index:04}"
-        sweep = results.sweep
-        self.label, self.values = sweep.labels[index], sweep.values[index]
+        with reading(results.path):
+            self._read_attributes()
+
+    def _read_attributes(self) -> None:
+        sweep = self._results.sweep
+        self.label, self.values = sweep.labels[self.index], sweep.values[self.index]
         self.coordinates = {sweep.names[pointer]: value for pointer, value in self.values.items()}
         attributes = self._file[f"sweep/{self._name}"].attrs
         self.n_spheres, self.seed = int(attributes["n_spheres"]), int(attributes["seed"])
@@ -134,10 +141,9 @@ class Point:
 
     def units(self, name: str) -> str:
         """Of a column: "diameter", "1", ..."""
-        group = self._group("observables")
-        if name not in group:
+        if name not in self.observables:
             raise NotThere(f"sweep point {self.index} has no {name!r}; it has {', '.join(self.observables)}")
-        return attribute(group[name], "units")
+        return attribute(self._group("observables")[name], "units")
 
     @property
     def series(self) -> Columns:
@@ -146,7 +152,7 @@ class Point:
 
         def read(name: str) -> np.ndarray:
             return np.zeros((0, self.n_realizations)) if group is None else group[name][()]
-        return Columns(self.observables, read, f"sweep point {self.index}")
+        return Columns(self.observables, read, f"sweep point {self.index}", self._results)
 
     def _fold(self, fold: str) -> Columns:
         group = self._group("ensemble") if self.begun else None
@@ -154,7 +160,7 @@ class Point:
         def read(name: str) -> np.ndarray:
             found = np.zeros(0) if group is None else group[f"{name}_{fold}"][()]
             return found.astype(np.int64) if fold == "count" else found
-        return Columns(self.observables, read, f"sweep point {self.index}")
+        return Columns(self.observables, read, f"sweep point {self.index}", self._results)
 
     @property
     def mean(self) -> Columns:
@@ -208,14 +214,14 @@ class Point:
         engine), distance_tests."""
         group = self._group("timing")
         return Columns([name for name in group if name != "realization"],
-                       lambda name: group[name][()], f"timing of sweep point {self.index}")
+                       lambda name: group[name][()], f"timing of sweep point {self.index}", self._results)
 
     @property
     def fitting(self) -> Columns:
         """name -> [realization]: what fitting between walls did to the pours; empty of other starts."""
         group = self._file.get(f"fitting/{self._name}", {})
         return Columns([name for name in group if name != "realization"],
-                       lambda name: group[name][()], f"fitting of sweep point {self.index}")
+                       lambda name: group[name][()], f"fitting of sweep point {self.index}", self._results)
 
     @property
     def motion(self) -> Columns:
@@ -223,7 +229,7 @@ class Point:
         overlap_length, realization]; the others are in docs/format.md. Empty where it was not followed."""
         group = self._file.get(f"motion/{self._name}", {})
         return Columns([name for name in group if name not in ("realization", "direction")],
-                       lambda name: group[name][()], f"motion of sweep point {self.index}")
+                       lambda name: group[name][()], f"motion of sweep point {self.index}", self._results)
 
     # Snapshots.
 
@@ -236,9 +242,10 @@ class Point:
         group = self._file.get(f"snapshots/{self._name}", {})
         axes = ("realization", "wall", "direction", "arm", "force")
         return Columns([name for name in group if name not in axes],
-                       lambda name: group[name][()], f"snapshots of sweep point {self.index}")
+                       lambda name: group[name][()], f"snapshots of sweep point {self.index}", self._results)
 
     def _particles(self, realization: int) -> h5py.Group:
+        realization = whole_number(realization, "realization")
         name = f"particles/{self._name}_realization_{realization:05}"
         if name not in self._file:
             start = f"{self._name}_realization_"
@@ -271,6 +278,7 @@ class Point:
 
     def _kept_tap(self, group: h5py.Group, tap: int | None) -> int:
         taps = group["position/step"][()].tolist()
+        tap = tap if tap is None else whole_number(tap, "tap")
         if tap is not None and tap not in taps:
             raise NotThere(f"{self._results.path}: no positions of tap {tap}; kept: "
                            f"{', '.join(map(str, taps))}")

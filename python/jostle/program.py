@@ -14,8 +14,10 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterator, Sequence
+from typing import Any
 
-from .errors import Fault, ProgramError, ProgramMissing, SceneError
+from .errors import BadArgument, Fault, ProgramError, ProgramMissing, SceneError
+from .guards import path_text, require_no_nul
 
 OK, BAD_INPUT, FAILED, BROKEN, STOPPED = 0, 2, 3, 4, 75
 
@@ -24,7 +26,7 @@ Path = str | os.PathLike[str]
 
 def program_path(program: Path | None = None) -> str:
     """The program: as named here, else by the environment variable JOSTLE, else on the PATH."""
-    named = os.fspath(program) if program is not None else os.environ.get("JOSTLE", "")
+    named = path_text(program, "program") if program is not None else os.environ.get("JOSTLE", "")
     found = shutil.which(named or "jostle")
     if found is None:
         where = f"{named} is no program" if named else "it is not on the PATH"
@@ -33,19 +35,32 @@ def program_path(program: Path | None = None) -> str:
     return found
 
 
-def call(arguments: Sequence[object], program: Path | None = None, folder: Path | None = None,
-         show: bool = False, accept: Sequence[int] = (OK,), folded: bool = True) -> subprocess.CompletedProcess[str]:
+def call(words: Sequence[str], files: Sequence[Path] = (), behind: Sequence[str] = (),
+         program: Path | None = None, show: bool = False, accept: Sequence[int] = (OK,),
+         folded: bool = True) -> subprocess.CompletedProcess[str]:
     """Runs the program to its end; an exit code not in `accept` raises what `refusal` makes of it.
 
+    words: the command and its options. files: what it works on, which "--" keeps from being options.
+    behind: the words of a subcommand, which stand behind the files.
     folded: texts fit a terminal; else a paragraph is a line.
     show: what it says on stderr (progress) is shown as it comes. A KeyboardInterrupt is handed on as
     SIGINT, once: the program stores what it has and ends, and the interrupt goes on from here.
     """
-    command = [program_path(program), *map(os.fspath, map(_word, arguments))]
-    # A group of its own: Ctrl-C reaches it through here alone, and so once.
+    operands = ["--", *map(operand, files)] if files else []
+    command = [program_path(program), *words, *operands, *behind]
+    for word in command:
+        require_no_nul(word, words[0])
     environment = None if folded else {**os.environ, "COLUMNS": "10000"}
-    process = subprocess.Popen(command, cwd=folder, env=environment, text=True, errors="replace", stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    try:
+        # A group of its own: Ctrl-C reaches it through here alone, and so once.
+        process = subprocess.Popen(command, env=environment, text=True, errors="replace",
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   start_new_session=True)
+    except UnicodeEncodeError as error:
+        raise BadArgument(f"{words[0]}: {error.object!r} cannot be handed to a program: {error.reason}") from error
+    except OSError as error:
+        raise ProgramMissing(f"{command[0]} cannot be started: {error.strerror}; name another with "
+                             "program=, or give fewer or shorter arguments") from error
     try:
         out, err = _output_of(process, show)
     finally:
@@ -85,8 +100,19 @@ def _output_of(process: subprocess.Popen[str], show: bool) -> tuple[str, str]:
     return "".join(said["stdout"]), "".join(said["stderr"])
 
 
-def _word(argument: object) -> str:
-    return os.fspath(argument) if isinstance(argument, os.PathLike) else str(argument)
+def operand(path: Path) -> str:
+    """A path that is not read as an option, as "-x.h5", a list, as "[x]", or a subcommand, as "steady"."""
+    text = path_text(path)
+    return f"./{text}" if re.match(r"[-[]|[a-z]+$", text) else text
+
+
+def answer(done: subprocess.CompletedProcess[str]) -> Any:
+    """The JSON that a command printed."""
+    try:
+        return json.loads(done.stdout)
+    except (ValueError, RecursionError) as error:
+        raise ProgramError(f"{done.args[0]} did not answer in JSON as jostle does: {error}; is it the program "
+                           "of this version?", done.returncode, done.stderr, done.args) from error
 
 
 def faults_in(stderr: str) -> list[Fault]:
@@ -120,13 +146,25 @@ def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
             return SceneError(faults, **about)
     said = done.stderr.strip().removeprefix("jostle: ") or _refusals_in(done.stdout) or done.stdout.strip()
     if done.returncode < 0:
-        said = f"jostle was killed by {signal.Signals(-done.returncode).name}. {said}"
+        said = f"jostle was killed by {_signal_name(-done.returncode)}. {said}"
     return ProgramError(said or f"jostle ended with exit code {done.returncode}", **about)
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # a real-time signal
+        return f"signal {number}"
 
 
 def digest_of(path: Path, program: Path | None = None) -> str:
     """SHA-256 of the data of a results file."""
-    return call(["info", path, "--digest"], program).stdout.strip()
+    done = call(["info", "--digest"], [path], program=program)
+    digest = done.stdout.strip()
+    if not re.fullmatch("[0-9a-f]{64}", digest):
+        raise ProgramError(f"{done.args[0]} did not answer with a digest as jostle does; is it the program of "
+                           "this version?", done.returncode, done.stderr, done.args)
+    return digest
 
 
 @contextlib.contextmanager
@@ -134,5 +172,5 @@ def joined_with_parts(path: str, program: Path | None = None) -> Iterator[str]:
     """A file of a run's results with its checkpoints joined in; gone afterwards."""
     with tempfile.TemporaryDirectory(prefix="jostle-live-") as folder:
         joined = pathlib.Path(folder) / "live.h5"
-        call(["export", path, "--format", "results", "--live", "-o", joined], program)
+        call(["export", "--format=results", "--live", f"--output={joined}"], [path], program=program)
         yield str(joined)

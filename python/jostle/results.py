@@ -14,7 +14,8 @@ import h5py
 import numpy as np
 
 from .contacts import Contacts
-from .errors import ResultsError
+from .errors import NoSuchPoint, ResultsError, WrongType
+from .guards import closed, path_text, reading, reads_file, whole_number
 from .point import Box, Point
 from .program import digest_of, joined_with_parts
 from .seal import require_seal
@@ -39,11 +40,11 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
     the program in a temporary folder; nothing beside the file is touched).
     Raises ResultsError for what is no results file, or one of another layout.
     """
-    name = os.fspath(path)
+    name = path_text(path)
     require_seal(name, whole=verify)
     parts = pathlib.Path(os.path.realpath(name) + ".parts")
     if live and parts.is_dir():
-        with joined_with_parts(name, program) as joined, _opened(name, name) as stored:
+        with reading(name), joined_with_parts(name, program) as joined, _opened(name, name) as stored:
             state = text(stored["provenance"].attrs["state"])
             return Results(name, _opened(joined, name), program, state, live=True)  # open, it outlives its name
     results = Results(name, _opened(name, name), program)
@@ -58,14 +59,24 @@ def _opened(path: str, known_as: str) -> h5py.File:
         file = h5py.File(path, "r")
     except OSError as error:
         raise ResultsError(f"{known_as}: cannot read it: {error}") from error
-    layout = file.attrs.get("jostle_format")
-    if layout is None or int(layout) != LAYOUT:
+    try:
+        with reading(known_as):
+            _require_layout(file, known_as)
+    except BaseException:
         file.close()
-        what = "not written by jostle" if layout is None else f"of layout {layout}, which is not {LAYOUT}"
-        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layout {LAYOUT}")
+        raise
     return file
 
 
+def _require_layout(file: h5py.File, known_as: str) -> None:
+    layout = file.attrs.get("jostle_format")
+    whole = isinstance(layout, (int, np.integer)) and not isinstance(layout, bool)
+    if not whole or int(layout) != LAYOUT:
+        what = "not written by jostle" if layout is None else f"of layout {text(layout)}, which is not {LAYOUT}"
+        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layout {LAYOUT}")
+
+
+@reads_file
 class Points(Sequence[Point]):
     """The sweep points of a file, in its order."""
 
@@ -77,13 +88,19 @@ class Points(Sequence[Point]):
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(self._n))]
-        number = int(index) + (self._n if index < 0 else 0)
+            try:
+                chosen = range(*index.indices(self._n))
+            except (TypeError, ValueError) as error:
+                raise WrongType(f"sweep points of {self._results.path}: {error}") from None
+            return [self[i] for i in chosen]
+        asked = whole_number(index, "number of a sweep point")
+        number = asked + (self._n if asked < 0 else 0)
         if not 0 <= number < self._n:
-            raise IndexError(f"{self._results.path} has {self._n} sweep points, from 0")
+            raise NoSuchPoint(f"{self._results.path} has {self._n} sweep points, from 0; {asked} is none")
         return Point(self._results, number)
 
 
+@reads_file
 class Results:
     """A results file, open to read. Lengths are in sphere diameters, z points up, tap 0 is the start.
 
@@ -109,21 +126,27 @@ class Results:
     def file(self) -> h5py.File:
         """The file; ResultsError after `close`."""
         if not self._file:
-            raise ResultsError(f"{self.path}: closed; jostle.open reads it again")
+            raise closed(self.path)
         return self._file
 
     def __repr__(self) -> str:
         if not self._file:
             return f"<jostle results {self.path}: closed>"
-        return (f"<jostle results {self.path}: {self.scene['name']}, {self.state}, {len(self.points)} sweep "
-                f"point{'s' if len(self.points) != 1 else ''} x {self.n_realizations} realizations>")
+        try:
+            return (f"<jostle results {self.path}: {self.scene['name']}, {self.state}, {len(self.points)} sweep "
+                    f"point{'s' if len(self.points) != 1 else ''} x {self.n_realizations} realizations>")
+        except ResultsError:
+            return f"<jostle results {self.path}: damaged>"
 
     # What was asked for.
 
     @cached_property
     def scene(self) -> dict[str, Any]:
         """The scene, every default written out."""
-        return json.loads(self.scene_text("resolved"))
+        scene = json.loads(self.scene_text("resolved"))
+        if not isinstance(scene, dict) or not isinstance(scene.get("name"), str):
+            raise ResultsError(f"{self.path}: damaged: its scene is none; restore it from a copy")
+        return scene
 
     @property
     def scene_verbatim(self) -> str:

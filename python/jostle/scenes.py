@@ -5,15 +5,15 @@ from __future__ import annotations
 import dataclasses
 import functools
 import json
-import os
 import pathlib
 import re
 from collections.abc import Mapping
 from typing import Any
 
 from .commands import Scene, scene_file, scene_text
-from .errors import Fault, JostleError, ProgramMissing, SceneError
-from .program import Path, call
+from .errors import Fault, JostleError, ProgramError, ProgramMissing, SceneError
+from .guards import path_text, takes_arguments
+from .program import Path, answer, call
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,6 +26,7 @@ class Checked:
     text: str
 
 
+@takes_arguments
 def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = None,
           program: Path | None = None) -> Checked:
     """Raises SceneError with every fault of a scene; else says what it means.
@@ -36,11 +37,17 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     """
     try:
         with scene_file(scene) as file:
-            done = call(["check", file, *([] if pilot else ["--no-pilot"]),
-                         *(["--threads", threads] if threads else [])], program, folded=False)
+            done = call(["check", *([] if pilot else ["--no-pilot"]),
+                         *([f"--threads={threads}"] if threads else [])], [file], program=program, folded=False)
     except ProgramMissing as missing:
         return _check_by_schema(scene, missing)
-    resolved, end = json.JSONDecoder().raw_decode(done.stdout)
+    try:
+        resolved, end = json.JSONDecoder().raw_decode(done.stdout)
+    except ValueError:
+        resolved, end = answer(done), 0
+    if not isinstance(resolved, dict) or "name" not in resolved:
+        raise ProgramError(f"{done.args[0]} did not answer with a scene as jostle does; is it the program of this "
+                           "version?", done.returncode, done.stderr, done.args)
     if isinstance(resolved.get("description"), list):  # folded to the width of a terminal
         resolved["description"] = " ".join(resolved["description"])
     text = done.stdout[end:].strip()
@@ -49,11 +56,12 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     return Checked(resolved, warnings, text)
 
 
+@takes_arguments
 @functools.cache
 def schema(program: Path | None = None) -> dict[str, Any]:
     """The JSON Schema of scenes (draft-07): of the program, else of what is installed with this package."""
     try:
-        return json.loads(call(["schema"], program).stdout)
+        return answer(call(["schema"], program=program))
     except ProgramMissing:
         here = pathlib.Path(__file__).resolve()
         for above in here.parents:
@@ -72,8 +80,10 @@ def _check_by_schema(scene: Scene | Path, missing: ProgramMissing) -> Checked:
         if isinstance(scene, Mapping):
             value = json.loads(scene_text(scene))
         else:
-            value = json.loads(pathlib.Path(os.fspath(scene)).read_text(encoding="utf-8"))
-    except ValueError as error:
+            value = json.loads(pathlib.Path(path_text(scene, "scene")).read_text(encoding="utf-8"))
+    except JostleError:
+        raise
+    except (ValueError, RecursionError) as error:
         raise SceneError([Fault("", f"not JSON: {error}")]) from error
     except OSError as error:
         raise JostleError(f"cannot read the scene: {scene}: {error.strerror}") from error

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from .guards import takes_arguments
+
 LEVEL = math.erf(1 / math.sqrt(2))  # of one standard deviation, 68.27 %
 
 
@@ -31,6 +33,7 @@ def factor(dof: float) -> float:
     return math.sqrt(dof) * math.tan(low)
 
 
+@takes_arguments
 def half_width(error: np.ndarray, dof: np.ndarray | float) -> np.ndarray:
     """error, dof: of one shape, or one dof. What a person reads as the b of `a +- b`."""
     error, dof = np.broadcast_arrays(np.asarray(error, float), np.asarray(dof, float))

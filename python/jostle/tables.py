@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from .errors import NotThere
+from .errors import NotThere, ResultsError
+from .guards import reading
 from .text import attribute, text, texts
 
 if TYPE_CHECKING:
@@ -48,12 +49,12 @@ class Table:
     def __getitem__(self, name: str) -> np.ndarray:
         """Values of a quantity or an axis."""
         for place in (self.quantities, self.axes):
-            if name in place:
+            if isinstance(name, str) and name in place:
                 return place[name].values
         raise NotThere(f"{self.name} has no {name!r}; it has {', '.join([*self.axes, *self.quantities])}")
 
     def __contains__(self, name: object) -> bool:
-        return name in self.quantities or name in self.axes
+        return isinstance(name, str) and (name in self.quantities or name in self.axes)
 
     def __repr__(self) -> str:
         along = ", ".join(f"{name} {len(axis.values)}" for name, axis in self.axes.items())
@@ -100,11 +101,11 @@ class Tables(Mapping[str, Table]):
         self._groups, self._path = groups, path
 
     def __getitem__(self, name: str) -> Table:
-        try:
-            return _read(name, self._groups[name.strip("/")])
-        except KeyError:
-            raise NotThere(f"{self._path} has no table {name!r}; it has "
-                           f"{', '.join(self._groups) or 'none'}") from None
+        group = self._groups.get(name.strip("/")) if isinstance(name, str) else None
+        if group is not None:
+            with reading(self._path):
+                return _read(name, group)
+        raise NotThere(f"{self._path} has no table {name!r}; it has {', '.join(self._groups) or 'none'}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._groups)
@@ -127,7 +128,7 @@ class Tables(Mapping[str, Table]):
         """The only one of matching(...); NotThere where there is none or several."""
         found = self.matching(*words, point=point)
         if len(found) != 1:
-            wanted = "/".join(words) + ("" if point is None else f" of sweep point {point}")
+            wanted = "/".join(map(str, words)) + ("" if point is None else f" of sweep point {point}")
             there = ", ".join(table.name for table in found) or ", ".join(self) or "no table"
             raise NotThere(f"{self._path}: {'several tables are' if found else 'no table is'} {wanted}: "
                            f"there {'are' if found else 'is'} {there}")
@@ -157,6 +158,11 @@ def _read(name: str, group: h5py.Group) -> Table:
     quantities = {one: _quantity(group[one], _along(group[one], group, ids))
                   for one in texts(group.attrs["jostle_quantities"])}
     notes = {key[5:]: text(value) for key, value in group.attrs.items() if key.startswith("note_")}
+    for one, quantity in {**axes, **quantities}.items():
+        expected = tuple(axes[along].values.size for along in quantity.axes)
+        if quantity.values.shape != expected:
+            raise ResultsError(f"{group.file.filename}: {name}/{one} has the shape {quantity.values.shape}, its "
+                               f"axes {expected}; restore the file from a copy")
     made = {key: attribute(group, key) for key in ("version", "git_revision", "command_line", "made")}
     return Table(name, axes, quantities, notes, made)
 

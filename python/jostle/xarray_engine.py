@@ -10,6 +10,7 @@ import xarray
 from xarray.backends import BackendEntrypoint
 
 from . import datasets
+from .errors import BadArgument
 from .results import open as open_results
 
 CONTENTS = {"ensemble": datasets.ensemble, "series": datasets.series}
@@ -25,8 +26,8 @@ class JostleBackendEntrypoint(BackendEntrypoint):
     def open_dataset(self, filename_or_obj: str | os.PathLike[str], *,
                      drop_variables: str | Iterable[str] | None = None, content: str = "ensemble",
                      live: bool = False, **_: Any) -> xarray.Dataset:
-        if content not in CONTENTS:
-            raise ValueError(f"content={content!r}: one of {', '.join(CONTENTS)}")
+        if not isinstance(content, str) or content not in CONTENTS:
+            raise BadArgument(f"content={content!r}: one of {', '.join(CONTENTS)}")
         made = datasets.opened(open_results(filename_or_obj, live=live), CONTENTS[content])
         dropped = [drop_variables] if isinstance(drop_variables, str) else list(drop_variables or [])
         close = made._close

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..errors import NotThere
+from ..errors import BadArgument, NotThere
+from ..guards import takes_arguments
 from ..point import Point
 from ..results import Results
 from ..student import half_width
@@ -28,6 +29,7 @@ def _several(numbers: Iterable[int] | int) -> list[int]:
     return np.atleast_1d(numbers if np.ndim(numbers) == 0 else list(numbers)).tolist()
 
 
+@takes_arguments
 def compaction(results: Results, observable: str, *, points: Iterable[int] | int | None = None,
                band: str = "error", ax: Axes | None = None) -> Axes:
     """The mean of an observable against the tap, of some sweep points (default: all), with a band.
@@ -36,7 +38,7 @@ def compaction(results: Results, observable: str, *, points: Iterable[int] | int
     """
     ax = axes_or_current(ax)
     if band not in ("error", "sigma", "none"):
-        raise ValueError(f"band={band!r}: one of error, sigma, none")
+        raise BadArgument(f"band={band!r}: one of error, sigma, none")
     largest = 1
     chosen = _chosen(results, points)
     for point in chosen:
@@ -58,6 +60,7 @@ def compaction(results: Results, observable: str, *, points: Iterable[int] | int
     return ax
 
 
+@takes_arguments
 def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | int | None = None, *,
                      layers: bool = True, ax: Axes | None = None) -> Axes:
     """n(z): the fraction of all centres by height, mean over realizations, of some taps (default: the
@@ -82,11 +85,13 @@ def height_histogram(results: Results, point: int = 0, taps: Iterable[int] | int
     return ax
 
 
+@takes_arguments
 def profile(table: Table, quantity: str = "phi", *, taps: Iterable[int] | int | None = None,
             ax: Axes | None = None) -> Axes:
     """A quantity of a structure table by height, of some taps (default: the first and the last); the
     error is that of the mean over realizations."""
     ax = axes_or_current(ax)
+    table[quantity]
     along = table.quantities[quantity].axes
     if len(along) != 2 or along[0] != "tap":
         raise NotThere(f"{table.name}: {quantity} stands along {', '.join(along) or 'nothing'}, not along "

@@ -7,12 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Rectangle
 
+from ..errors import BadArgument
+from ..guards import takes_arguments
 from ..results import Results
 from .axes import axes_or_current
 
 DIRECTIONS = "xyz"
 
 
+@takes_arguments
 def packing_slice(results: Results, point: int = 0, realization: int = 0, tap: int | None = None, *,
                   normal: str = "y", at: float | None = None, ax: Axes | None = None) -> Axes:
     """The discs that a plane cuts out of a packing's spheres.
@@ -21,8 +24,8 @@ def packing_slice(results: Results, point: int = 0, realization: int = 0, tap: i
     at: where on it, diameters (default: the middle of the box). Across periodic sides spheres appear on
     both.
     """
-    if normal not in DIRECTIONS:
-        raise ValueError(f"normal={normal!r}: one of x, y, z")
+    if normal not in tuple(DIRECTIONS):
+        raise BadArgument(f"normal={normal!r}: one of x, y, z")
     ax = axes_or_current(ax)
     centres, box = results.positions(point, realization, tap), results.box(point, realization)
     across = DIRECTIONS.index(normal)

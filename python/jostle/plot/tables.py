@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..errors import NotThere
+from ..guards import takes_arguments
 from ..student import half_width
 from ..tables import Table
 from .axes import axes_or_current, errorbars, label, tap_axis
@@ -20,6 +21,7 @@ def _require(table: Table, names: str, command: str) -> None:
         raise NotThere(f"{table.name} cannot be drawn: {why}")
 
 
+@takes_arguments
 def fit(table: Table, *, ax: Axes | None = None) -> Axes:
     """A law over the curve that it was fitted to: a table of /fits."""
     _require(table, "t x fitted", "jostle fit")
@@ -40,6 +42,7 @@ def fit(table: Table, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes_arguments
 def ageing(table: Table, *, scaled: bool = False, ax: Axes | None = None) -> Axes:
     """A(t, t_W) against the lag, a curve a waiting time, with 68 % intervals. scaled: A/A_inf against
     t/tau of the shared law, where the realizations found one."""
@@ -68,6 +71,7 @@ def ageing(table: Table, *, scaled: bool = False, ax: Axes | None = None) -> Axe
     return ax
 
 
+@takes_arguments
 def spectrum(table: Table, *, ax: Axes | None = None) -> Axes:
     """Power spectral density against frequency, with the slope in its band, where there is one."""
     _require(table, "frequency density density_error slope", "jostle analyse spectrum")
@@ -92,6 +96,7 @@ def spectrum(table: Table, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes_arguments
 def hysteresis(table: Table, *, ax: Axes | None = None) -> Axes:
     """The value of every step against the strength of its taps, a colour a branch; the step at which the
     strength turns belongs to both."""
@@ -113,6 +118,7 @@ def hysteresis(table: Table, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@takes_arguments
 def sweep(table: Table, *, ax: Axes | None = None) -> Axes:
     """A quantity against what is swept, with its maximum where one was found."""
     against = next(iter(table.axes), "")
