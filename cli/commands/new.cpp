@@ -9,11 +9,13 @@
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/options/command_words.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "config/shipped_scenes.hpp"
 #include "results/export/input_file.hpp"
+#include "study/provenance.hpp"
 #include "study/scenes/scene_file.hpp"
 
 namespace jostle::inline cli {
@@ -94,9 +96,9 @@ int write_new_scene(const NewArguments& arguments) {
   }
   write_schema(path.parent_path() / schema_name, arguments.force);
   write_text(path.string(), text);
-  print(fmt::format(
-      "{0}: a copy of {1}; jostle check {0} says what it costs, jostle run {0} writes {2}.h5\n",
-      path.string(), arguments.from, parsed.scene->name));
+  print(fmt::format("{}: a copy of {}; {} says what it costs, {} writes {}.h5\n", path.string(),
+                    arguments.from, shell_words({"jostle", "check", operand(path.string())}),
+                    shell_words({"jostle", "run", operand(path.string())}), parsed.scene->name));
   return exit_ok;
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/options/command_words.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
@@ -99,8 +100,8 @@ RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded
 /// This command again, as it goes on after a stop.
 std::string resume_command(const RunArguments& arguments) {
   auto words = command_line();
-  std::erase(words, "--force");
-  if (!arguments.resume) words.emplace_back("--resume");
+  remove_flag(words, "--force");
+  if (!arguments.resume) add_flag(words, "--resume");
   return shell_words(words);
 }
 

@@ -10,6 +10,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/options/command_words.hpp"
 #include "cli/reports/batch_script.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/tables/wrapped.hpp"
@@ -160,10 +161,11 @@ void write_script(const SlurmArguments& arguments) {
   say(script.estimate);
   for (const std::string& warning : warnings_of(plan, arguments, cost)) say("warning: " + warning);
   const std::string file = arguments.output.empty() ? script.name + ".sbatch" : arguments.output;
-  say(fmt::format("next{}:\n  {}\n  {}\n  {}",
-                  arguments.output.empty() ? ", with the script in " + file : "",
-                  shell_words({"sbatch", file}), shell_words({"jostle", "status", script.results}),
-                  shell_words({"jostle", "merge", script.results, "-o", script.name + ".h5"})));
+  say(fmt::format(
+      "next{}:\n  {}\n  {}\n  {}", arguments.output.empty() ? ", with the script in " + file : "",
+      shell_words({"sbatch", operand(file)}),
+      shell_words({"jostle", "status", operand(script.results)}),
+      shell_words({"jostle", "merge", operand(script.results), "-o", script.name + ".h5"})));
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/options/command_words.hpp"
 #include "cli/reports/status_report.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
@@ -30,7 +32,7 @@ std::string next_text(const ShardsStatus& study, const StatusArguments& argument
   std::string text;
   if (all_done(study) && study.shards.size() > 1) {
     std::vector<std::string> words{command_line().front(), "merge"};
-    words.insert(words.end(), arguments.files.begin(), arguments.files.end());
+    std::ranges::transform(arguments.files, std::back_inserter(words), operand);
     words.insert(words.end(), {"-o", study.scene + ".h5"});
     return fmt::format("next:\n  {}\n", shell_words(words));
   }

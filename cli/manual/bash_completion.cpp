@@ -27,7 +27,7 @@ _{0}_files() {{
 constexpr const char* end = R"BASH(
 _{0}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command= kind= one
-  local IFS=$'\n'
+  local IFS=$'\n' offered
   COMPREPLY=()
   for one in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
     if [ -z "$command" ]; then
@@ -36,12 +36,14 @@ _{0}() {{
       case "$command $one" in {2}) kind=$one ;; esac
     fi
   done
-  if ! COMPREPLY=($(_{0}_value "$command $before" "$word")); then
+  if ! offered=$(_{0}_value "$command $before" "$word"); then
     case $word in
-      -*) COMPREPLY=($(compgen -W "$(_{0}_options "$command $kind")" -- "$word")) || : ;;
-      *) COMPREPLY=($(_{0}_words "$command" "$word")) ;;
+      -*) offered=$(compgen -W "$(_{0}_options "$command $kind")" -- "$word") ;;
+      *) offered=$(_{0}_words "$command" "$word") ;;
     esac
   fi
+  # A line each: no name is a pattern of names.
+  [ -z "$offered" ] || mapfile -t COMPREPLY <<<"$offered"
 }}
 complete -o filenames -F _{0} {0}
 )BASH";

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <sstream>
+#include <utility>
 #include <vector>
 
+#include "cli/options/command_words.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "study/bad_input.hpp"
@@ -64,6 +68,23 @@ std::string unknown_word(const CLI::App& app) {
   return {};
 }
 
+/// The command line as the parser takes it, the last word first and without the program: "--" is
+/// written out where files come before a subcommand, and a file's name is no list.
+std::vector<std::string> words_for_parser(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  std::vector<std::string> kinds;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (words.empty() || command->get_name() != words.front()) continue;
+    for (const CLI::App* kind : command->get_subcommands({})) kinds.push_back(kind->get_name());
+  }
+  words = without_operand_mark(std::move(words), kinds);
+  std::error_code ignored;
+  for (std::string& word : words)
+    if (word.starts_with('[') && std::filesystem::exists(word, ignored)) word = operand(word);
+  std::ranges::reverse(words);
+  return words;
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& name, const std::string& description)
@@ -85,7 +106,7 @@ void CommandLine::set_version(const std::string& text) {
 CommandLine::Outcome CommandLine::parse_and_run(int argc, char** argv) {
   refuse_negative_counts(*app_);
   try {
-    app_->parse(argc, argv);
+    app_->parse(words_for_parser(*app_, argc, argv));
     return {};
   } catch (const CLI::ParseError& error) {
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(*app_);

@@ -47,11 +47,17 @@ std::string header(const BatchScript& script, const JobPlan& plan) {
 }
 
 // A signal interrupts bash's `wait`, which then must wait again for the run's own exit code. There
-// is no $(...) in it: bash 5.2 fails where a trap comes while it reads one.
-constexpr const char* body = R"(
-mkdir -p "$results" || exit 4
+// is no $(...) behind the traps: bash 5.2 fails where a trap comes while it reads one.
+constexpr const char* body = R"BASH(
+# Where another user's link leads, that user chooses.
+if [ -L "$results" ] && [ "$(stat -c %u -- "$results")" != "$EUID" ]; then
+  printf '%s is a link of another user, and not followed: name the folder itself\n' "$results"
+  exit 4
+fi
+mkdir -p -- "$results" || exit 4
 # jostle status reads it there.
-cp "$0" "$results/.job.$SLURM_JOB_ID" && mv "$results/.job.$SLURM_JOB_ID" "$results/job.sbatch"
+cp --remove-destination -- "$0" "$results/.job.$SLURM_JOB_ID" &&
+  mv -fT -- "$results/.job.$SLURM_JOB_ID" "$results/job.sbatch"
 
 job=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
 say() { printf '%(%F %T)T job %s on %s: %s\n' -1 "$job" "$HOSTNAME" "$*"; }
@@ -64,8 +70,13 @@ worst=0 left=
 for ((shard = (SLURM_ARRAY_TASK_ID - 1) * a_task + 1, last = shard + a_task - 1;
       shard <= last && shard <= shards; ++shard)); do
   if [ -n "$stopped" ]; then left=yes; break; fi
-  "$jostle" run "$scene" --resume --shard "$shard/$shards" -o "$results/$shard.h5" --no-progress \
-    >>"$results/$shard.log" 2>&1 &
+  if [ -L "$results/$shard.log" ]; then
+    say "$results/$shard.log is a link, and no log is written through one: remove it"
+    worst=4
+    continue
+  fi
+  "$jostle" run --resume --shard "$shard/$shards" --output="$results/$shard.h5" --no-progress \
+    -- "$scene" >>"$results/$shard.log" 2>&1 &
   run=$!
   [ -z "$stopped" ] || kill -s "$stopped" "$run"
   while interrupted=; wait "$run"; code=$?; [ -n "$interrupted" ]; do :; done
@@ -89,7 +100,7 @@ else
   say "out of time, and cannot go back into the queue: submit it again"
 fi
 exit 75
-)";
+)BASH";
 
 }  // namespace
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cli/options/command_words.hpp"
+
 namespace jostle::inline cli {
 namespace {
 
@@ -47,7 +49,8 @@ bool has_one_stage(const Json& scene) {
 }  // namespace
 
 std::vector<std::vector<std::string>> next_commands(const Study& study, const Json& scene,
-                                                    const std::string& file) {
+                                                    const std::string& path) {
+  const std::string file = operand(path);
   const StudyPoint& point = study.points.front();
   if (point.observables.empty()) return {{"info", file}};
   const std::string observable = fraction_of(point);

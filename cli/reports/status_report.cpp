@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "cli/options/command_words.hpp"
 #include "cli/reports/durations.hpp"
+#include "cli/reports/redo_command.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
@@ -44,59 +46,6 @@ std::optional<std::uint32_t> variable(const std::string& script, const std::stri
     if (error == std::errc{} && number > 0) return number;
   }
   return std::nullopt;
-}
-
-/// Words of a line that shell_words() made.
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  bool in_word = false, quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == ' ' && !quoted) {
-      in_word = false;
-      continue;
-    }
-    if (!in_word) words.emplace_back();
-    in_word = true;
-    if (c == '\'') {
-      quoted = !quoted;
-    } else if (c == '\\' && !quoted && i + 1 < line.size()) {
-      words.back() += line[++i];
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
-}
-
-/// Puts a value in the place of an option's, whichever way it was given, or adds it.
-void set_option(std::vector<std::string>& words, const std::vector<std::string>& names,
-                const std::string& value) {
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    for (const std::string& name : names) {
-      if (words[i] == name && i + 1 < words.size()) {
-        words[i + 1] = value;
-        return;
-      }
-      if (name.starts_with("--") && words[i].starts_with(name + "=")) {
-        words[i] = name + "=" + value;
-        return;
-      }
-    }
-  }
-  words.push_back(names.front());
-  words.push_back(value);
-}
-
-/// The command that goes on with a shard, as another, or its own last one, was run.
-std::string command_for(const std::string& last, std::uint32_t index, std::size_t count,
-                        const std::string& output) {
-  std::vector<std::string> words = words_of(last);
-  std::erase(words, "--force");
-  if (std::ranges::find(words, "--resume") == words.end()) words.emplace_back("--resume");
-  if (count > 1) set_option(words, {"--shard"}, fmt::format("{}/{}", index, count));
-  set_option(words, {"-o", "--output"}, output);
-  return shell_words(words);
 }
 
 bool is_open(const ShardStatus& shard) {
@@ -182,13 +131,14 @@ std::vector<std::string> redo_commands(const ShardsStatus& study, const JobArray
       if (shard.path.empty() && fs::exists(output)) {  // it holds another shard
         output = (folder / fmt::format("{}-of-{}.h5", shard.index, study.shards.size())).string();
       }
-      commands.push_back(command_for(shard.command.empty() ? known->command : shard.command,
-                                     shard.index, study.shards.size(), output));
+      commands.push_back(redo_command(command_line().front(),
+                                      shard.command.empty() ? known->command : shard.command,
+                                      shard.index, study.shards.size(), output));
     }
   }
   if (!tasks.empty()) {
-    commands.push_back(
-        shell_words({"sbatch", fmt::format("--array={}", ranges_text(tasks)), array.script}));
+    commands.push_back(shell_words(
+        {"sbatch", fmt::format("--array={}", ranges_text(tasks)), operand(array.script)}));
   }
   return commands;
 }

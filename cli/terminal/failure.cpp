@@ -6,7 +6,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "cli/options/command_words.hpp"
 #include "results/error.hpp"
+#include "study/provenance.hpp"
 #include "study/results_input.hpp"
 #include "study/run.hpp"
 
@@ -42,9 +44,9 @@ std::string text_of(const BadArgument& error) {
 }
 
 std::string text_of(const NoTapsYet& error) {
-  return fmt::format(
-      "{}{}. Finish it with jostle run SCENE --resume; jostle info {} says how far it is.",
-      error.what(), error.live() == Live::no ? "; --live reads its checkpoints" : "", error.path());
+  return fmt::format("{}{}. Finish it with jostle run SCENE --resume; {} says how far it is.",
+                     error.what(), error.live() == Live::no ? "; --live reads its checkpoints" : "",
+                     shell_words({"jostle", "info", operand(error.path())}));
 }
 
 std::string text_of(const OutputExists& error) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+// Command lines that are printed for a person to run: what a word means must not depend on how the
+// files are called. Words behind "--" are operands, whatever they begin with.
+namespace jostle::inline cli {
+
+/// A file's name as an operand: "./-x.h5" of "-x.h5", which is an option by itself, and "./[x]" of
+/// "[x]", which the parser takes for a list. Other names as they are.
+std::string operand(const std::string& path);
+
+/// Adds a flag before the operands that follow "--", or at the end; once.
+void add_flag(std::vector<std::string>& words, const std::string& flag);
+
+/// Removes a flag, but no operand behind "--".
+void remove_flag(std::vector<std::string>& words, const std::string& flag);
+
+/// The words of a command line in which "--" and all that it changes is written without it: what
+/// follows it up to the name of a subcommand is operands. `subcommands`: of the command `words[0]`.
+std::vector<std::string> without_operand_mark(std::vector<std::string> words,
+                                              const std::vector<std::string>& subcommands);
+
+}  // namespace jostle::inline cli
