@@ -96,8 +96,10 @@ struct SweepAxis {
   bool operator==(const SweepAxis&) const = default;
 };
 
-/// Laws of an approach to a final value, that compete for one curve: those of the model "all".
+/// Laws of an approach to a final value.
 std::vector<std::string> relaxation_laws();
+/// Those of the model "all", which compete for one curve: no two draw the same curves.
+std::vector<std::string> competing_laws();
 
 /// A law fitted to the mean of an observable against taps, at every sweep point, when a run ends.
 struct FitRequest {

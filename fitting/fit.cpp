@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
+#include "fitting/intervals/derived_estimates.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
-#include "fitting/models/combination.hpp"
 #include "fitting/refusal.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
@@ -40,7 +40,6 @@ class Fitter {
   Eigen::VectorXd describe_fit(Fit& fit) const;
   /// False where a profile found a lower minimum; the search then goes on from there.
   bool find_intervals(const Eigen::VectorXd& inflation, Fit& fit);
-  void find_combinations(Fit& fit) const;
   void void_intervals(Fit& fit) const;
   void remark_on_order(Fit& fit) const;
   bool has_intervals(const Fit& fit) const;
@@ -222,45 +221,6 @@ bool Fitter::find_intervals(const Eigen::VectorXd& inflation, Fit& fit) {
   return true;
 }
 
-// What two parameters that have diverged together still determine. Found after the parameters are
-// judged.
-void Fitter::find_combinations(Fit& fit) const {
-  const auto loose = [&](std::size_t j) {
-    return free_[j] && fit.estimates[j].identifiability > Identifiability::wide;
-  };
-  for (const Combination& combination : model_.combinations()) {
-    if (!loose(combination.kept) || !loose(combination.other)) continue;
-    const CombinedModel model(model_, combination);
-    const ParameterValues values = model.combined(values_);
-    const double value = values[combination.kept];
-    if (!(value > 0) || !std::isfinite(value)) continue;
-    Fit counts = fit;  // what the errors rest on is that of the fit
-    const LinearProblem linear = linear_problem(model, curve_, values, free_);
-    if (!linear.jacobian.allFinite()) continue;
-    const DependentErrors errors = dependent_errors(curve_, linear, options_.memory, counts);
-    const auto variable = std::count(free_.begin(), free_.begin() + combination.kept, true);
-    ProfileProblem problem{model,  searched_,      values,
-                           free_,  best_.cost,     fit.sigma_given ? 1 : fit.reduced_chi2,
-                           {0, 0}, options_.solver};
-    for (int level = 0; level < 2; ++level) {
-      problem.thresholds[level] =
-          std::sqrt(errors.inflation[variable]) * two_sided(interval_levels[level], fit.error_dof);
-    }
-    Estimate estimate;
-    estimate.parameter = model.parameters()[combination.kept];
-    estimate.value = value;
-    estimate.error =
-        std::sqrt(errors.covariance(variable, variable)) * std::abs(linear.slopes[variable]);
-    estimate.standard_error = estimate.error;
-    const ParameterProfile found = profile(problem, combination.kept, estimate.error);
-    if (found.better || !found.intervals[1].closed()) continue;
-    estimate.intervals[0] = found.intervals[0];
-    estimate.intervals[1] = found.intervals[1];
-    estimate.identifiability = Identifiability::identified;  // until judged
-    fit.combinations.push_back(std::move(estimate));
-  }
-}
-
 // Profiles have found lower and lower costs: the minimum, if there is one, is somewhere else.
 void Fitter::void_intervals(Fit& fit) const {
   for (std::size_t j = 0; j < free_.size(); ++j) {
@@ -316,8 +276,10 @@ std::variant<Fit, Refusal> Fitter::operator()() {
     }
     if (any_fixed) remark_on_order(fit);
     judge(curve_, fit);
-    if (has_intervals(fit)) find_combinations(fit);
-    judge_combinations(curve_, fit);
+    const FittedCurveOf fitted{model_, curve_,     searched_,          values_,
+                               free_,  best_.cost, has_intervals(fit), options_};
+    add_combinations(fitted, fit);
+    add_restated(fitted, fit);
     return fit;
   }
 }

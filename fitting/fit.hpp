@@ -75,12 +75,20 @@ struct Estimate {
   double half_width() const;
 };
 
+/// The same fit in the parameters of a law that draws the same curves.
+struct RestatedFit {
+  std::string model, formula, source;
+  std::vector<Estimate> estimates;  // [n_parameters of that law]
+};
+
 /// A fit and what can be said of it. No number is NaN; what does not exist is infinite.
 struct Fit {
   std::string model, formula, source;
   std::vector<Estimate> estimates;  // [n_parameters]
   /// Of the law's combinations of two parameters neither of which has both limits, those that have.
   std::vector<Estimate> combinations;
+  /// In the parameters of the equivalent law, where there is one and it has the curve.
+  std::optional<RestatedFit> restated;
   /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
   /// residual variance where no errors were given, absolute where they were.
   Eigen::MatrixXd covariance, correlation;

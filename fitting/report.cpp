@@ -83,13 +83,19 @@ std::vector<Estimate> shown_estimates(const Fit& fit) {
   return shown;
 }
 
-std::string parameter_table(const Fit& fit) {
+std::string parameter_table(const std::vector<Estimate>& estimates) {
   std::vector<std::vector<std::string>> rows = {{"", "value", "95 %", "verdict"}};
-  for (const Estimate& e : shown_estimates(fit)) {
+  for (const Estimate& e : estimates) {
     rows.push_back(
         {e.parameter.name, value_text(e), limits(e, 1), verdict_text(e.identifiability)});
   }
   return table(rows);
+}
+
+std::string restated_table(const Fit& fit) {
+  if (!fit.restated) return "";
+  return "  the same curve as " + fit.restated->model + ", " + fit.restated->formula + "  [" +
+         fit.restated->source + "]:\n" + parameter_table(fit.restated->estimates);
 }
 
 std::string more_of_the_parameters(const Fit& fit) {
@@ -156,9 +162,15 @@ std::string what_is_identified(const Fit& fit) {
   return text;
 }
 
+// Laws that draw the same curves are one law: the first of them competes.
 std::vector<const Fit*> best_first(const std::vector<Fit>& fits) {
   std::vector<const Fit*> order;
-  for (const Fit& fit : fits) order.push_back(&fit);
+  for (const Fit& fit : fits) {
+    const bool known = std::ranges::any_of(order, [&](const Fit* earlier) {
+      return earlier->restated && earlier->restated->model == fit.model;
+    });
+    if (!known) order.push_back(&fit);
+  }
   std::stable_sort(order.begin(), order.end(),
                    [](const Fit* a, const Fit* b) { return a->aic < b->aic; });
   return order;
@@ -171,9 +183,9 @@ std::string describe(const Fit& fit, ReportDetail detail) {
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
   text << '\n'
-       << parameter_table(fit) << "  " << basis_of_errors(fit) << "; reduced "
-       << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
-       << number(fit.r2, 4) << '\n';
+       << parameter_table(shown_estimates(fit)) << restated_table(fit) << "  "
+       << basis_of_errors(fit) << "; reduced " << (fit.sigma_given ? "chi2 " : "residual sum ")
+       << number(fit.reduced_chi2, 3) << ", R2 " << number(fit.r2, 4) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();

@@ -137,6 +137,16 @@ Json fit_json(const FitOutcome& outcome) {
                  {"evaluations", fit.evaluations},
                  {"starts_tried", fit.starts_tried},
                  {"remarks", fit.remarks}};
+  if (fit.restated) {
+    Json same = Json::object();
+    for (const Estimate& found : fit.restated->estimates) {
+      same[found.parameter.name] = estimate_json(found);
+    }
+    object["restated"] = {{"model", fit.restated->model},
+                          {"formula", fit.restated->formula},
+                          {"source", fit.restated->source},
+                          {"parameters", same}};
+  }
   if (outcome.resampled) {
     object["resamples"] = outcome.resampled->resamples;
     object["resamples_failed"] = outcome.resampled->failed;

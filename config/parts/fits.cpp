@@ -39,6 +39,11 @@ std::vector<std::string> relaxation_laws() {
   return {"inverse_log", "inverse_log_height", "two_exponentials", "kww"};
 }
 
+// Eq. 4 is eq. 3 with other parameters.
+std::vector<std::string> competing_laws() {
+  return {"inverse_log", "two_exponentials", "kww"};
+}
+
 std::vector<FitRequest> read_fits(const Reader& in) {
   std::vector<FitRequest> fits;
   if (!in.is_list(0, 100, "fits")) return fits;

@@ -27,7 +27,9 @@ void count_effective_points(Fit& fit);
 /// on parameters that can make up for each other, on few points that dominate, on chi2 far from 1
 /// and on correlated residuals.
 void judge(const Curve& curve, Fit& fit);
-/// The same of the fit's combinations, which are closed.
-void judge_combinations(const Curve& curve, Fit& fit);
+/// Opens the intervals of examined estimates at which a singular search ended by rounding alone.
+void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates);
+/// Judges estimates by their 95 % intervals and says so, without remarks.
+void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates);
 
 }  // namespace jostle::inline fitting

@@ -217,23 +217,27 @@ double Estimate::half_width() const {
                                : std::numeric_limits<double>::infinity();
 }
 
-void judge_combinations(const Curve& curve, Fit& fit) {
-  for (Estimate& estimate : fit.combinations) {
-    estimate.identifiability = verdict(estimate, curve);
+void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (fit.condition <= singular_condition) return;
+  for (Estimate& estimate : estimates) {
+    if (estimate.identifiability <= Identifiability::not_examined) continue;
+    if (!is_absurd(estimate, curve)) continue;
+    for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
+  }
+}
+
+void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates) {
+  for (Estimate& estimate : estimates) {
+    const bool examined = estimate.identifiability > Identifiability::not_examined;
+    if (examined) estimate.identifiability = verdict(estimate, curve);
     estimate.statement = statement(estimate);
   }
 }
 
 void judge(const Curve& curve, Fit& fit) {
-  for (Estimate& estimate : fit.estimates) {
-    const bool examined = estimate.identifiability == Identifiability::identified;
-    if (examined && fit.condition > singular_condition && is_absurd(estimate, curve)) {
-      const double infinite = std::numeric_limits<double>::infinity();
-      for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
-    }
-    if (examined) estimate.identifiability = verdict(estimate, curve);
-    estimate.statement = statement(estimate);
-  }
+  open_absurd_intervals(curve, fit, fit.estimates);
+  judge_estimates(curve, fit.estimates);
   remark_on_memory(fit);
   remark_on_loose(fit);
   remark_on_weights(fit);

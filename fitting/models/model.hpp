@@ -1,6 +1,8 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +37,17 @@ enum class ResidualScale { linear, logarithmic };
 
 /// A starting point, or candidates for the nonlinear parameters: [n_parameters] values.
 using ParameterValues = std::vector<double>;
+
+class Model;
+
+/// A law with other parameters that draws the same curves.
+struct Equivalent {
+  std::shared_ptr<const Model> law;
+  /// Returns the parameters of `law` for the curve of these; they may be outside its bounds.
+  ParameterValues (*restate)(const ParameterValues&) = nullptr;
+  /// [n_parameters of `law`]: the parameter of the first law that is equal, by its index, if any.
+  std::vector<std::optional<std::size_t>> equal = {};
+};
 
 /// A curve with parameters that can be fitted. To make one's own, derive and give `name`,
 /// `parameters` and `value`; the rest has defaults. Nothing in a model changes after construction.
@@ -71,6 +84,8 @@ class Model {
                                               std::size_t n) const;
   /// Pairs of positive parameters that can diverge together, and what a curve then determines.
   virtual std::vector<Combination> combinations() const { return {}; }
+  /// The law that draws the same curves with other parameters, if there is one.
+  virtual std::optional<Equivalent> equivalent() const { return std::nullopt; }
   /// The same curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,10 +45,12 @@ class InverseLog final : public PublishedLaw {
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
   std::vector<Combination> combinations() const override;
+  std::optional<Equivalent> equivalent() const override;
 };
 
 /// Z(t) = Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau)): the inverse log for 1/Z, so
-/// Z is measured from the floor; parameters Z_inf, Z_0, B, tau, all > 0. PB eq. 4.
+/// Z is measured from the floor; parameters Z_inf, Z_0, B, tau, all > 0. PB eq. 4. It is eq. 3 with
+/// X_inf = Z_inf, dX = Z_inf - Z_0 and B Z_0 / Z_inf for its B.
 class InverseLogHeight final : public PublishedLaw {
  public:
   InverseLogHeight();
@@ -57,6 +60,7 @@ class InverseLogHeight final : public PublishedLaw {
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
   std::vector<Combination> combinations() const override;
+  std::optional<Equivalent> equivalent() const override;
 };
 
 /// Z(t) = Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2), tau1 <= tau2. PB sec. IV.

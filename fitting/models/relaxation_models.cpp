@@ -65,6 +65,21 @@ std::vector<Combination> InverseLogHeight::combinations() const {
   return {growth_rate};
 }
 
+// Z = Z_inf - (Z_inf - Z_0) / (1 + B Z_0/Z_inf ln(1 + t/tau)).
+std::optional<Equivalent> InverseLog::equivalent() const {
+  const auto restate = [](const ParameterValues& p) {
+    return ParameterValues{p[0], p[0] - p[1], p[2] * p[0] / (p[0] - p[1]), p[3]};
+  };
+  return Equivalent{std::make_shared<InverseLogHeight>(), restate, {0, {}, {}, 3}};
+}
+
+std::optional<Equivalent> InverseLogHeight::equivalent() const {
+  const auto restate = [](const ParameterValues& p) {
+    return ParameterValues{p[0], p[0] - p[1], p[2] * p[1] / p[0], p[3]};
+  };
+  return Equivalent{std::make_shared<InverseLog>(), restate, {0, {}, {}, 3}};
+}
+
 // Where B goes to 0 the law is the logarithm A_inf B ln(1 + t/tau).
 std::vector<Combination> Ageing::combinations() const {
   return {{"A_inf B", "strength of the logarithm where B is small", ParameterUnit::value, 0, 1, 1},

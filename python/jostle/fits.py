@@ -35,15 +35,28 @@ class Fit:
     refused: str | None
     report: dict[str, Any]
 
+    @property
+    def restated(self) -> Fit | None:
+        """The same fit in the parameters of the law that draws the same curves (eq. 4 for eq. 3), if any."""
+        one = self.report.get("restated")
+        if one is None:
+            return None
+        return Fit(one["model"], one["formula"], _parameters(one), None,
+                   {key: value for key, value in self.report.items() if key != "restated"})
+
 
 @dataclasses.dataclass(frozen=True)
 class FittedCurve:
-    """title: which curve. fits: law -> fit."""
+    """title: which curve. fits: law -> fit; a law that was fitted under another name is found by either."""
 
     title: str
     fits: dict[str, Fit]
 
     def __getitem__(self, model: str) -> Fit:
+        if model not in self.fits:
+            for fit in self.fits.values():
+                if fit.restated is not None and fit.restated.model == model:
+                    return fit.restated
         return self.fits[model]
 
 
@@ -56,9 +69,12 @@ def _parameter(one: dict[str, Any]) -> Parameter:
                      _interval(one["interval_95"]), one["identifiability"], one["statement"])
 
 
+def _parameters(one: dict[str, Any]) -> dict[str, Parameter]:
+    return {name: _parameter(value) for name, value in one.get("parameters", {}).items()}
+
+
 def _fit(one: dict[str, Any]) -> Fit:
-    parameters = {name: _parameter(value) for name, value in one.get("parameters", {}).items()}
-    return Fit(one["model"], one.get("formula", ""), parameters, one.get("refused"), one)
+    return Fit(one["model"], one.get("formula", ""), _parameters(one), one.get("refused"), one)
 
 
 def fitted_curves(report: dict[str, Any]) -> list[FittedCurve]:

@@ -12,7 +12,7 @@ namespace {
 std::string law_name(const TableView& table) {
   static const std::map<std::string, std::string> names{
       {"inverse_log", "inverse logarithm"},
-      {"inverse_log_height", "inverse logarithm of 1/Z"},
+      {"inverse_log_height", "inverse logarithm, eq. 4"},
       {"two_exponentials", "two exponentials"},
       {"kww", "stretched exponential"}};
   const auto found = names.find(table.path().back());
@@ -86,6 +86,10 @@ void add_fits(const DrawnFile& file, Figures& into) {
       if (table.point() != point) continue;
       const std::string& observable = table.path().front();
       if (!laws.contains(observable)) observables.push_back(observable);
+      const bool known = std::ranges::any_of(laws[observable], [&](const TableView& law) {
+        return law.note("restated_model") == table.path().back();  // the same curve
+      });
+      if (known) continue;
       laws[observable].push_back(table);
     }
     for (const std::string& observable : observables) {

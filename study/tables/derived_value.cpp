@@ -58,18 +58,48 @@ std::string text_at(const Quantity* quantity, std::size_t place) {
 constexpr double fewest_dof_of_a_point = 3;
 
 /// The error of which Student's t makes the longer side of the 68 % interval of the fit.
-ErrorOf error_of_interval(const Table& table, std::size_t place) {
+ErrorOf error_of_interval(const Table& table, std::size_t place, const std::string& prefix) {
   const double dof = number_at(quantity_named(table, "error_dof"), 0);
-  const double value = number_at(quantity_named(table, "value"), place);
+  const double value = number_at(quantity_named(table, prefix + "value"), place);
   const std::size_t end = 2 * place;  // [parameter, level], 68 % first
-  const double side = std::max(number_at(quantity_named(table, "interval_upper"), end) - value,
-                               value - number_at(quantity_named(table, "interval_lower"), end));
+  const double side =
+      std::max(number_at(quantity_named(table, prefix + "interval_upper"), end) - value,
+               value - number_at(quantity_named(table, prefix + "interval_lower"), end));
   if (!(side > 0 && dof >= fewest_dof_of_a_point)) return {};
   return {side / two_sided(interval_levels[0], dof), dof};
 }
 
-std::optional<DerivedValue> parameter(const Table& table, const std::string& name) {
-  const auto point = parameter_point(table, name);
+const std::string restated = "restated_";  // parameters of the law that draws the same curve
+
+std::optional<ParameterPoint> point_along(const Table& fit, const std::string& name,
+                                          const std::string& prefix) {
+  for (const Quantity& axis : fit.axes) {
+    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
+    if (axis.name != prefix + "parameter" || !names) continue;
+    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
+    if (place == names->size()) return std::nullopt;
+    const std::string found = text_at(quantity_named(fit, prefix + "identifiability"), place);
+    if (found == name_of(Identifiability::identified) || found == name_of(Identifiability::wide))
+      return ParameterPoint{number_at(quantity_named(fit, prefix + "value"), place),
+                            error_of_interval(fit, place, prefix), ""};
+    return ParameterPoint{not_a_number,
+                          {},
+                          found.empty()
+                              ? "fitted by an earlier version: fit it again"
+                              : text_at(quantity_named(fit, prefix + "statement"), place)};
+  }
+  return std::nullopt;
+}
+
+bool is_restated_as(const Table& fit, const std::string& law) {
+  return std::ranges::any_of(fit.notes, [&](const auto& note) {
+    return note.first == restated + "model" && note.second == law;
+  });
+}
+
+std::optional<DerivedValue> parameter(const Table& table, const std::string& name,
+                                      const std::string& prefix) {
+  const auto point = point_along(table, name, prefix);
   if (!point) return std::nullopt;
   return DerivedValue{.value = point->value,
                       .error = point->error,
@@ -81,21 +111,7 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
 }  // namespace
 
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
-  for (const Quantity& axis : fit.axes) {
-    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
-    if (axis.name != "parameter" || !names) continue;
-    const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
-    if (place == names->size()) return std::nullopt;
-    const std::string found = text_at(quantity_named(fit, "identifiability"), place);
-    if (found == name_of(Identifiability::identified) || found == name_of(Identifiability::wide))
-      return ParameterPoint{number_at(quantity_named(fit, "value"), place),
-                            error_of_interval(fit, place), ""};
-    return ParameterPoint{not_a_number,
-                          {},
-                          found.empty() ? "fitted by an earlier version: fit it again"
-                                        : text_at(quantity_named(fit, "statement"), place)};
-  }
-  return std::nullopt;
+  return point_along(fit, name, "");
 }
 
 DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
@@ -112,7 +128,12 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
   }
   for (const Table& table : tables.fits) {
     if (table.name != fmt::format("{}/{}/{}", point_name(point), observable, kind)) continue;
-    if (auto found = parameter(table, name)) return *std::move(found);
+    if (auto found = parameter(table, name, "")) return *std::move(found);
+  }
+  for (const Table& table : tables.fits) {
+    if (!table.name.starts_with(fmt::format("{}/{}/", point_name(point), observable))) continue;
+    if (!is_restated_as(table, kind)) continue;
+    if (auto found = parameter(table, name, restated)) return *std::move(found);
   }
   throw BadInput(
       fmt::format("{} of {} is not kept for sweep point {}: make the analysis or the fit first",

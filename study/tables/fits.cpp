@@ -55,23 +55,56 @@ Quantity values(std::string name, std::vector<std::string> axes, std::vector<dou
   return {std::move(name), std::move(axes), std::move(numbers), "", std::move(long_name), ""};
 }
 
-void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
+/// Columns of estimates as tables hold them.
+struct EstimateColumns {
+  explicit EstimateColumns(const std::vector<Estimate>& estimates) {
+    for (const Estimate& estimate : estimates) {
+      names.push_back(estimate.parameter.name);
+      units.push_back(unit_text(estimate.parameter.unit));
+      statements.push_back(estimate.statement);
+      found.push_back(name_of(estimate.identifiability));
+      value.push_back(estimate.has_value() ? estimate.value : not_a_number);
+      error.push_back(estimate.has_value() ? estimate.error : not_a_number);
+      linear.push_back(estimate.standard_error);
+      for (const Interval& interval : estimate.intervals) {
+        lower.push_back(interval.lower);
+        upper.push_back(interval.upper);
+      }
+    }
+  }
+
   std::vector<std::string> names, units, statements, found;
-  std::vector<double> value, error, linear, resampled, lower, upper, covariance, correlation;
+  std::vector<double> value, error, linear, lower, upper;
+};
+
+/// Along `axis`; `prefix` is that of their names.
+void add_estimates(Table& table, const EstimateColumns& columns, const std::string& axis,
+                   const std::string& prefix) {
+  const std::vector<std::string> one = {axis}, ends = {axis, "level"};
+  const std::vector<Quantity> added = {
+      values(prefix + "value", one, columns.value,
+             "least squares; not a number where the data set no limits"),
+      values(prefix + "error", one, columns.error,
+             "standard error that counts realizations or memory, for Student's t of error_dof"),
+      values(prefix + "standard_error", one, columns.linear,
+             "of a linear problem with independent points"),
+      {prefix + "units", one, columns.units, "", "units of the parameter", ""},
+      {prefix + "statement", one, columns.statements, "", "what the data say of the parameter", ""},
+      {prefix + "identifiability", one, columns.found, "", "the same in a word", ""},
+      values(prefix + "interval_lower", ends, columns.lower,
+             "lower end of the profile-likelihood interval"),
+      values(prefix + "interval_upper", ends, columns.upper,
+             "upper end of the profile-likelihood interval")};
+  table.quantities.insert(table.quantities.end(), added.begin(), added.end());
+}
+
+void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
+  const EstimateColumns columns(fit.estimates);
+  std::vector<double> resampled, covariance, correlation;
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
-    const Estimate& estimate = fit.estimates[j];
-    names.push_back(estimate.parameter.name);
-    units.push_back(unit_text(estimate.parameter.unit));
-    statements.push_back(estimate.statement);
-    found.push_back(name_of(estimate.identifiability));
-    value.push_back(estimate.has_value() ? estimate.value : not_a_number);
-    error.push_back(estimate.has_value() ? estimate.error : not_a_number);
-    linear.push_back(estimate.standard_error);
-    if (outcome.resampled)
-      resampled.push_back(estimate.has_value() ? outcome.resampled->errors[j] : not_a_number);
-    for (const Interval& interval : estimate.intervals) {
-      lower.push_back(interval.lower);
-      upper.push_back(interval.upper);
+    if (outcome.resampled) {
+      resampled.push_back(fit.estimates[j].has_value() ? outcome.resampled->errors[j]
+                                                       : not_a_number);
     }
     for (std::size_t k = 0; k < fit.estimates.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(j), column = static_cast<Eigen::Index>(k);
@@ -79,28 +112,33 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
       correlation.push_back(fit.correlation(row, column));
     }
   }
-  const std::vector<std::string> one = {"parameter"}, matrix = {"parameter", "other_parameter"},
-                                 ends = {"parameter", "level"};
-  table.axes = {{"parameter", one, names, "", "parameters of the law", ""},
-                {"other_parameter", {"other_parameter"}, names, "", "the same", ""},
+  const std::vector<std::string> one = {"parameter"}, matrix = {"parameter", "other_parameter"};
+  table.axes = {{"parameter", one, columns.names, "", "parameters of the law", ""},
+                {"other_parameter", {"other_parameter"}, columns.names, "", "the same", ""},
                 values("level", {"level"}, {interval_levels[0], interval_levels[1]},
                        "probability of an interval")};
-  table.quantities = {
-      values("value", one, value, "least squares; not a number where the data set no limits"),
-      values("error", one, error,
-             "standard error that counts realizations or memory, for Student's t of error_dof"),
-      values("standard_error", one, linear, "of a linear problem with independent points"),
-      {"units", one, units, "", "units of the parameter", ""},
-      {"statement", one, statements, "", "what the data say of the parameter", ""},
-      {"identifiability", one, found, "", "the same in a word", ""},
-      values("interval_lower", ends, lower, "lower end of the profile-likelihood interval"),
-      values("interval_upper", ends, upper, "upper end of the profile-likelihood interval"),
-      values("covariance", matrix, covariance, "covariance"),
-      values("correlation", matrix, correlation, "correlation")};
+  add_estimates(table, columns, "parameter", "");
+  table.quantities.push_back(values("covariance", matrix, covariance, "covariance"));
+  table.quantities.push_back(values("correlation", matrix, correlation, "correlation"));
   if (!resampled.empty()) {
     table.quantities.push_back(
         values("resampled_error", one, resampled, "error from resampled realizations"));
   }
+}
+
+/// The same curve in the parameters of another law.
+void add_restated(Table& table, const RestatedFit& restated) {
+  const EstimateColumns columns(restated.estimates);
+  table.notes.emplace_back("restated_model", restated.model);
+  table.notes.emplace_back("restated_law", restated.formula);
+  table.notes.emplace_back("restated_source", restated.source);
+  table.axes.push_back({"restated_parameter",
+                        {"restated_parameter"},
+                        columns.names,
+                        "",
+                        "parameters of the law that draws the same curve",
+                        ""});
+  add_estimates(table, columns, "restated_parameter", "restated_");
 }
 
 void add_curve(Table& table, const Curve& source, const Fit& fit) {
@@ -141,7 +179,7 @@ void add_statistics(Table& table, const Fit& fit) {
 std::vector<std::unique_ptr<Model>> models_named(const std::string& name) {
   std::vector<std::unique_ptr<Model>> models;
   if (name == "all") {
-    for (const std::string& law : relaxation_laws()) models.push_back(make_model(law));
+    for (const std::string& law : competing_laws()) models.push_back(make_model(law));
   } else if (auto model = make_model(name)) {
     models.push_back(std::move(model));
   }
@@ -193,6 +231,7 @@ std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner
                       outcome.resampled->resamples, outcome.resampled->failed));
     }
     add_parameters(table, outcome, fit);
+    if (fit.restated) add_restated(table, *fit.restated);
     add_curve(table, source.curve, fit);
     add_statistics(table, fit);
     tables.push_back(std::move(table));

@@ -66,7 +66,7 @@ class Measured(WithCurve):
         self.write(self.table(), "data.csv")
         fits = self.fit_json("data.csv")["curves"][0]["fits"]
         self.assertEqual([fit["model"] for fit in fits],
-                         ["inverse_log", "inverse_log_height", "two_exponentials", "kww"])
+                         ["inverse_log", "two_exponentials", "kww"])
         aic = {fit["model"]: fit["aic"] for fit in fits}
         self.assertLess(aic["inverse_log"], aic["kww"])
         self.assertLess(aic["inverse_log"], aic["two_exponentials"])
@@ -87,7 +87,7 @@ class Measured(WithCurve):
         self.write(self.table(), "data.csv")
         self.jostle("fit", "data.csv", "--csv", "out.csv")
         lines = (self.folder / "out.csv").read_text().splitlines()
-        self.assertEqual(lines[0], "t,X,inverse_log,inverse_log_height,two_exponentials,kww")
+        self.assertEqual(lines[0], "t,X,inverse_log,two_exponentials,kww")
         self.assertEqual(len(lines), len(self.rows) + 1)
         t, x, law = map(float, lines[5].split(",")[:3])
         self.assertEqual((t, x), self.rows[4])
@@ -230,7 +230,7 @@ class Kept(Case):
         for _ in range(2):
             self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
         self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--sweep-point", "1")
-        laws = ["inverse_log", "inverse_log_height", "kww", "two_exponentials"]
+        laws = ["inverse_log", "kww", "two_exponentials"]
         self.assertEqual(self.tables(), ["fits/point_0000/mean_height/kww"] +
                          [f"fits/point_0001/mean_height/{law}" for law in laws])
         self.assertEqual(self.digest("tiny.h5"), digest)

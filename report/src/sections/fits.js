@@ -3,7 +3,7 @@ import {byPoint, chooser, dataTable, element, figure, number, pair, pointsOf, re
         words} from "../section.js";
 import {axisLabel} from "../format.js";
 
-const lawNames = {inverse_log: "inverse logarithm", inverse_log_height: "inverse logarithm of 1/Z",
+const lawNames = {inverse_log: "inverse logarithm", inverse_log_height: "inverse logarithm, eq. 4",
                   two_exponentials: "two exponentials", kww: "stretched exponential"};
 const dashes = [null, "7,4", "2,3", "9,3,2,3"];
 
@@ -11,21 +11,32 @@ export function lawName(table) {
   return lawNames[table.path.at(-1)] ?? words(table.path.at(-1));
 }
 
-function interval(table, j, level) {
-  const low = table.row("interval_lower", j)[level], high = table.row("interval_upper", j)[level];
+function interval(table, j, level, prefix = "") {
+  const low = table.row(`${prefix}interval_lower`, j)[level], high = table.row(`${prefix}interval_upper`, j)[level];
   if (!Number.isFinite(low) && !Number.isFinite(high)) return "no limit";
   if (!Number.isFinite(high)) return `above ${number(low)}`;
   if (!Number.isFinite(low)) return `below ${number(high)}`;
   return `${number(low)} to ${number(high)}`;
 }
 
-function parameters(table) {
-  const names = table.axis("parameter");
+function parameters(table, prefix = "", law = lawName(table)) {
+  const names = table.axis(`${prefix}parameter`);
   return dataTable(["parameter", "estimate", "95 % interval", "what the data say of it"], names.map((name, j) => {
-    const value = table.value("value", j);
-    return [name, Number.isFinite(value) ? withError(value, table.value("error", j)) : "not determined", interval(table, j, 1),
-            table.value("statement", j)];
-  }), `Parameters of the ${lawName(table)}`);
+    const value = table.value(`${prefix}value`, j);
+    return [name, Number.isFinite(value) ? withError(value, table.value(`${prefix}error`, j)) : "not determined",
+            interval(table, j, 1, prefix), table.value(`${prefix}statement`, j)];
+  }), `Parameters of the ${law}`);
+}
+
+/// The same curve in the parameters of the law that draws it too.
+function restated(table) {
+  const law = table.notes.restated_model;
+  return law ? [statement("The same curve", table.notes.restated_law), parameters(table, "restated_", lawNames[law] ?? words(law))] : [];
+}
+
+/// Without those that draw the curve of another under another name.
+function distinct(tables) {
+  return tables.filter((table, i) => !tables.slice(0, i).some((other) => other.notes.restated_model === table.path.at(-1)));
 }
 
 /// In words, how many of its parameters a law's data determine.
@@ -92,13 +103,13 @@ export function fitsSection(chapter) {
   const content = byPoint(chapter, pointsOf(made), (point) => {
     const here = made.filter((table) => table.point === point);
     return [...new Set(here.map((table) => table.path[0]))].flatMap((observable) => {
-      const laws = here.filter((table) => table.path[0] === observable);
+      const laws = distinct(here.filter((table) => table.path[0] === observable));
       return [
         pair(dataFigure(chapter, laws, observable), residualFigure(chapter, laws, observable)),
         goodness(laws),
         ...laws.map((table) => element("details", {class: "law", open: laws.length === 1},
           element("summary", {}, element("b", {}, lawName(table)), ` \u2013 ${identified(table)}`),
-          statement("", table.notes.law), parameters(table), statement("Combinations", table.notes.combinations),
+          statement("", table.notes.law), parameters(table), ...restated(table), statement("Combinations", table.notes.combinations),
           statement("Remarks", table.notes.remarks))),
       ].filter(Boolean);
     });

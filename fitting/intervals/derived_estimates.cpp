@@ -1,0 +1,139 @@
+#include "fitting/intervals/derived_estimates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fitting/intervals/distributions.hpp"
+#include "fitting/intervals/fit_errors.hpp"
+#include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/intervals/profile.hpp"
+#include "fitting/models/combination.hpp"
+
+namespace jostle::inline fitting {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// The minimum in the parameters of another model.
+struct Rewritten {
+  const Model& model;
+  ParameterValues values;
+  std::vector<bool> free;
+};
+
+// Parameter `index` of the other model with its error, and its intervals where they are profiled.
+// Errors rest on what those of the fit do.
+Estimate estimate_in(const Rewritten& other, std::size_t index, const FittedCurveOf& fitted,
+                     const Fit& fit) {
+  Fit counts = fit;
+  const LinearProblem linear = linear_problem(other.model, fitted.curve, other.values, other.free);
+  Estimate estimate;
+  estimate.parameter = other.model.parameters()[index];
+  estimate.value = other.values[index];
+  estimate.error = estimate.standard_error = infinite;
+  for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
+  if (!linear.jacobian.allFinite()) return estimate;
+  const DependentErrors errors =
+      dependent_errors(fitted.curve, linear, fitted.options.memory, counts);
+  const auto variable =
+      std::count(other.free.begin(), other.free.begin() + static_cast<std::ptrdiff_t>(index), true);
+  const double slope = std::abs(linear.slopes[variable]);
+  const double variance = fit.sigma_given ? 1 : fit.reduced_chi2;
+  estimate.error = std::sqrt(errors.covariance(variable, variable)) * slope;
+  estimate.standard_error =
+      std::sqrt(inverse_normal(linear.jacobian).matrix(variable, variable) * variance) * slope;
+  if (!fitted.has_intervals) return estimate;
+  estimate.identifiability = Identifiability::identified;  // until judged
+  double thresholds[2];
+  for (int level = 0; level < 2; ++level) {
+    thresholds[level] =
+        std::sqrt(errors.inflation[variable]) * two_sided(interval_levels[level], fit.error_dof);
+  }
+  if (fit.reason == EndReason::exact && !fit.sigma_given) {
+    for (int level = 0; level < 2; ++level) {
+      const double reach = thresholds[level] * estimate.standard_error;
+      estimate.intervals[level] = {estimate.value - reach, estimate.value + reach};
+    }
+    return estimate;
+  }
+  const ProfileProblem problem{other.model,
+                               fitted.searched,
+                               other.values,
+                               other.free,
+                               fitted.cost,
+                               variance,
+                               {thresholds[0], thresholds[1]},
+                               fitted.options.solver};
+  const ParameterProfile found = profile(problem, index, estimate.standard_error);
+  if (found.better) return estimate;
+  estimate.intervals[0] = found.intervals[0];
+  estimate.intervals[1] = found.intervals[1];
+  return estimate;
+}
+
+bool inside(const Model& model, const ParameterValues& p) {
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const Parameter& parameter = model.parameters()[j];
+    if (!std::isfinite(p[j]) || !(p[j] > parameter.lower && p[j] < parameter.upper)) return false;
+  }
+  return true;
+}
+
+// Which parameters of the equivalent law are free; none of them where a parameter is fixed that it
+// does not have.
+std::vector<bool> free_of(const Equivalent& other, const std::vector<bool>& free) {
+  std::vector<bool> theirs(other.equal.size(), true);
+  std::size_t kept = 0;
+  for (std::size_t j = 0; j < theirs.size(); ++j) {
+    if (!other.equal[j] || free[*other.equal[j]]) continue;
+    theirs[j] = false;
+    ++kept;
+  }
+  const auto fixed = static_cast<std::size_t>(std::count(free.begin(), free.end(), false));
+  return fixed == kept ? theirs : std::vector<bool>();
+}
+
+}  // namespace
+
+void add_combinations(const FittedCurveOf& fitted, Fit& fit) {
+  if (!fitted.has_intervals) return;
+  const auto loose = [&](std::size_t j) {
+    return fitted.free[j] && fit.estimates[j].identifiability > Identifiability::wide;
+  };
+  for (const Combination& combination : fitted.model.combinations()) {
+    if (!loose(combination.kept) || !loose(combination.other)) continue;
+    const CombinedModel model(fitted.model, combination);
+    const Rewritten other{model, model.combined(fitted.values), fitted.free};
+    const double value = other.values[combination.kept];
+    if (!(value > 0) || !std::isfinite(value)) continue;
+    Estimate estimate = estimate_in(other, combination.kept, fitted, fit);
+    if (estimate.intervals[1].closed()) fit.combinations.push_back(std::move(estimate));
+  }
+  judge_estimates(fitted.curve, fit.combinations);
+}
+
+void add_restated(const FittedCurveOf& fitted, Fit& fit) {
+  const auto equivalent = fitted.model.equivalent();
+  if (!equivalent || !equivalent->law->refusal(fitted.curve).empty()) return;
+  const Rewritten other{*equivalent->law, equivalent->restate(fitted.values),
+                        free_of(*equivalent, fitted.free)};
+  const ParameterValues values = equivalent->restate(fit.values());
+  if (other.free.empty() || !inside(other.model, other.values) || !inside(other.model, values)) {
+    return;
+  }
+  RestatedFit restated{other.model.name(), other.model.formula(), other.model.source(), {}};
+  for (std::size_t j = 0; j < other.values.size(); ++j) {
+    const auto same = equivalent->equal[j];
+    Estimate estimate = same ? fit.estimates[*same] : estimate_in(other, j, fitted, fit);
+    estimate.parameter = other.model.parameters()[j];
+    estimate.value = values[j];
+    restated.estimates.push_back(std::move(estimate));
+  }
+  open_absurd_intervals(fitted.curve, fit, restated.estimates);
+  judge_estimates(fitted.curve, restated.estimates);
+  fit.restated = std::move(restated);
+}
+
+}  // namespace jostle::inline fitting
