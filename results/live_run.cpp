@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/scratch_folder.hpp"
@@ -104,7 +105,7 @@ ResultsFile live_results(const std::string& named, Content content) {
 }
 
 void write_copy(const std::string& named, const std::string& output, bool live) {
-  const std::string results_path = end_of_links(named), replaced = end_of_links(output);
+  const std::string results_path = end_of_links(named), replaced = output_path(output);
   const RunLock lock(replaced, false);
   if (parts_exist(replaced)) {
     throw ResultsError(parts_folder(replaced),
@@ -113,7 +114,7 @@ void write_copy(const std::string& named, const std::string& output, bool live) 
   }
   read_undisturbed(results_path, [&] {
     const auto parts = live ? realizations_with_parts(results_path) : std::vector<RealizationId>{};
-    write_joined(ResultsFile(results_path, named), results_path, parts, output,
+    write_joined(ResultsFile(results_path, named), results_path, parts, replaced,
                  Content::everything);
     return true;
   });

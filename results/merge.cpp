@@ -9,6 +9,7 @@
 
 #include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/run_parts.hpp"
 #include "results/checkpoints/temporary_file.hpp"
@@ -146,7 +147,7 @@ std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
 
 void merge_files(std::span<const std::string> inputs, const std::string& named,
                  const Provenance& provenance, bool force, const std::optional<Study>& whole) {
-  const std::string output = end_of_links(named);
+  const std::string output = output_path(named);
   const RunLock lock(output, force);
   require_replaceable_file(output);
   remove_stale_temporaries(output);

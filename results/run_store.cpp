@@ -11,6 +11,7 @@
 
 #include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/recorder.hpp"
 #include "results/checkpoints/run_parts.hpp"
@@ -58,7 +59,7 @@ bool same_points(const Study& stored, const Study& study) {
 class RunStore::Impl {
  public:
   Impl(const std::string& results_path, const Shard& a_shard, bool force)
-      : path(end_of_links(results_path)), shard(a_shard), lock(path, force) {
+      : path(output_path(results_path)), shard(a_shard), lock(path, force) {
     require_replaceable_file(path);
     remove_stale_temporaries(path);
   }

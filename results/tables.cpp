@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/seal.hpp"
 #include "results/checkpoints/temporary_file.hpp"
@@ -196,7 +197,7 @@ void store_tables(const std::string& named, std::span<const TableGroup> groups,
       for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
     }
   }
-  const std::string path = end_of_links(named);
+  const std::string path = output_path(named);
   const RunLock lock(path, false);
   remove_stale_temporaries(path);
   TemporaryFile temporary(path);

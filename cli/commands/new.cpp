@@ -14,6 +14,7 @@
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "config/shipped_scenes.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/export/input_file.hpp"
 #include "study/provenance.hpp"
 #include "study/scenes/scene_file.hpp"
@@ -87,6 +88,7 @@ int write_new_scene(const NewArguments& arguments) {
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
     throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));
+  output_path(path.string());  // refuses links of others
   require_no_stream(path);
   if (fs::exists(path) && !arguments.force) {
     throw BadInput(

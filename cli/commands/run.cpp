@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -25,6 +24,7 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/export/printable.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
@@ -70,18 +70,15 @@ Seconds duration_argument(const std::string& text) {
 }
 
 /// Where results go. A link is followed: what it names is replaced, not the link.
-std::string output_path(const RunArguments& arguments, const LoadedScene& loaded) {
+std::string results_path(const RunArguments& arguments, const LoadedScene& loaded) {
   const std::string output =
       arguments.output.empty() ? loaded.scene.name + ".h5" : arguments.output;
   require_replaceable(output, loaded.scene.name + ".h5");
-  std::error_code unreadable;
-  if (!std::filesystem::is_symlink(output, unreadable)) return output;
-  const std::filesystem::path link(output);
-  return (link.parent_path() / std::filesystem::read_symlink(link)).string();
+  return output_path(output);
 }
 
 RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
-  RunSettings settings{.output = output_path(arguments, loaded),
+  RunSettings settings{.output = results_path(arguments, loaded),
                        .take_over = arguments.force,
                        .retry_failed = arguments.retry_failed,
                        .shard = arguments.shard,

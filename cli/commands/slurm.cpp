@@ -17,6 +17,7 @@
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/slurm_job.hpp"
 #include "study/cluster/job_plan.hpp"
 #include "study/cost/scene_pilot.hpp"
@@ -51,6 +52,12 @@ std::string one_line(const std::string& text, const char* what) {
                     "take another name",
                     what, text));
   return text;
+}
+
+/// A folder's name by which a link to the folder is seen as one.
+std::string without_last_slashes(std::string folder) {
+  while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
+  return folder;
 }
 
 /// Slurm counts whole minutes.
@@ -115,8 +122,9 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
   const std::string& name = loaded.scene.name;
   return {.name = name,
           .scene = one_line(arguments.scene, "the scene"),
-          .results =
-              one_line(arguments.folder.empty() ? name + ".shards" : arguments.folder, "--folder"),
+          .results = one_line(
+              arguments.folder.empty() ? name + ".shards" : without_last_slashes(arguments.folder),
+              "--folder"),
           .folder = one_line(fs::current_path().string(), "the folder"),
           .program = one_line(fs::read_symlink("/proc/self/exe").string(), "the program"),
           .made_by = commented(shell_words(command_line())),
@@ -152,6 +160,7 @@ void write_script(const SlurmArguments& arguments) {
        .shards = arguments.jobs,
        .most_tasks = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(largest, 1, 1u << 20))});
   const BatchScript script = script_for(arguments, loaded, plan, pilot);
+  output_path(script.results + "/1.h5");  // refuses links of others
   const std::string text = slurm_script(script, plan);
   if (arguments.output.empty()) {
     print_exactly(text);

@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <system_error>
 
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 
@@ -19,13 +21,6 @@ namespace jostle::inline cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-void write_file(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw ResultsError(path.string(), "cannot write it: is the disk full?");
-}
 
 /// Empty where there is no such file.
 std::string read_file(const fs::path& path) {
@@ -41,7 +36,7 @@ class FileActions {
     ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, messages.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC, 0600);
+                                       O_WRONLY | O_CREAT | O_EXCL, 0600);
     ::posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
   }
   FileActions(const FileActions&) = delete;
@@ -81,7 +76,8 @@ int call_gnuplot(const std::string& script, const fs::path& folder, const fs::pa
 std::vector<NamedText> run_gnuplot(const std::string& script, const std::vector<NamedText>& files,
                                    const std::vector<std::string>& wanted) {
   const ScratchFolder folder("figures");
-  for (const NamedText& file : files) write_file(folder.path() / file.name, file.text);
+  for (const NamedText& file : files)
+    write_new_file(folder.path() / file.name, std::as_bytes(std::span(file.text)));
   const fs::path messages = folder.path() / "messages.txt";
   const int status = call_gnuplot(script, folder.path(), messages);
   std::vector<NamedText> drawn;

@@ -7,6 +7,7 @@
 
 #include "cli/files/output_file.hpp"
 #include "cli/terminal/standard_streams.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
@@ -26,7 +27,8 @@ void keep_tables(const std::string& path, const std::string& group, std::span<co
 
 void write_text(const std::string& path, const std::string& text) {
   const auto bytes = std::as_bytes(std::span(text));
-  if (!is_stream(path)) return publish(end_of_links(path), bytes);
+  const std::string end = output_path(path);
+  if (!is_stream(path)) return publish(end, bytes);
   const Descriptor stream(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY));
   if (!stream) fail_on_disk(path, "open", errno);
   write_all(path, stream.get(), bytes);

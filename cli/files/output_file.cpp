@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 #include "study/bad_input.hpp"
@@ -40,6 +41,7 @@ bool is_stream(const std::string& path) {
 void require_replaceable(const std::string& output, const std::string& example) {
   std::error_code ignored;
   require_folder(output);
+  output_path(output);  // refuses links of others
   const fs::file_status status = fs::status(output, ignored);
   if (fs::is_directory(status)) {
     throw BadInput(fmt::format("{} is a folder: name a file in it with -o, as {}", output,
@@ -90,6 +92,7 @@ void require_results_or_empty(const std::string& output) {
 void require_text_output(const std::string& option, const std::string& output,
                          std::span<const std::string> read, bool force) {
   if (output.empty()) return;
+  output_path(output);  // refuses links of others
   require_not_read(option, output, read);
   require_folder(output);
   std::error_code ignored;

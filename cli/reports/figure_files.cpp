@@ -9,7 +9,7 @@
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
 #include "ensemble/statistics/counted.hpp"
-#include "results/error.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "study/figures/figures.hpp"
 #include "study/report/study_words.hpp"
 #include "study/results_input.hpp"
@@ -33,9 +33,7 @@ void require_folder_for(const FigureFolder& folder, const std::vector<FigureOfFi
   if (fs::exists(folder.path, fault) && !fs::is_directory(folder.path, fault)) {
     throw BadInput(fmt::format("--figures {}: it is a file. Name a folder.", folder.path));
   }
-  if (!fs::is_directory(folder.path, fault) && !fs::create_directory(folder.path, fault)) {
-    throw ResultsError(folder.path, "cannot make the folder: " + fault.message());
-  }
+  make_folder(folder.path);
   for (const FigureOfFile& one : figures) {
     for (const char* const kind : kinds) {
       const std::string path = (fs::path(folder.path) / (one.figure.name + kind)).string();

@@ -11,6 +11,7 @@
 #include "cli/reports/durations.hpp"
 #include "cli/reports/redo_command.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
 #include "study/provenance.hpp"
@@ -105,6 +106,7 @@ JobArray job_array(const ShardsStatus& study) {
   const std::string path = (*folder / "job.sbatch").string();
   std::error_code unreadable;
   if (!fs::is_regular_file(path, unreadable)) return {};
+  if (may_be_planted(path, Writers::a_group_or_everybody)) return {};  // it would be submitted
   try {
     const std::string script = read_text_file(path);
     const auto shards = variable(script, "shards"), a_task = variable(script, "a_task");

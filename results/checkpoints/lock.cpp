@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
@@ -226,7 +227,8 @@ void take_away(const std::string& path, const std::string& seen) {
 
 }  // namespace
 
-RunLock::RunLock(const std::string& results_path, bool force) : path_(lock_path(results_path)) {
+RunLock::RunLock(const std::string& results_path, bool force)
+    : path_(lock_path(output_path(results_path))) {
   OpenedLock lock;
   for (;;) {
     lock = try_open(path_);

@@ -43,14 +43,6 @@ const char* way_out(std::string_view what, int error) {
   }
 }
 
-/// The system's rule of sticky folders (fs.protected_symlinks), for links that we follow ourselves.
-bool is_planted(const struct stat& link, const std::string& folder) {
-  struct stat status;
-  if (link.st_uid == ::geteuid() || ::stat(folder.c_str(), &status) != 0) return false;
-  const bool for_everybody = (status.st_mode & S_ISVTX) != 0 && (status.st_mode & S_IWOTH) != 0;
-  return for_everybody && link.st_uid != status.st_uid;
-}
-
 }  // namespace
 
 void fail_on_disk(const std::string& path, const char* what, int error) {
@@ -80,10 +72,6 @@ std::string end_of_links(const std::string& path) {
   for (int links = 0; links < most_links; ++links) {
     struct stat status;
     if (::lstat(end.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return end;
-    if (is_planted(status, folder_of(end)))
-      throw ResultsError(end,
-                         "is a link that another user put into a folder where everybody may "
-                         "write, and is not followed; name what it leads to");
     std::error_code error;
     end = end.parent_path() / std::filesystem::read_symlink(end, error);
     if (error) fail_on_disk(path, "follow", error.value());

@@ -10,15 +10,14 @@
 namespace jostle::inline results {
 
 /// Publishes the bytes under `path`, replacing what was there, but for a link, which is refused
-/// (end_of_links). On failure what was there stays.
+/// (output_path). On failure what was there stays.
 void publish(const std::string& path, std::span<const std::byte> bytes);
 
 /// All bytes to a descriptor that is open on `path`, whatever interrupts or shortens a write.
 void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes);
 
-/// Where symbolic links at `path` end: the path itself if it is none. As the system itself does, it
-/// refuses links that others put into a folder where everybody may write, as /tmp: who plants one
-/// chooses what is written over.
+/// Where symbolic links at `path` end, to read there: the path itself if it is none. What is to be
+/// written has output_path().
 std::string end_of_links(const std::string& path);
 
 /// Refuses to replace what is no file, and a file that is write-protected; what is not there may

@@ -10,6 +10,7 @@
 #include <functional>
 #include <utility>
 
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
@@ -54,6 +55,10 @@ void require_own_folder(const std::string& folder) {
     throw ResultsError(folder,
                        "is no folder that jostle made, which needs this name: move it away, or "
                        "name the results file otherwise");
+  if (may_be_planted(folder, Writers::everybody))
+    throw ResultsError(folder,
+                       "is a folder of another user where everybody may write, and could be "
+                       "exchanged under the run: name the results file otherwise");
 }
 
 /// The files of the folder that are parts, by name; none where there is no folder.
@@ -264,7 +269,7 @@ bool parts_exist(const std::string& results_path) {
 }
 
 void make_parts_folder(const std::string& results_path) {
-  const std::string folder = parts_folder(results_path);
+  const std::string folder = parts_folder(output_path(results_path));
   struct stat status;
   const bool is_private =
       ::stat(results_path.c_str(), &status) == 0 && (status.st_mode & (S_IRGRP | S_IROTH)) == 0;

@@ -6,12 +6,14 @@
 #include <cerrno>
 #include <system_error>
 
+#include "results/checkpoints/output_path.hpp"
 #include "results/error.hpp"
 
 namespace jostle::inline results {
 
 ScratchFolder::ScratchFolder(const std::string& purpose, const std::filesystem::path& within) {
   std::string name = (within / fmt::format("jostle-{}-XXXXXX", purpose)).string();
+  output_path(name);  // refuses links of others on the way
   if (::mkdtemp(name.data()) == nullptr) {
     const std::string reason = std::generic_category().message(errno);
     throw ResultsError(within.string(), fmt::format("cannot make a folder there ({})", reason));

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 
@@ -58,6 +59,7 @@ bool is_temporary(const std::string& name, const std::string& target) {
 }  // namespace
 
 TemporaryFile::TemporaryFile(const std::string& path) : target_(path) {
+  output_path(target_);  // refuses links of others on the way
   const auto old = replaced_file(target_);
   const mode_t mode = old ? 0600 : 0666;
   do {

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <optional>
 
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/export/container_text.hpp"
 #include "results/export/extended_xyz.hpp"
@@ -57,7 +58,7 @@ std::string extended_xyz_text(std::span<const ExportedFrame> frames) {
 void write_extended_xyz(const std::string& path, const Packing& packing) {
   std::string text;
   append_frame(text, packing, {}, std::nullopt);
-  publish(path, std::as_bytes(std::span(text)));
+  publish(output_path(path), std::as_bytes(std::span(text)));
 }
 
 }  // namespace jostle::inline results

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "engine/bed/boundary.hpp"
+#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/file/particles.hpp"
 #include "results/file/study_writer.hpp"
@@ -128,7 +129,7 @@ void write_h5md(const std::string& path, Frames frames) {
                       "first; export them one by one",
                       frame.tap));
   }
-  TemporaryFile temporary(path);
+  TemporaryFile temporary(output_path(path));
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name());
     write_h5md_root(file);
