@@ -25,15 +25,34 @@ void report(const std::vector<double>& values, const char* what, Bad bad,
 // The points of these numbers, in this order.
 Curve chosen(const Curve& curve, const std::vector<std::size_t>& points) {
   Curve part{.t = {}, .x = {}, .n_realizations = curve.n_realizations};
+  part.offsets = curve.offsets;
   for (const std::size_t i : points) {
     part.t.push_back(curve.t[i]);
     part.x.push_back(curve.x[i]);
     if (!curve.sigma.empty()) part.sigma.push_back(curve.sigma[i]);
     for (std::size_t r = 0; r < curve.n_realizations; ++r) {
       part.values.push_back(curve.values[i * curve.n_realizations + r]);
+      if (!curve.present.empty()) {
+        part.present.push_back(curve.present[i * curve.n_realizations + r]);
+      }
     }
   }
   return part;
+}
+
+// Of the error of each mean over their root mean square, by the number of realizations present.
+std::vector<double> error_growth(const Curve& curve) {
+  std::vector<double> growth(curve.x.size(), 1.0);
+  if (curve.present.empty()) return growth;
+  double sum = 0;
+  for (std::size_t i = 0; i < growth.size(); ++i) {
+    const auto row = curve.present.begin() + static_cast<std::ptrdiff_t>(i * curve.n_realizations);
+    const auto n = std::accumulate(row, row + static_cast<std::ptrdiff_t>(curve.n_realizations), 0);
+    growth[i] = 1 / std::sqrt(static_cast<double>(n));
+    sum += growth[i] * growth[i];
+  }
+  for (double& factor : growth) factor /= std::sqrt(sum / static_cast<double>(growth.size()));
+  return growth;
 }
 
 }  // namespace
@@ -65,7 +84,10 @@ Curve with_pooled_errors(Curve curve, bool relative) {
   }
   const double error = std::sqrt(sum / static_cast<double>(curve.x.size() * m * (m - 1)));
   if (!(error > 0) || !std::isfinite(error)) return curve;
-  for (const double x : curve.x) curve.sigma.push_back(relative ? error * std::abs(x) : error);
+  const std::vector<double> growth = error_growth(curve);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    curve.sigma.push_back(growth[i] * (relative ? error * std::abs(curve.x[i]) : error));
+  }
   return curve;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ struct Curve {
   /// a fit then come from how they scatter as whole curves, whatever the memory of each.
   std::vector<double> values = {};
   std::size_t n_realizations = 0;  // 0, or at least 2
+  /// Which realizations had a value, [n, n_realizations], or empty: all. Where one had none,
+  /// `values` are the pseudo-values of mean_of_present(), and `offsets` [n_realizations] its
+  /// offsets.
+  std::vector<std::uint8_t> present = {};
+  std::vector<double> offsets = {};
 };
 
 /// The mean of realizations, in their order. values: [n, n_realizations], n_realizations >= 1; one
@@ -24,7 +30,7 @@ Curve mean_curve(std::vector<double> t, std::vector<double> values, std::size_t 
 /// The curve with errors of its means over realizations, where it has realizations and no errors of
 /// its own: their variance pooled over all points, of x or, where `relative`, of ln x. The scatter
 /// of a few values at one point would be no weight: fits would follow the points where realizations
-/// agree by accident.
+/// agree by accident. Where realizations are missing it grows as one over the number present.
 Curve with_pooled_errors(Curve curve, bool relative = false);
 
 /// What makes a curve unfit for any fit: lengths that differ, values that are not finite, errors

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -18,6 +17,7 @@
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/bad_input.hpp"
+#include "study/number_text.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -38,13 +38,11 @@ struct ExportArguments {
 KeptTaps tap_choice(const std::vector<std::string>& words) {
   KeptTaps choice;
   for (const std::string& word : words) {
-    std::uint64_t tap = 0;
-    const char* const end = word.data() + word.size();
-    const auto read = std::from_chars(word.data(), end, tap);
+    const auto tap = read_whole_number(word);
     if (word == "all") {
       choice.all = true;
-    } else if (read.ec == std::errc() && read.ptr == end) {
-      choice.taps.push_back(tap);
+    } else if (tap) {
+      choice.taps.push_back(*tap);
     } else {
       throw BadInput(
           fmt::format("--tap {}: neither a number nor \"all\"; several: --tap 0,10,100", word));

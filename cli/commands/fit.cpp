@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -18,12 +16,13 @@
 #include "config/json/suggestion.hpp"
 #include "fitting/models/models.hpp"
 #include "study/available_cpus.hpp"
+#include "study/number_text.hpp"
 #include "study/provenance.hpp"
-#include "study/tables/curve_file.hpp"
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
 #include "study/tables/laws/law_formula.hpp"
 #include "study/tables/laws/own_law.hpp"
+#include "study/tables/measured/curve_file.hpp"
 
 namespace jostle::inline cli {
 
@@ -41,6 +40,8 @@ struct FitArguments {
   bool json = false, force = false, not_stored = false;
   Layout layout;
   bool realizations = false;  // columns of a curve file
+  std::string gaps = "use-others";
+  bool gaps_asked_for = false, independent = false;
   Live live = Live::no;
   bool resampling_asked_for = false;
 };
@@ -66,13 +67,10 @@ std::vector<NamedNumber> named_numbers(const std::string& option,
   std::vector<NamedNumber> all;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
-    char* end = nullptr;
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    const double number = std::strtod(value.c_str(), &end);
-    if (value.empty() || *end != '\0' || !std::isfinite(number)) {
-      throw BadInput(fmt::format("{} {}: not NAME=NUMBER", option, text));
-    }
-    all.emplace_back(text.substr(0, equals), number);
+    const auto number = read_number(value);
+    if (!number) throw BadInput(fmt::format("{} {}: not NAME=NUMBER", option, text));
+    all.emplace_back(text.substr(0, equals), *number);
   }
   return all;
 }
@@ -130,21 +128,20 @@ std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments)
   return models;
 }
 
-std::vector<FitSource> read_sources(const FitArguments& arguments) {
-  if (is_results_file(arguments.input)) {
-    if (arguments.realizations) {
-      throw BadInput(
-          "--realizations is of the columns of a text file; a results file knows its own");
-    }
-    if (arguments.observable.empty()) {
-      throw BadInput("a results file needs --observable NAME; jostle info lists them");
-    }
-    // Tap 0 is the start: a law of taps begins with the first.
-    const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
-    const ResultsFile file = open_to_read(arguments.input, arguments.live);
-    return results_curves(file, chosen_points(file.study(), arguments.point), arguments.observable,
-                          range);
+/// Options that have no sense with a results file.
+void refuse_options_of_text(const FitArguments& arguments) {
+  if (arguments.realizations || arguments.gaps_asked_for) {
+    throw BadInput(fmt::format(
+        "{} is of the columns of a text file; a results file knows its own realizations",
+        arguments.realizations ? "--realizations" : "--gaps"));
   }
+  if (arguments.independent) {
+    throw BadInput("--independent is of the rows of a text file; taps of a run have a memory");
+  }
+}
+
+/// Options that have no sense with a text file, or with this one.
+void refuse_options_of_results(const FitArguments& arguments) {
   if (!arguments.observable.empty() || !arguments.point.empty()) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
                                arguments.input));
@@ -155,19 +152,50 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
         "--resamples or --seed could be of",
         arguments.input));
   }
+  if (arguments.gaps_asked_for && !arguments.realizations) {
+    throw BadInput("--gaps is of the columns of realizations: give --realizations");
+  }
+  if (arguments.independent && arguments.realizations) {
+    throw BadInput(
+        "--independent is of a curve alone; errors of --realizations come from their scatter");
+  }
+}
+
+FitSource measured_source(const FitArguments& arguments) {
+  refuse_options_of_results(arguments);
   const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
+  MeasuredCurve measured = read_curve(
+      arguments.input,
+      {.columns = arguments.realizations ? CurveColumns::realizations : CurveColumns::errors,
+       .gaps = arguments.gaps == "drop-row" ? Gaps::drop_row : Gaps::use_others,
+       .first = range.first,
+       .last = range.last});
   FitSource source;
-  const auto columns = arguments.realizations ? CurveColumns::realizations : CurveColumns::errors;
-  source.curve = within(read_curve(arguments.input, columns), range.first, range.last);
+  source.curve = std::move(measured.curve);
+  source.notes = std::move(measured.notes);
   source.title = arguments.input;
   if (arguments.realizations) {
     source.title += fmt::format(", {} realizations", source.curve.n_realizations);
   }
-  return {source};
+  return source;
+}
+
+std::vector<FitSource> read_sources(const FitArguments& arguments) {
+  if (!is_results_file(arguments.input)) return {measured_source(arguments)};
+  refuse_options_of_text(arguments);
+  if (arguments.observable.empty()) {
+    throw BadInput("a results file needs --observable NAME; jostle info lists them");
+  }
+  // Tap 0 is the start: a law of taps begins with the first.
+  const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
+  const ResultsFile file = open_to_read(arguments.input, arguments.live);
+  return results_curves(file, chosen_points(file.study(), arguments.point), arguments.observable,
+                        range);
 }
 
 FitManner manner_of(const FitArguments& arguments) {
   return {.fixed = fixed_parameters(arguments.fixed),
+          .memory = !arguments.independent,
           .resampled = arguments.resample != "none",
           .resampling = {.kind = arguments.resample == "bootstrap" ? Resampling::bootstrap
                                                                    : Resampling::jackknife,
@@ -179,6 +207,7 @@ FitManner manner_of(const FitArguments& arguments) {
 Json source_json(const FittedCurve& fitted) {
   const auto& [source, outcomes] = fitted;
   Json object = {{"title", source.title}, {"fits", Json::array()}};
+  if (!source.point) object["notes"] = source.notes;
   if (source.point) {
     object["observable"] = source.observable;
     object["sweep_point"] = *source.point;
@@ -201,18 +230,18 @@ int run_fits(const FitArguments& arguments) {
   }
   const FitManner manner = manner_of(arguments);
   const Provenance by = provenance_of_this_run("");
-  bool any = false;
   std::vector<Table> tables;
-  std::string csv;
+  std::string csv, refusals;  // of curves without a fit
+  bool any = false;
   Json curves = Json::array();
   for (const FitSource& source : sources) {
     const FittedCurve fitted{source, fit_models(models, source.curve, manner)};
-    for (const FitOutcome& outcome : fitted.outcomes) {
-      any = any || std::holds_alternative<Fit>(outcome.result);
-    }
+    const std::string refusal = refusal_of_all(fitted);
+    any = any || refusal.empty();
+    if (!refusal.empty()) refusals += (refusals.empty() ? "" : "\n") + refusal;
     if (arguments.json) {
       curves.push_back(source_json(fitted));
-    } else {
+    } else if (refusal.empty()) {
       print_report(fits_text(fitted, arguments.layout));
     }
     if (source.point) {
@@ -230,7 +259,9 @@ int run_fits(const FitArguments& arguments) {
   if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
     keep_tables(arguments.input, "fits", tables, by);
   }
-  return any ? exit_ok : exit_bad_input;
+  if (!any) throw BadInput(refusals);
+  if (!refusals.empty()) print_to_standard_error(fmt::format("jostle: {}\n", refusals));
+  return exit_ok;
 }
 
 /// A law of one's own, and the options that have no sense without it.
@@ -281,6 +312,13 @@ void add_fit(Command& app, int& code) {
   command.add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
   command.add_flag("--realizations", a.realizations,
                    "The text file has a column t and one column of X a realization, two or more");
+  const Option gaps =
+      command
+          .add_option("--gaps", a.gaps,
+                      "Where a realization has no value: use-others (default), drop-row")
+          .one_of({"use-others", "drop-row"});
+  command.add_flag("--independent", a.independent,
+                   "The text file's rows are independent: look for no memory in the residuals");
   const Option resample =
       command
           .add_option(
@@ -307,13 +345,15 @@ void add_fit(Command& app, int& code) {
       "  jostle fit bell.h5 --observable bulk_fraction --model kww --range 1:400\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
-      "  jostle fit experiments.csv --realizations       a column an experiment\n"
+      "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"
+      "  jostle fit measured.csv --model kww --independent\n"
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");
   command.run([=, &code] {
     arguments->resampling_asked_for = (resample.count() > 0 && arguments->resample != "none") ||
                                       count.count() > 0 || seed.count() > 0;
+    arguments->gaps_asked_for = gaps.count() > 0;
     code = run_fits(*arguments);
   });
 }

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -28,6 +27,7 @@
 #include "results/export/printable.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
+#include "study/number_text.hpp"
 #include "study/provenance.hpp"
 #include "study/run.hpp"
 #include "study/scenes/scene_warnings.hpp"
@@ -48,17 +48,14 @@ struct RunArguments {
 };
 
 Shard parse_shard(std::string_view text) {
-  Shard shard{0, 0};
-  const char* const end = text.data() + text.size();
-  const auto index = std::from_chars(text.data(), end, shard.index);
-  const bool slash = index.ptr != end && *index.ptr == '/';
-  const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
-  if (!slash || count.ptr != end || index.ec != std::errc{} || count.ec != std::errc{} ||
-      shard.index < 1 || shard.index > shard.count || shard.count > most_realizations) {
+  const std::size_t slash = text.find('/');
+  const auto index = read_whole_number(text.substr(0, slash));
+  const auto count = slash < text.size() ? read_whole_number(text.substr(slash + 1)) : std::nullopt;
+  if (!index || !count || *index < 1 || *index > *count || *count > most_realizations) {
     throw BadValue(fmt::format("\"{}\" is not a share i/n with 1 <= i <= n <= {}, as 1/4", text,
                                most_realizations));
   }
-  return shard;
+  return {static_cast<std::uint32_t>(*index), static_cast<std::uint32_t>(*count)};
 }
 
 Seconds duration_argument(const std::string& text) {

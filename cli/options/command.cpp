@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "cli/options/command_text.hpp"
+#include "study/number_text.hpp"
 
 namespace jostle::inline cli {
 
@@ -17,19 +17,53 @@ namespace {
 
 /// The parser's own checks wrap negative numbers, and print ranges in 309 digits.
 std::string whole_number_fault(const std::string& text, std::uint64_t least) {
-  std::uint64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec == std::errc() && read.ptr == end && value >= least) return {};
+  const auto number = read_whole_number(text);
+  if (number && *number >= least) return {};
   return fmt::format("{} is not a whole number from {} on", text, least);
 }
 
 std::string positive_number_fault(const std::string& text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec == std::errc() && read.ptr == end && std::isfinite(value) && value > 0) return {};
+  const auto number = read_number(text);
+  if (number && *number > 0) return {};
   return fmt::format("{} is not a number above 0", text);
+}
+
+/// The parser itself takes hexadecimal and octal numbers, "inf" and "nan". Its checks may change
+/// the text: whole numbers lose leading zeros, which it would take for octal.
+template <class T>
+std::string require_plain_number(std::string& text) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return read_number(text) ? "" : fmt::format("{} is not a number like 12, -0.5 or 1e-3", text);
+  } else {
+    const bool is_negative = std::is_signed_v<T> && text.starts_with('-');
+    const std::string digits = text.substr(is_negative ? 1 : 0);
+    const auto number = read_whole_number(digits);
+    if (!number) {
+      return fmt::format("{} is not a whole number{}", text,
+                         std::is_signed_v<T> ? "" : " from 0 on");
+    }
+    text = fmt::format("{}{}", is_negative ? "-" : "", *number);
+    return {};
+  }
+}
+
+/// The number that an option holds, once or several times; void where it holds none.
+template <class T>
+struct NumberOf {
+  using type = std::conditional_t<std::is_arithmetic_v<T>, T, void>;
+};
+template <class T>
+struct NumberOf<std::optional<T>> : NumberOf<T> {};
+template <class T>
+struct NumberOf<std::vector<T>> : NumberOf<T> {};
+
+template <class T>
+CLI::Option& with_plain_numbers(CLI::Option& option) {
+  using Number = typename NumberOf<T>::type;
+  if constexpr (!std::is_void_v<Number>) {
+    option.transform(CLI::Validator(require_plain_number<Number>, "", ""));
+  }
+  return option;
 }
 
 std::string file_name_fault(const std::string& text) {
@@ -140,12 +174,12 @@ Command Command::add_command(const std::string& name, const std::string& descrip
 
 template <class T>
 Option Command::add_option(const std::string& name, T& value, const std::string& description) {
-  return Option(*app_->add_option(name, value, description));
+  return Option(with_plain_numbers<T>(*app_->add_option(name, value, description)));
 }
 
 template <class T>
 Option Command::add_hidden_option(const std::string& name, T& value) {
-  return Option(*app_->add_option(name, value)->group(""));
+  return Option(with_plain_numbers<T>(*app_->add_option(name, value)->group("")));
 }
 
 #define JOSTLE_OPTION_OF(T)                                                        \

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "study/bad_input.hpp"
+#include "study/number_text.hpp"
 
 namespace jostle::inline cli {
 
@@ -15,15 +14,9 @@ namespace {
 double read_end(const std::string& text, double otherwise, const std::string& option,
                 const std::string& range) {
   if (text.empty()) return otherwise;
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || std::isnan(value)) {
-    throw BadInput(
-        fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left "
-                    "out",
-                    option, range));
-  }
-  return value;
+  if (const auto number = read_number(text)) return *number;
+  throw BadInput(fmt::format("{} {}: not FIRST:LAST, two numbers of which one may be left out",
+                             option, range));
 }
 
 }  // namespace

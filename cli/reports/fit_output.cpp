@@ -160,6 +160,7 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
     if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
   }
   std::string text = fitted.source.title + "\n";
+  for (const std::string& note : fitted.source.notes) text += fmt::format("  note     {}\n", note);
   if (!fits.empty()) text += fmt::format("  verdict  {}\n", verdict(fits));
   const ReportDetail detail =
       layout.columns == Columns::all ? ReportDetail::full : ReportDetail::brief;

@@ -25,18 +25,28 @@ void add_table_output(Command& command, TableOutput& output) {
 }
 
 void ShownTables::heading(const std::string& text) {
-  if (!output_.json) print(fmt::format("{}\n\n", text));
+  if (!output_.json) print_once_any_is_made(fmt::format("{}\n\n", text));
+}
+
+void ShownTables::print_once_any_is_made(const std::string& text) {
+  held_ += text;
+  if (!any_) return;
+  print_report(held_);
+  held_.clear();
 }
 
 void ShownTables::show(std::span<const Table> tables, const std::string& input) {
   for (const Table& table : tables) {
     any_ = any_ || is_made(table);
+    for (const auto& [name, text] : table.notes) {
+      if (name == "refused") refusals_ += fmt::format("\n  {}: {}", table.name, text);
+    }
     if (output_.json) {
       Json listed = table_json(table);
       if (!input.empty()) listed["file"] = input;
       listed_.push_back(std::move(listed));
     } else {
-      print_report(table_text(table, output_.layout) + "\n");
+      print_once_any_is_made(table_text(table, output_.layout) + "\n");
     }
     if (output_.csv.empty()) continue;
     if (!input.empty()) csv_ += fmt::format("# {}\n", input);
@@ -50,7 +60,9 @@ int ShownTables::end(const Provenance& by) const {
     print_json(object);
   }
   if (!output_.csv.empty()) write_text(output_.csv, csv_);
-  return any_ ? exit_ok : exit_bad_input;
+  if (any_) return exit_ok;
+  print_to_standard_error(fmt::format("jostle: no table could be made{}\n", refusals_));
+  return exit_bad_input;
 }
 
 }  // namespace jostle::inline cli

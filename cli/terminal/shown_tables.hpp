@@ -28,7 +28,8 @@ struct TableOutput {
 /// --json, --csv, --wide, --force, --no-store, --live.
 void add_table_output(Command& command, TableOutput& output);
 
-/// Prints tables as they come, and at the end what comes as a whole.
+/// Prints tables as they come, and at the end what comes as a whole. Where none could be made the
+/// reasons go to standard error, and for people nothing is printed.
 class ShownTables {
  public:
   explicit ShownTables(const TableOutput& output) : output_(output) {}
@@ -41,7 +42,11 @@ class ShownTables {
   int end(const Provenance& by) const;
 
  private:
+  void print_once_any_is_made(const std::string& text);
+
   const TableOutput& output_;
+  std::string held_;      // to be printed once a table is made
+  std::string refusals_;  // why tables could not be made, a line each
   Json listed_ = Json::array();
   std::string csv_;
   bool any_ = false;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/intervals/gapped_dof.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
 namespace jostle::inline fitting {
@@ -109,6 +110,7 @@ DependentErrors dependent_errors(const Curve& curve, const LinearProblem& proble
     errors = {Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), infinite};
   } else if (scattered) {
     errors = clustered_errors(problem.jacobian, deviations(curve));
+    if (!curve.present.empty()) errors.dof = gapped_dof(problem.jacobian, curve);
   } else if (memory && fit.dof > 0 && fit.residual_sum > 0 && fit.reason != EndReason::exact) {
     errors = of_memory(curve, problem, fit);
   } else {

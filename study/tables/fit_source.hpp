@@ -16,7 +16,8 @@ struct FitSource {
   std::string title;              // for people
   std::string observable, label;  // of a results file
   std::optional<std::uint32_t> point;
-  Curve curve;  // with its realizations, where there are two or more
+  Curve curve;                          // with its realizations, where there are two or more
+  std::vector<std::string> notes = {};  // on how a measured curve was read, a sentence each
 };
 
 /// A range of t, both ends included.

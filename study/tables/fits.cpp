@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "results/file/layout.hpp"
@@ -14,10 +15,13 @@ namespace {
 FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& manner) {
   FitOptions options;
   options.fixed = manner.fixed;
+  options.memory = manner.memory;
   FitOutcome outcome{model.name(), fit(model, curve, options), {}};
   const auto* found = std::get_if<Fit>(&outcome.result);
   if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
-  const RealizationCurves behind{curve.t, curve.sigma, curve.values,
+  const bool logarithmic = model.residual_scale() == ResidualScale::logarithmic;
+  const Curve weighted = curve.present.empty() ? curve : with_pooled_errors(curve, logarithmic);
+  const RealizationCurves behind{curve.t, weighted.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
   outcome.resampled = resample(model, behind, *found, manner.resampling);
   return outcome;
@@ -191,6 +195,24 @@ std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& mo
   std::vector<FitOutcome> outcomes;
   for (const auto& model : models) outcomes.push_back(fit_model(*model, curve, manner));
   return outcomes;
+}
+
+std::string refusal_of_all(const FittedCurve& fitted) {
+  std::vector<std::pair<std::string, std::string>> reasons;  // and the laws
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    const auto* refusal = std::get_if<Refusal>(&outcome.result);
+    if (refusal == nullptr) return "";
+    const auto known =
+        std::ranges::find(reasons, refusal->message, &decltype(reasons)::value_type::first);
+    if (known == reasons.end()) {
+      reasons.emplace_back(refusal->message, outcome.model);
+    } else {
+      known->second += ", " + outcome.model;
+    }
+  }
+  std::string text = fitted.source.title + ": no law could be fitted";
+  for (const auto& [reason, laws] : reasons) text += fmt::format("\n  {}: {}", laws, reason);
+  return text;
 }
 
 std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner) {

@@ -21,6 +21,7 @@ namespace jostle::inline study {
 /// How curves are fitted and how the errors of resampled realizations are made.
 struct FitManner {
   std::map<std::string, double> fixed = {};  // parameters that keep a value
+  bool memory = true;  // of a curve alone, looked for in its residuals: not of independent points
   bool resampled = false;
   ResamplingOptions resampling = {};
 };
@@ -45,6 +46,10 @@ std::vector<std::unique_ptr<Model>> models_named(const std::string& name);
 
 std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& models,
                                    const Curve& curve, const FitManner& manner);
+
+/// Why no law could be fitted to a curve, each reason with the laws that it concerns; empty where
+/// one was fitted.
+std::string refusal_of_all(const FittedCurve& fitted);
 
 /// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `manner` says how
 /// resampled errors were made.

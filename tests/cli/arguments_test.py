@@ -48,7 +48,7 @@ class Numbers(Refused):
         self.results()
         self.write(CURVE, "curve.csv")
         for target in ("0", "-1", "nan", "inf", "x"):
-            self.refused("cost", "scene.json", "--target", target, answer="not a number above 0")
+            self.refused("cost", "scene.json", "--target", target, answer="is not a number")
         for words in ("5:2", "nan:4", "4:nan"):
             self.refused("fit", "curve.csv", "--range", words, answer=f"--range {words}")
         self.refused("analyse", "tiny.h5", *STEADY, "--last", 0, answer="--last: 0 is not")
@@ -56,6 +56,57 @@ class Numbers(Refused):
                      answer="asks for the last 5 taps; at least 32 are needed")
         self.refused("analyse", "tiny.h5", *STEADY, "--last", 41,
                      answer="asks for the last 41 taps; there are 40")
+
+    def test_no_option_reads_what_is_no_plain_decimal_number(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        of_results = ["--observable", "mean_height"]
+        for option, arguments in (
+                ("--last", ["analyse", "tiny.h5", *STEADY]),
+                ("--lags", ["analyse", "tiny.h5", "ageing", *of_results]),
+                ("--waiting-times", ["analyse", "tiny.h5", "ageing", *of_results]),
+                ("--segment", ["analyse", "tiny.h5", "spectrum", *of_results]),
+                ("--band", ["analyse", "tiny.h5", "spectrum", *of_results]),
+                ("--threshold", ["analyse", "tiny.h5", "ordering", *of_results]),
+                ("--hold", ["analyse", "tiny.h5", "ordering", *of_results]),
+                ("--reference", ["analyse", "tiny.h5", "sweep", *of_results]),
+                ("--spheres", ["analyse", "tiny.h5", "volumes", *of_results]),
+                ("--tap", ["structure", "tiny.h5"]),
+                ("--tap", ["export", "tiny.h5", "--format", "vtp"]),
+                ("--realization", ["export", "tiny.h5", "--format", "vtp"]),
+                ("--columns", ["report", "tiny.h5", "--figures", "figures"]),
+                ("--seed", ["fit", "tiny.h5", *of_results]),
+                ("--resamples", ["fit", "tiny.h5", *of_results]),
+                ("--range", ["fit", "curve.csv"]),
+                ("--fix", ["fit", "curve.csv"]),
+                ("--target", ["cost", "scene.json"]),
+                ("--replicates", ["cost", "scene.json"]),
+                ("--taps", ["cost", "scene.json"]),
+                ("--budget", ["cost", "scene.json"]),
+                ("--hours", ["slurm", "scene.json"]),
+                ("--cpus", ["slurm", "scene.json"]),
+                ("--jobs", ["slurm", "scene.json"]),
+                ("--array-limit", ["slurm", "scene.json"]),
+                ("--shard", ["run", "scene.json"]),
+                ("--time-limit", ["run", "scene.json"]),
+                ("--threads", ["run", "scene.json"])):
+            for number in ("0x10", "inf", "1e", "+10", "1_0"):
+                text = {"--range": f"{number}:20", "--fix": f"rho_0={number}", "--band": f"{number}:0.4",
+                        "--shard": f"1/{number}"}.get(option, number)
+                with self.subTest(option=option, number=number):
+                    done = self.jostle(*arguments, f"{option}={text}", expect=BAD_INPUT)
+                    self.assertIn(option, done.stderr)
+                    self.assertEqual(done.stdout, "")
+
+    def test_leading_zeros_are_decimal_not_octal(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        fits = [self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww", "--no-store",
+                            "--resample", "bootstrap", "--resamples", "0010", "--seed", seed).stdout
+                for seed in ("010", "10", "8")]
+        self.assertEqual(fits[0], fits[1])
+        self.assertNotEqual(fits[0], fits[2])
+        self.assertIn("10 resamples", fits[0])
 
     def test_waiting_times_are_of_the_run_and_once(self):
         self.results()
@@ -222,6 +273,40 @@ class Doubtful(Case):
             with self.subTest(scene=path.name):
                 text = self.jostle("check", path, "--no-pilot").stdout
                 self.assertNotIn("\nwarnings\n", text)
+
+
+class Streams(Refused):
+    """Errors go to standard error, and standard output stays empty."""
+
+    def test_every_command_says_why_it_refuses(self):
+        self.write(changed(TINY, seed="x"))
+        self.write("no results", "data.h5")
+        for arguments in (["run", "scene.json"], ["check", "scene.json"], ["cost", "scene.json"],
+                          ["slurm", "scene.json"], ["run", "gone.json"], ["check", "gone.json"],
+                          ["cost", "gone.json"], ["slurm", "gone.json"], ["info", "gone.h5"],
+                          ["info", "data.h5"], ["info", "data.h5", "--digest"], ["fit", "gone.csv"],
+                          ["fit", "data.h5"], ["analyse", "data.h5", *STEADY], ["structure", "data.h5"],
+                          ["export", "data.h5", "--format", "vtp"], ["merge", "data.h5", "-o", "all.h5"],
+                          ["report", "data.h5"], ["status", "gone"], ["status", "data.h5"],
+                          ["bench", "everything"], ["new", "gone/a"], ["schema", "x"],
+                          ["selftest", "--folder", "gone"], ["fitt"], []):
+            with self.subTest(arguments=arguments):
+                done = self.jostle(*arguments, expect=None)
+                self.assertIn(done.returncode, (BAD_INPUT, BROKEN))
+                self.assertEqual(done.stdout, "")
+                self.assertRegex(done.stderr, r"\w")
+
+    def test_an_analysis_that_none_can_make_says_so(self):
+        self.write(TINY)  # four taps
+        self.run_scene("--quiet")
+        for arguments in (STEADY, ("spectrum", "--observable", "mean_height")):
+            with self.subTest(arguments=arguments):
+                done = self.jostle("analyse", "tiny.h5", *arguments, expect=BAD_INPUT)
+                self.assertEqual(done.stdout, "")
+                self.assertIn("no table could be made", done.stderr)
+                listed = self.jostle("analyse", "tiny.h5", *arguments, "--json", expect=BAD_INPUT)
+                self.assertIn("refused", listed.stdout)
+                self.assertIn("no table could be made", listed.stderr)
 
 
 if __name__ == "__main__":

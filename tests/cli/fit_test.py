@@ -5,7 +5,7 @@ import math
 import unittest
 
 import h5py
-from support import BAD_INPUT, OK, TINY, Case, changed
+from support import BAD_INPUT, OK, SOURCE, TINY, UNFOLDED, Case, changed
 
 TRUTH = {"X_inf": 0.64, "dX": 0.056, "B": 0.3, "tau": 10.0}
 
@@ -97,13 +97,13 @@ class Measured(WithCurve):
         self.write(self.table(), "data.csv")
         self.write("t,X\n1,2\n2,three\n", "words.csv")
         self.write("1,2\n2,3,4\n", "ragged.csv")
-        self.write("1,2\n2,nan\n3,3\n4,5\n5,6\n", "nan.csv")
+        self.write("1,2\n2,inf\n3,3\n4,5\n5,6\n", "inf.csv")
         self.write("1,2\n2,3\n", "short.csv")
         for arguments, message in (
                 (["nowhere.csv"], "nowhere.csv"),
                 (["words.csv"], "line 3"),
                 (["ragged.csv"], "line 2"),
-                (["nan.csv", "--model", "kww"], "X is not finite at 1 of 5 points"),
+                (["inf.csv"], 'line 2, column 2 (X): "inf" is not a number'),
                 (["short.csv", "--model", "kww"], "cannot determine 4 parameters"),
                 (["data.csv", "--model", "inverse"], "inverse_log"),
                 (["data.csv", "--range", "5"], "FIRST:LAST"),
@@ -114,6 +114,126 @@ class Measured(WithCurve):
             with self.subTest(arguments=arguments):
                 result = self.jostle("fit", *arguments, expect=BAD_INPUT)
                 self.assertIn(message, result.stderr + result.stdout)
+
+
+class Files(Case):
+    """Measured curves as experiments and other programs write them."""
+
+    def setUp(self):
+        super().setUp()
+        for path in (SOURCE / "tests/data/measured").glob("*.csv"):
+            (self.folder / path.name).write_bytes(path.read_bytes())
+
+    def curve(self, *arguments):
+        done = self.jostle("fit", *arguments, "--model", "inverse_log", "--json")
+        return json.loads(done.stdout)["curves"][0]
+
+    def parameters(self, *arguments):
+        return self.curve(*arguments)["fits"][0]["parameters"]
+
+    def test_columns_go_by_their_names(self):
+        named = self.parameters("v_named.csv")
+        self.assertAlmostEqual(named["X_inf"]["value"], 0.6322, delta=0.00005)
+        self.assertEqual(self.parameters("v_sigma_first.csv"), named)
+        index = self.curve("v_index.csv")
+        self.assertFalse(index["fits"][0]["sigma_given"])
+        self.assertEqual(index["notes"], ["Column 1 (no name) is an index and is not used."])
+        self.assertLess(abs(index["fits"][0]["parameters"]["X_inf"]["value"] - 0.6322), 0.002)
+        real = self.curve("real_index.csv", "--realizations")
+        self.assertEqual(real["fits"][0]["realizations"], 4)
+        self.assertEqual(real["fits"], self.curve("real.csv", "--realizations")["fits"])
+
+    def test_what_fit_wrote_is_fitted_alike(self):
+        self.jostle("fit", "v_named.csv", "--csv", "out.csv")
+        self.assertEqual(self.parameters("out.csv"), self.parameters("v_named.csv"))
+        self.jostle("fit", "real.csv", "--realizations", "--csv", "mean.csv")
+        mean = self.curve("mean.csv")
+        self.assertEqual(mean["fits"][0]["points"], 200)
+        self.assertEqual(len(mean["notes"]), 4)
+
+    def test_line_ends_and_dividers_change_nothing(self):
+        text = (self.folder / "real.csv").read_text()
+        known = self.curve("real.csv", "--realizations")["fits"]
+        for name, other in (("cr", text.replace("\n", "\r")), ("crlf", text.replace("\n", "\r\n")),
+                            ("bom", "\ufeff" + text), ("semicolons", text.replace(",", ";")),
+                            ("tabs", text.replace(",", "\t")), ("blanks", text.replace(",", "  ")),
+                            ("quotes", text.replace("t,r0", '"t","r0"'))):
+            with self.subTest(name):
+                (self.folder / "other.csv").write_bytes(other.encode())
+                self.assertEqual(self.curve("other.csv", "--realizations")["fits"], known)
+
+    def test_gaps_use_the_other_realizations(self):
+        lines = (self.folder / "real.csv").read_text().splitlines()
+        for i in range(5, 200, 10):
+            cells = lines[i].split(",")
+            cells[1 + i % 4] = ("", "NaN")[i % 20 // 10]
+            lines[i] = ",".join(cells)
+        self.write("\n".join(lines), "gaps.csv")
+        others = self.curve("gaps.csv", "--realizations", "--resample", "jackknife")
+        self.assertEqual(others["fits"][0]["points"], 200)
+        self.assertIn("20 of 800 values are missing", others["notes"][0])
+        dropped = self.curve("gaps.csv", "--realizations", "--gaps", "drop-row")
+        self.assertEqual(dropped["fits"][0]["points"], 180)
+        whole = self.parameters("real.csv", "--realizations")
+        for name, found in others["fits"][0]["parameters"].items():
+            self.assertLess(abs(found["value"] - whole[name]["value"]), whole[name]["error"])
+            self.assertLess(0.5, found["error"] / whole[name]["error"])
+            self.assertLess(found["error"] / whole[name]["error"], 2)
+            self.assertLess(0.5, found["resampled_error"] / found["error"])
+            self.assertLess(found["resampled_error"] / found["error"], 2)
+        self.assertLessEqual(others["fits"][0]["error_dof"], 3)
+        text = self.jostle("fit", "gaps.csv", "--realizations").stdout
+        self.assertIn("note     20 of 800 values are missing", text)
+
+    def test_independent_rows_have_no_memory(self):
+        rows, state = [], 0.0
+        for t in range(1, 200):
+            state = 0.9 * state + math.sin(1.0 + 17.0 * t * t)
+            rows.append(f"{t},{inverse_log(t) + 1e-4 * state!r}")
+        self.write("t,X\n" + "\n".join(rows), "walk.csv")
+        self.assertGreater(self.curve("walk.csv")["fits"][0]["memory"], 0)
+        self.assertEqual(self.curve("walk.csv", "--independent")["fits"][0]["memory"], 0)
+
+    def test_options_without_sense_are_refused(self):
+        for arguments, message in (
+                (["real.csv", "--gaps", "drop-row"], "give --realizations"),
+                (["real.csv", "--realizations", "--independent"], "of a curve alone"),
+                (["real.csv", "--realizations", "--gaps", "interpolate"], "--gaps"),
+                (["real.csv"], "with --realizations t, and a column of any name")):
+            with self.subTest(arguments=arguments):
+                done = self.jostle("fit", *arguments, expect=BAD_INPUT, environment=UNFOLDED)
+                self.assertIn(message, done.stderr)
+                self.assertEqual(done.stdout, "")
+
+
+class Refusals(WithCurve):
+    """No law fitted: the reason is an error."""
+
+    CURVES = {"constant": "t,X\n" + "".join(f"{t},0.6\n" for t in range(9)),
+              "short": "t,X\n1,0.5\n2,0.6\n",
+              "before": "t,X\n" + "".join(f"{t},{0.6 + 0.01 * t}\n" for t in range(-9, -1))}
+
+    def test_a_refused_fit_says_so_on_stderr(self):
+        for name, text in self.CURVES.items():
+            self.write(text, name + ".csv")
+            for model in ("all", "kww", "power_law"):
+                with self.subTest(curve=name, model=model):
+                    done = self.jostle("fit", name + ".csv", "--model", model, expect=None)
+                    if done.returncode == OK:
+                        continue
+                    self.assertEqual(done.returncode, BAD_INPUT)
+                    self.assertEqual(done.stdout, "")
+                    self.assertIn(f"{name}.csv: no law could be fitted\n", done.stderr)
+                    listed = self.jostle("fit", name + ".csv", "--model", model, "--json", expect=BAD_INPUT)
+                    self.assertEqual(listed.stderr, done.stderr)
+                    for fit in json.loads(listed.stdout)["curves"][0]["fits"]:
+                        self.assertIn(fit["refused"], done.stderr)
+
+    def test_one_law_of_several_is_enough(self):
+        self.write("t,X\n" + "".join(f"{t},{inverse_log(t)}\n" for t in (1, 3, 9, 27)), "four.csv")
+        done = self.jostle("fit", "four.csv")
+        self.assertIn("two_exponentials: no fit: 4 points", done.stdout)
+        self.assertEqual(done.stderr, "")
 
 
 class OwnLaw(WithCurve):
@@ -158,6 +278,9 @@ class OwnLaw(WithCurve):
                 (["--law", "a*t", "--start", "a=1,t=2"], "no parameter can be called t"),
                 (["--law", "a*t", "--start", "a=1,a=2"], "a has two starts"),
                 (["--law", "a*t", "--start", "a"], "--start a: not NAME=NUMBER"),
+                (["--law", "a*t", "--start", "a=0x1"], "--start a=0x1: not NAME=NUMBER"),
+                (["--law", "a*t + 0x1", "--start", "a=1"], "x1"),
+                (["--law", "a*t", "--start", "a=1", "--bounds", "a=0x0:inf"], "not FIRST:LAST"),
                 (["--law", "a*t", "--start", "a=1", "--bounds", "a"], "--bounds a: not NAME=LOWER:UPPER"),
                 (["--law", "a*t", "--start", "a=1", "--bounds", "a=2:3"], "not between its bounds"),
                 (["--law", "a*t", "--start", "a=1", "--fix", "q=2"], "no parameter q"),

@@ -7,7 +7,7 @@
 #include "results/live_run.hpp"
 #include "results/tables.hpp"
 #include "study/scenes/scene_file.hpp"
-#include "study/tables/curve_file.hpp"
+#include "study/tables/measured/curve_file.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/engine/sample_packings.hpp"
 #include "tests/hard_cases/mutations.hpp"
@@ -72,7 +72,7 @@ TEST_CASE("a curve file changed at random is refused with its line or read") {
     CAPTURE(mutated);
     write(path, mutated);
     read += is_read<BadInput>(path, [&] {
-      const Curve curve = read_curve(path);
+      const Curve curve = read_curve(path).curve;
       CHECK(curve.x.size() == curve.t.size());
       CHECK((curve.sigma.empty() || curve.sigma.size() == curve.t.size()));
     });
@@ -90,10 +90,10 @@ TEST_CASE("a decimal comma is refused, not read as two numbers") {
     CHECK_THROWS_AS(read_curve(path), BadInput);
   }
   for (const char* lines :
-       {"1;2.5\n2;3\n", "1, 2.5\n2 ,3,\n", "1\t2.5\r\n2 3\r\n", "t;x,y\n1;2.5\n2;3"}) {
+       {"1;2.5\n2;3\n", "1, 2.5\n2 ,3,\n", "1\t2.5\r\n2 3\r\n", "t;\"X\"\n1;2.5\n2;3"}) {
     CAPTURE(lines);
     write(path, lines);
-    CHECK(read_curve(path).x == std::vector<double>{2.5, 3});
+    CHECK(read_curve(path).curve.x == std::vector<double>{2.5, 3});
   }
 }
 

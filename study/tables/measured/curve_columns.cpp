@@ -1,0 +1,233 @@
+#include "study/tables/measured/curve_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
+#include "config/json/json_text.hpp"
+#include "fitting/models/models.hpp"
+#include "results/export/printable.hpp"
+#include "study/bad_input.hpp"
+
+namespace jostle::inline study {
+
+namespace {
+
+constexpr std::array t_names = {"t", "tap", "taps", "time"};
+constexpr std::array x_names = {"x", "mean", "value"};
+constexpr std::array sigma_names = {"sigma", "error", "se", "standard_error"};
+constexpr const char* allowed =
+    "t, tap or time; X, mean or value; sigma, error, se or standard_error (with --realizations t, "
+    "and a column of any name per realization)";
+
+/// Lower case, without a unit in brackets behind it: "Time [s]" is "time".
+std::string plain_name(const std::string& name) {
+  std::string plain;
+  for (const char c : name) plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::size_t bracket = plain.find_first_of("([");
+  if (bracket != std::string::npos && bracket > 0) plain.resize(bracket);
+  while (plain.ends_with(' ')) plain.pop_back();
+  return plain;
+}
+
+template <class Names>
+bool is_in(const Names& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// pandas writes the index of a frame as a first column without a name, and reads that as
+/// "Unnamed: 0".
+bool is_index(const std::vector<std::string>& names, std::size_t column) {
+  const std::string name = plain_name(names[column]);
+  return column == 0 && (name.empty() || name == "unnamed: 0" || name == "index");
+}
+
+bool is_law(const std::string& name) {
+  return name == "own" || std::ranges::any_of(all_models(), [&](const auto& model) {
+           return model->name() == name;
+         });
+}
+
+std::string list_of_names(const std::vector<std::string>& names) {
+  std::vector<std::string> shown;
+  for (const std::string& name : names) shown.push_back(name.empty() ? "(no name)" : name);
+  return printable(joined(shown, ", "), 300);
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::vector<std::string>& names,
+                         const std::string& fault) {
+  throw BadInput(fmt::format("{}: {}. Columns found: {}. Allowed names: {}.", path, fault,
+                             list_of_names(names), allowed));
+}
+
+std::string column_text(const ColumnRoles& roles, std::size_t column) {
+  const std::string& name = roles.names[column];
+  return fmt::format("Column {} ({})", column + 1, name.empty() ? "no name" : printable(name, 60));
+}
+
+std::size_t only_column(const std::string& path, const std::vector<std::string>& names,
+                        const std::vector<std::size_t>& columns, const char* what) {
+  if (columns.size() == 1) return columns.front();
+  if (columns.empty()) refuse(path, names, fmt::format("no column is named as {}", what));
+  std::vector<std::string> several;
+  for (const std::size_t column : columns) several.push_back(names[column]);
+  refuse(path, names,
+         fmt::format("{} columns are named as {} ({})", columns.size(), what,
+                     printable(joined(several, ", "), 100)));
+}
+
+/// Columns of the heading by what their names say.
+struct NamedColumns {
+  std::vector<std::size_t> t, x, sigma, laws, others;
+};
+
+NamedColumns named_columns(ColumnRoles& roles) {
+  NamedColumns found;
+  for (std::size_t c = 0; c < roles.names.size(); ++c) {
+    const std::string name = plain_name(roles.names[c]);
+    if (is_index(roles.names, c)) {
+      roles.notes.push_back(column_text(roles, c) + " is an index and is not used.");
+    } else if (is_in(t_names, name)) {
+      found.t.push_back(c);
+    } else if (is_in(x_names, name)) {
+      found.x.push_back(c);
+    } else if (is_in(sigma_names, name)) {
+      found.sigma.push_back(c);
+    } else if (is_law(name)) {
+      found.laws.push_back(c);
+    } else {
+      found.others.push_back(c);
+    }
+  }
+  return found;
+}
+
+void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
+  const auto& names = roles.names;
+  if (!found.others.empty()) {
+    std::vector<std::string> unknown;
+    for (const std::size_t column : found.others) unknown.push_back(names[column]);
+    refuse(path, names,
+           fmt::format("the meaning of the column{} {} is not known",
+                       unknown.size() == 1 ? "" : "s", list_of_names(unknown)));
+  }
+  roles.x = {only_column(path, names, found.x, "X")};
+  if (!found.sigma.empty()) roles.sigma = only_column(path, names, found.sigma, "sigma");
+  for (const std::size_t column : found.laws) {
+    roles.notes.push_back(column_text(roles, column) + " is a fitted law and is not used.");
+  }
+}
+
+void take_realizations(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
+  const auto& names = roles.names;
+  std::vector<std::size_t> columns = found.others;
+  columns.insert(columns.end(), found.laws.begin(), found.laws.end());
+  // A heading t, X, X, ... names every realization X.
+  const bool all_x = columns.empty() && found.sigma.empty() && found.x.size() >= 2;
+  if (all_x) columns = found.x;
+  std::ranges::sort(columns);
+  if (!all_x && (!found.x.empty() || !found.sigma.empty())) {
+    const std::size_t column = found.x.empty() ? found.sigma.front() : found.x.front();
+    refuse(path, names,
+           fmt::format("{} names a mean or its error, not a realization",
+                       printable(names[column], 60)));
+  }
+  std::set<std::string> seen;
+  for (const std::size_t column : columns) {
+    const std::string& name = names[column];
+    if (name.empty()) refuse(path, names, fmt::format("column {} has no name", column + 1));
+    if (!all_x && !seen.insert(name).second) {
+      refuse(path, names, fmt::format("two realizations are named {}", printable(name, 60)));
+    }
+  }
+  if (columns.size() < 2) refuse(path, names, "fewer than two columns are realizations");
+  roles.x = columns;
+}
+
+ColumnRoles roles_by_name(const std::string& path, std::vector<std::string> names,
+                          CurveColumns kind) {
+  while (!names.empty() && names.back().empty()) names.pop_back();
+  ColumnRoles roles;
+  roles.names = std::move(names);
+  roles.n_columns = roles.names.size();
+  const NamedColumns found = named_columns(roles);
+  roles.t = only_column(path, roles.names, found.t, "t");
+  if (kind == CurveColumns::errors) {
+    take_errors(path, found, roles);
+  } else {
+    take_realizations(path, found, roles);
+  }
+  return roles;
+}
+
+/// Cells up to the last that is not empty.
+std::size_t filled(const std::vector<std::string>& cells) {
+  std::size_t n = cells.size();
+  while (n > 0 && cells[n - 1].empty()) --n;
+  return n;
+}
+
+/// As many columns as the first line has, but for those that are empty in every line.
+std::size_t columns_without_heading(const DelimitedText& text) {
+  std::size_t n = text.lines.front().cells.size();
+  const auto is_empty = [&](const DelimitedLine& line) { return filled(line.cells) < n; };
+  while (n > 0 && std::ranges::all_of(text.lines, is_empty)) --n;
+  return n;
+}
+
+ColumnRoles roles_by_place(const std::string& path, const DelimitedText& text, CurveColumns kind) {
+  const std::size_t n = columns_without_heading(text);
+  const bool several = kind == CurveColumns::realizations;
+  if (several ? n < 3 : n != 2 && n != 3) {
+    const DelimitedLine& first = text.lines.front();
+    throw BadInput(fmt::format(
+        "{}: line {} has {} column{} and no heading (\"{}\"). Without a heading the columns are "
+        "{}.",
+        path, first.number, n, n == 1 ? "" : "s", printable(first.text, 100),
+        several ? "t and one column per realization, of two or more"
+                : "t, X or t, X, sigma (with --realizations t and one column per realization)"));
+  }
+  ColumnRoles roles;
+  roles.n_columns = n;
+  roles.names = {"t"};
+  for (std::size_t c = 1; c < n; ++c) {
+    roles.names.push_back(several ? fmt::format("X{}", c) : c == 1 ? "X" : "sigma");
+    if (several || c == 1) roles.x.push_back(c);
+  }
+  if (!several && n == 3) roles.sigma = 2;
+  return roles;
+}
+
+/// A wrong first row is not taken for names: those begin with a letter, or with nothing.
+bool is_heading(const std::vector<std::string>& cells) {
+  constexpr std::string_view of_numbers = "+-.0123456789";
+  const auto first = std::ranges::find_if(cells, [](const auto& cell) { return !cell.empty(); });
+  return first != cells.end() && of_numbers.find(first->front()) == std::string_view::npos &&
+         plain_name(*first) != "nan";
+}
+
+/// numpy's savetxt writes its header as a comment.
+bool is_heading_in_comment(const DelimitedText& text) {
+  const auto& cells = text.comment.cells;
+  return cells.size() == columns_without_heading(text) &&
+         std::ranges::any_of(cells,
+                             [](const auto& name) { return is_in(t_names, plain_name(name)); });
+}
+
+}  // namespace
+
+ColumnRoles column_roles(const std::string& path, const DelimitedText& text, CurveColumns kind) {
+  if (text.lines.empty()) throw BadInput(path + ": the file has no rows of numbers.");
+  if (is_heading(text.lines.front().cells)) {
+    ColumnRoles roles = roles_by_name(path, text.lines.front().cells, kind);
+    roles.first_row = 1;
+    return roles;
+  }
+  if (is_heading_in_comment(text)) return roles_by_name(path, text.comment.cells, kind);
+  return roles_by_place(path, text, kind);
+}
+
+}  // namespace jostle::inline study

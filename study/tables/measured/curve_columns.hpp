@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/tables/measured/delimited_text.hpp"
+
+namespace jostle::inline study {
+
+/// What stands beside t in a text of columns.
+enum class CurveColumns {
+  errors,       // X, and maybe sigma of X
+  realizations  // X of a second realization, and of any number more
+};
+
+/// Which column is what, by their numbers from 0.
+struct ColumnRoles {
+  std::size_t t = 0;
+  std::vector<std::size_t> x;  // one, or a column per realization
+  std::optional<std::size_t> sigma;
+  std::size_t n_columns = 0;
+  std::vector<std::string> names;  // [n_columns], of the heading, else "t", "X", "sigma", "X1", ...
+  std::size_t first_row = 0;       // of the text's lines
+  std::vector<std::string> notes;  // on columns that are not used, a sentence each
+};
+
+/// Columns by the names in the heading: t, tap or time; X, mean or value; sigma, error, se or
+/// standard_error; or realizations by any other names. A column that is an unnamed index, and a law
+/// that `fit --csv` wrote, are not used. A text without a heading has its columns in this order.
+/// Throws BadInput with the names found and those allowed.
+ColumnRoles column_roles(const std::string& path, const DelimitedText& text, CurveColumns kind);
+
+}  // namespace jostle::inline study
