@@ -48,8 +48,11 @@ class Reader {
     const std::string& cell = line.cells[column];
     if (is_gap(cell)) return missing;
     if (const auto number = read_number(cell)) return *number;
+    // Of "1 0,5" the comma divides, and a cell has two numbers.
+    const bool is_divided =
+        cell.find_first_of(" \t") != std::string::npos && has_decimal_comma(line.text);
     fail(line, column, fmt::format("\"{}\" is not a number", printable(cell, 100)),
-         has_decimal_comma(cell)
+         has_decimal_comma(cell) || is_divided
              ? "Write decimal points, not commas."
              : "Write it like 12, -0.5 or 1e-3; leave a gap empty or write NaN.");
   }

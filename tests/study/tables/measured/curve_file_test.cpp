@@ -118,8 +118,9 @@ TEST_CASE("faults name line, column and name") {
     CHECK(contains(fault, "line 3, column 1 (X): \"" + std::string(number) + "\" is not a number"));
   }
   CHECK(contains(fault_of("t;X\n1;0,5\n"), "Write decimal points, not commas"));
-  CHECK(contains(fault_of("t\tX\n1\t0,5\n"), "If its commas are decimal, write points"));
+  CHECK(contains(fault_of("t\tX\n1\t0,5\n"), "Write decimal points, not commas"));
   CHECK(contains(fault_of("t,X\n1,0,5\n"), "line 2 has 3 fields, the heading 2 columns (t, X)"));
+  CHECK(contains(fault_of("t,X\n1,0,5\n"), "If its commas are decimal, write points"));
   CHECK(contains(fault_of("t,X\n1,\"0,5\"\n"), "Write decimal points, not commas"));
   CHECK(contains(fault_of("t,X\n1\n"), "line 2 has 1 field"));
   CHECK(contains(fault_of("t,X\n,0.5\n"), "line 2, column 1 (t): t has no value"));
