@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
@@ -10,6 +11,7 @@
 #include "cli/files/output_file.hpp"
 #include "cli/options/values.hpp"
 #include "cli/reports/fit_output.hpp"
+#include "cli/reports/measured_output.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
@@ -38,6 +40,7 @@ struct FitArguments {
   std::uint64_t seed = 1;
   int threads = 0;
   bool json = false, force = false, not_stored = false;
+  MeasuredOutput measured;  // of a text file
   Layout layout;
   bool realizations = false;  // columns of a curve file
   std::string gaps = "use-others";
@@ -138,6 +141,11 @@ void refuse_options_of_text(const FitArguments& arguments) {
   if (arguments.independent) {
     throw BadInput("--independent is of the rows of a text file; taps of a run have a memory");
   }
+  if (arguments.measured.is_wanted()) {
+    throw BadInput(fmt::format(
+        "--figures and --page are of a measured curve; jostle report {} draws kept fits",
+        arguments.input));
+  }
 }
 
 /// Options that have no sense with a text file, or with this one.
@@ -223,6 +231,7 @@ Json source_json(const FittedCurve& fitted) {
 
 int run_fits(const FitArguments& arguments) {
   require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
+  require_measured_output(arguments.measured, arguments.input, arguments.force);
   const auto models = chosen_models(arguments);
   const std::vector<FitSource> sources = read_sources(arguments);
   if (!arguments.csv.empty() && sources.size() > 1) {
@@ -233,6 +242,7 @@ int run_fits(const FitArguments& arguments) {
   std::vector<Table> tables;
   std::string csv, refusals;  // of curves without a fit
   bool any = false;
+  std::optional<FittedCurve> drawn;  // the measured curve
   Json curves = Json::array();
   for (const FitSource& source : sources) {
     const FittedCurve fitted{source, fit_models(models, source.curve, manner)};
@@ -249,6 +259,7 @@ int run_fits(const FitArguments& arguments) {
       tables.insert(tables.end(), fits.begin(), fits.end());
     }
     if (!arguments.csv.empty()) csv = fit_csv(source.curve, fitted.outcomes);
+    if (refusal.empty() && arguments.measured.is_wanted()) drawn = fitted;
   }
   if (arguments.json) {
     const Json object = {
@@ -256,6 +267,11 @@ int run_fits(const FitArguments& arguments) {
     print_json(object);
   }
   if (any && !arguments.csv.empty()) write_text(arguments.csv, csv);
+  if (drawn) {
+    const std::string written =
+        write_measured(arguments.measured, *drawn, arguments.input, arguments.force, by);
+    if (!arguments.json) print(written);
+  }
   if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
     keep_tables(arguments.input, "fits", tables, by);
   }
@@ -336,9 +352,10 @@ void add_fit(Command& app, int& code) {
   command.add_flag("--json", a.json, "Print JSON, for programs");
   command.add_option("--csv", a.csv, "Also write the curve with its fits to this file")
       .file_to_write();
+  add_measured_output(command, a.measured);
   command.add_flag("--no-store", a.not_stored, "Leave the results file as it is");
   add_live(command, a.live);
-  command.add_flag("--force", a.force, "Replace the file of --csv if it exists");
+  command.add_flag("--force", a.force, "Replace files of --csv, --figures and --page that exist");
   command.footer(
       "Examples:\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction     all laws\n"
@@ -346,7 +363,7 @@ void add_fit(Command& app, int& code) {
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
       "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"
-      "  jostle fit measured.csv --model kww --independent\n"
+      "  jostle fit measured.csv --model kww --independent --page measured.html\n"
       "\n"
       "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
       "Exit code 2 where no law could be fitted.");

@@ -54,6 +54,33 @@ void require_folder_for(const FigureFolder& folder, const std::vector<FigureOfFi
   }
 }
 
+/// Refuses first; then writes data and scripts, and draws.
+void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
+               const std::vector<std::string>& inputs) {
+  require_folder_for(folder, figures, inputs);
+  std::vector<std::vector<NamedText>> sources;
+  for (const FigureOfFile& one : figures) {
+    const std::string& name = one.figure.name;
+    sources.push_back({{name + ".dat", figure_data(one.figure, one.origin)},
+                       {name + ".gp", figure_script(one.figure, folder.columns)}});
+    for (const NamedText& source : sources.back()) {
+      write_text((fs::path(folder.path) / source.name).string(), source.text);
+    }
+  }
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const std::string& name = figures[i].figure.name;
+    for (const NamedText& one :
+         run_gnuplot(name + ".gp", sources[i], {name + ".svg", name + ".pdf"})) {
+      write_text((fs::path(folder.path) / one.name).string(), one.text);
+    }
+  }
+}
+
+std::string written_text(const FigureFolder& folder, std::size_t n) {
+  return fmt::format("{}: {}, each as SVG and PDF with its data (.dat) and its script (.gp)\n",
+                     folder.path, counted(n, "figure"));
+}
+
 }  // namespace
 
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
@@ -84,25 +111,20 @@ std::string write_figures(std::span<const ResultsFile> files, const FigureFolder
   if (figures.empty()) {
     throw BadInput("the results hold nothing that a figure shows: no taps, and no tables");
   }
-  require_folder_for(folder, figures, inputs);
-  std::vector<std::vector<NamedText>> sources;
-  for (const FigureOfFile& one : figures) {
-    const std::string& name = one.figure.name;
-    sources.push_back({{name + ".dat", figure_data(one.figure, one.origin)},
-                       {name + ".gp", figure_script(one.figure, folder.columns)}});
-    for (const NamedText& source : sources.back()) {
-      write_text((fs::path(folder.path) / source.name).string(), source.text);
-    }
+  write_all(folder, figures, inputs);
+  return written_text(folder, figures.size()) + left_out;
+}
+
+std::string write_figures(const FittedCurve& measured, const std::string& input,
+                          const FigureFolder& folder, const Provenance& by) {
+  std::vector<FigureOfFile> figures;
+  for (Figure& figure : figures_of(measured).figures) {
+    figures.push_back(
+        {std::move(figure), fmt::format("Of {}. Drawn by jostle {} ({})", measured.source.title,
+                                        by.version, by.git_revision)});
   }
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    const std::string& name = figures[i].figure.name;
-    for (const NamedText& one :
-         run_gnuplot(name + ".gp", sources[i], {name + ".svg", name + ".pdf"})) {
-      write_text((fs::path(folder.path) / one.name).string(), one.text);
-    }
-  }
-  return fmt::format("{}: {}, each as SVG and PDF with its data (.dat) and its script (.gp)\n{}",
-                     folder.path, counted(figures.size(), "figure"), left_out);
+  write_all(folder, figures, {input});
+  return written_text(folder, figures.size());
 }
 
 }  // namespace jostle::inline cli

@@ -6,6 +6,7 @@
 
 #include "results/results_file.hpp"
 #include "study/figures/gnuplot.hpp"
+#include "study/tables/fits.hpp"
 
 namespace jostle::inline cli {
 
@@ -22,5 +23,9 @@ struct FigureFolder {
 /// people. Throws BadInput before anything is written, and ResultsError.
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
                           const Provenance& by);
+
+/// The same of the fits of a measured curve, which `input` holds.
+std::string write_figures(const FittedCurve& measured, const std::string& input,
+                          const FigureFolder& folder, const Provenance& by);
 
 }  // namespace jostle::inline cli

@@ -173,7 +173,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
         bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
         law_name: str | None = None, sweep_point: int | str | None = None, range: str | None = None,
         fix: Mapping[str, float] | None = None, realizations: bool = False, gaps: str | None = None,
-        independent: bool = False, resample: str | None = None,
+        independent: bool = False, figures: Path | None = None, page: Path | None = None,
+        resample: str | None = None,
         resamples: int | None = None, seed: int | None = None, store: bool = True, live: bool = False,
         program: Path | None = None) -> list[FittedCurve]:
     """Fits laws to the mean curve of an observable at every sweep point, or to a measured curve (CSV).
@@ -184,7 +185,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     model: a law, or "all" (default). law: one of your own, a formula of t and of parameters that start at
     `start` and stay between `bounds`, (lower, upper), None for no bound; it is called law_name ("own").
     A measured curve: realizations=True takes every column but t for a realization; gaps is "use-others"
-    (default) or "drop-row"; independent=True looks for no memory in the residuals.
+    (default) or "drop-row"; independent=True looks for no memory in the residuals; figures is a
+    folder and page an HTML file to draw it into.
     """
     named = [f"--{option}={name}={float(value)!r}" for option, values in (("fix", fix), ("start", start))
              for name, value in (values or {}).items()]
@@ -194,7 +196,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     done = call(["fit", "--json", *named,
                  *_options(observable=observable, model=model, law=law, law_name=law_name,
                            sweep_point=sweep_point, range=range, realizations=realizations,
-                           gaps=gaps, independent=independent, resample=resample, resamples=resamples, seed=seed, no_store=not store,
+                           gaps=gaps, independent=independent, figures=figures, page=page, resample=resample,
+                           resamples=resamples, seed=seed, no_store=not store,
                            live=_live(results, live))], _paths(results), program=program)
     return fitted_curves(answer(done))
 

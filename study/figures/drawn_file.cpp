@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "study/report/thinning.hpp"
 
@@ -70,6 +71,10 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
     left_out_.push_back(
         fmt::format("{} of {} sweep points are drawn, evenly spread", most_shown, labels_.size()));
   }
+}
+
+DrawnFile::DrawnFile(std::vector<DrawnTable> tables) : labels_{""}, kept_(std::move(tables)) {
+  for (const DrawnTable& one : kept_) tables_.emplace_back(one);
 }
 
 std::vector<TableView> DrawnFile::made_of(const std::string& group, const std::string& kind) const {

@@ -26,6 +26,8 @@ class DrawnFile {
   /// `points`: those that are wanted; none: of more than eight, eight evenly spread.
   DrawnFile(const ResultsFile& file, const DrawnRoom& room,
             const std::vector<std::uint32_t>& points);
+  /// Tables that no results file holds, as fits of a measured curve.
+  explicit DrawnFile(std::vector<DrawnTable> tables);
   DrawnFile(const DrawnFile&) = delete;  // its tables look into it
   DrawnFile& operator=(const DrawnFile&) = delete;
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "study/figures/builders.hpp"
+#include "study/report/thinning.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -78,6 +80,26 @@ DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t
   }
   name_apart(figures);
   return {std::move(figures), drawn.left_out(), drawn.has_other_points()};
+}
+
+DrawnFigures figures_of(const FittedCurve& measured) {
+  constexpr TableThinning thinning{};
+  FittedCurve named = measured;
+  named.source.observable = "X";
+  std::vector<DrawnTable> tables;
+  for (Table& table : fit_tables(named, {})) {
+    const bool is_mean = measured.source.curve.n_realizations > 0;
+    const bool has_errors = !measured.source.curve.sigma.empty();
+    table.notes.emplace_back("measured", is_mean      ? "realizations"
+                                         : has_errors ? "errors"
+                                                      : "values");
+    tables.push_back({"fits", thinned(table, thinning)});
+  }
+  const DrawnFile drawn(std::move(tables));
+  Figures figures;
+  add_fits(drawn, figures);
+  name_apart(figures);
+  return {std::move(figures), {}, false};
 }
 
 }  // namespace jostle::inline study

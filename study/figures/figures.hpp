@@ -6,6 +6,7 @@
 
 #include "results/results_file.hpp"
 #include "study/figures/figure.hpp"
+#include "study/tables/fits.hpp"
 
 namespace jostle::inline study {
 
@@ -23,5 +24,9 @@ struct DrawnFigures {
 };
 DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t>& points,
                         std::size_t n_files);
+
+/// The figures of the fits of a measured curve, which no results file holds: data with the fitted
+/// laws, and residuals.
+DrawnFigures figures_of(const FittedCurve& measured);
 
 }  // namespace jostle::inline study

@@ -19,16 +19,40 @@ std::string law_name(const TableView& table) {
   return found == names.end() ? words(table.path().back()) : found->second;
 }
 
+/// Measured t may have any unit; wide ranges are those of relaxation.
+FigureAxis t_axis(const TableView& table) {
+  if (table.note("measured").empty()) return {"taps t", AxisKind::taps};
+  const std::vector<double> t = table.axis("t");
+  const auto [first, last] = std::ranges::minmax(t);
+  return {"t", first > 0 && last > 100 * first ? AxisKind::logarithmic : AxisKind::linear};
+}
+
+std::string data_caption(const TableView& table, const std::string& range) {
+  const std::string measured = table.note("measured");
+  if (measured.empty()) {
+    return fmt::format(
+        "Mean over realizations (points; bars are standard errors pooled over "
+        "taps) and the fitted laws, taps {}.",
+        range);
+  }
+  if (measured == "realizations") {
+    return fmt::format(
+        "Mean over {} realizations (points; bars are pooled standard errors) and the "
+        "fitted laws, t {}.",
+        table.note("realizations"), range);
+  }
+  return fmt::format("Measured values (points{}) and the fitted laws, t {}.",
+                     measured == "errors" ? "; bars are the errors given" : "", range);
+}
+
 FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& observable) {
   const TableView& first = laws.front();
   std::string range = first.note("range");
   std::ranges::replace(range, ':', '-');
   FigurePanel panel{
       .title = "Fits of " + words(observable),
-      .caption = fmt::format("Mean over realizations (points; bars are standard errors pooled over "
-                             "taps) and the fitted laws, taps {}.",
-                             range),
-      .x = {"taps t", AxisKind::taps},
+      .caption = data_caption(first, range),
+      .x = t_axis(first),
       .y = {axis_label(observable, "")},
       .series = {{.name = "data",
                   .colour = "#222222",
@@ -53,7 +77,7 @@ FigurePanel residual_panel(const std::vector<TableView>& laws, const std::string
   FigurePanel panel{
       .title = "Residuals of " + words(observable),
       .caption = scaled ? "Data less law, in standard errors of the mean." : "Data less law.",
-      .x = {"taps t", AxisKind::taps},
+      .x = t_axis(laws.front()),
       .y = {scaled ? "residual / error" : "residual"},
       .rules = {{.y = 0}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "study/report/page.hpp"
 
+#include "study/report/html_text.hpp"
 #include "study/report/page_data.hpp"
 #include "study/report/page_json.hpp"
 #include "study/report/page_template.hpp"
@@ -8,26 +9,6 @@ namespace jostle::inline study {
 namespace {
 
 constexpr std::size_t packing_bytes = 4'000'000;  // of a page of one file; several share it
-
-std::string html_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 /// The template with each mark, which stands in it once, replaced.
 std::string filled_template(const std::string& title, const std::string& data) {

@@ -194,6 +194,40 @@ class Files(Case):
         self.assertGreater(self.curve("walk.csv")["fits"][0]["memory"], 0)
         self.assertEqual(self.curve("walk.csv", "--independent")["fits"][0]["memory"], 0)
 
+    def test_figures_show_the_data_and_the_fitted_laws(self):
+        for name, option, caption in (("v_named.csv", (), "bars are the errors given"),
+                                      ("v_index.csv", (), "Measured values (points) and"),
+                                      ("real.csv", ("--realizations",), "Mean over 4 realizations")):
+            with self.subTest(name):
+                folder = self.folder / name.removesuffix(".csv")
+                done = self.jostle("fit", name, *option, "--model", "inverse_log", "--figures", folder)
+                self.assertIn("1 figure, each as SVG and PDF", done.stdout)
+                self.assertEqual({path.name for path in folder.iterdir()},
+                                 {f"fits-of-x.{kind}" for kind in ("dat", "gp", "svg", "pdf")})
+                text = (folder / "fits-of-x.dat").read_text()
+                self.assertIn(caption, text)
+                self.assertIn("inverse logarithm", text)
+                self.assertIn("# t\tX", text)
+                self.assertNotIn("taps", text)
+                again = self.jostle("fit", name, *option, "--figures", folder, expect=BAD_INPUT)
+                self.assertIn("exists and is kept", again.stderr)
+
+    def test_a_page_shows_figure_parameters_and_notes(self):
+        name = "<b>&.csv"
+        (self.folder / name).write_bytes((self.folder / "v_index.csv").read_bytes())
+        self.jostle("fit", name, "--model", "inverse_log", "--page", "page.html")
+        page = (self.folder / "page.html").read_text()
+        self.assertIn("<h1>&lt;b&gt;&amp;.csv</h1>", page)
+        self.assertNotIn("<b>", page)
+        self.assertIn("Column 1 (no name) is an index and is not used.", page)
+        self.assertIn('src="data:image/svg+xml;base64,', page)
+        for parameter in ("X_inf", "dX", "B", "tau"):
+            self.assertIn(f"<td>{parameter}</td>", page)
+        self.assertIn("0.6327(10)", page)
+        self.assertNotIn("<script", page)
+        for arguments in ((name, "--page", "page.html"), (name, "--page", name, "--force")):
+            self.jostle("fit", *arguments, expect=BAD_INPUT)
+
     def test_options_without_sense_are_refused(self):
         for arguments, message in (
                 (["real.csv", "--gaps", "drop-row"], "give --realizations"),

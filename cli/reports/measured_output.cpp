@@ -1,0 +1,74 @@
+#include "cli/reports/measured_output.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/files/gnuplot.hpp"
+#include "cli/files/keep_tables.hpp"
+#include "cli/files/output_file.hpp"
+#include "study/figures/figures.hpp"
+#include "study/report/measured_page.hpp"
+
+namespace jostle::inline cli {
+namespace {
+
+/// The figures of the page, drawn by gnuplot.
+std::vector<PageFigure> drawn_figures(const FittedCurve& fitted) {
+  std::vector<PageFigure> drawn;
+  for (const Figure& figure : figures_of(fitted).figures) {
+    const std::vector<NamedText> sources = {
+        {figure.name + ".dat", figure_data(figure, fitted.source.title)},
+        {figure.name + ".gp", figure_script(figure, JournalColumns::two)}};
+    const auto files = run_gnuplot(sources[1].name, sources, {figure.name + ".svg"});
+    PageFigure one{files.front().text, ""};
+    for (const FigurePanel& panel : figure.panels) {
+      one.caption += (one.caption.empty() ? "" : " ") + panel.caption;
+    }
+    drawn.push_back(std::move(one));
+  }
+  return drawn;
+}
+
+}  // namespace
+
+void add_measured_output(Command& command, MeasuredOutput& output) {
+  const Option figures =
+      command
+          .add_option("--figures", output.figures.path,
+                      "Also draw the measured curve with its fits into this folder: SVG and PDF, "
+                      "with data and gnuplot scripts")
+          .file_to_write();
+  command
+      .add_option("--columns", output.columns,
+                  "Width of the figures: one column of a journal, 86 mm, or two, 178 mm (default: "
+                  "1)")
+      .between(1, 2)
+      .needs(figures);
+  command
+      .add_option("--page", output.page,
+                  "Also write a page of the measured curve and its fits, for a browser")
+      .file_to_write()
+      .offers_files({"html"});
+}
+
+void require_measured_output(const MeasuredOutput& output, const std::string& input, bool force) {
+  if (output.page.empty()) return;
+  require_text_output("--page", output.page, std::span(&input, 1), force);
+}
+
+std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitted,
+                           const std::string& input, bool force, const Provenance& by) {
+  std::string text;
+  if (!output.figures.path.empty()) {
+    FigureFolder folder = output.figures;
+    folder.columns = output.columns == 2 ? JournalColumns::two : JournalColumns::one;
+    folder.force = force;
+    text += write_figures(fitted, input, folder, by);
+  }
+  if (!output.page.empty()) {
+    write_text(output.page, measured_page(fitted, drawn_figures(fitted), by));
+    text += fmt::format("{}: open it in a browser\n", output.page);
+  }
+  return text;
+}
+
+}  // namespace jostle::inline cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "cli/options/command.hpp"
+#include "cli/reports/figure_files.hpp"
+#include "study/tables/fits.hpp"
+
+namespace jostle::inline cli {
+
+/// What `fit` writes of a measured curve beside its report: figures and a page.
+struct MeasuredOutput {
+  std::string page;
+  FigureFolder figures;
+  int columns = 1;  // of a journal
+
+  bool is_wanted() const { return !page.empty() || !figures.path.empty(); }
+};
+
+/// --figures, --columns, --page.
+void add_measured_output(Command& command, MeasuredOutput& output);
+
+/// Throws BadInput where the page may not be written. `force`: replace files that exist.
+void require_measured_output(const MeasuredOutput& output, const std::string& input, bool force);
+
+/// Writes what is wanted of a curve with a fit. Returns what was written, for people.
+std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitted,
+                           const std::string& input, bool force, const Provenance& by);
+
+}  // namespace jostle::inline cli

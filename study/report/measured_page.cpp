@@ -1,0 +1,101 @@
+#include "study/report/measured_page.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "fitting/report.hpp"
+#include "fitting/value_text.hpp"
+#include "study/report/html_text.hpp"
+#include "study/report/page_json.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+constexpr const char* head = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{0}</title>
+<style>
+body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222; background: #fff }}
+table {{ border-collapse: collapse; margin: 1rem 0 }}
+th, td {{ text-align: left; padding: .25rem .8rem .25rem 0; border-bottom: 1px solid #ccc; vertical-align: top }}
+img {{ max-width: 100% }}
+figcaption, .small {{ font-size: .9rem; color: #555 }}
+code {{ font-size: .95rem }}
+</style></head><body>
+<h1>{0}</h1>
+)";
+
+std::string paragraph(const std::string& text) {
+  return fmt::format("<p>{}</p>\n", html_text(text));
+}
+
+std::string listed(const std::vector<std::string>& texts) {
+  if (texts.empty()) return "";
+  std::string list = "<ul>\n";
+  for (const std::string& text : texts) list += fmt::format("<li>{}</li>\n", html_text(text));
+  return list + "</ul>\n";
+}
+
+std::string figure_html(const PageFigure& figure) {
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(figure.svg.data()),
+                        figure.svg.size());
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\">\n"
+      "<figcaption>{0}</figcaption></figure>\n",
+      html_text(figure.caption), base64(bytes));
+}
+
+std::string value_cell(const Estimate& estimate) {
+  if (!estimate.has_value()) return "not determined";
+  return value_with_error(estimate.value, estimate.half_width());
+}
+
+std::string limits_cell(const Estimate& estimate) {
+  if (estimate.identifiability <= Identifiability::not_examined) return "-";
+  return limits_text(estimate.intervals[1].lower, estimate.intervals[1].upper, 5);
+}
+
+std::string law_html(const Fit& fit) {
+  std::string text =
+      fmt::format("<h2>{}</h2>\n<p><code>X = {}</code> {}</p>\n", html_text(fit.model),
+                  html_text(fit.formula), html_text(fit.source));
+  text +=
+      "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>statement</th></tr>\n";
+  for (const Estimate& estimate : fit.estimates) {
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        html_text(estimate.parameter.name), html_text(value_cell(estimate)),
+                        html_text(limits_cell(estimate)), html_text(estimate.statement));
+  }
+  return text + "</table>\n" + listed(fit.remarks);
+}
+
+}  // namespace
+
+std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure> figures,
+                          const Provenance& by) {
+  std::vector<Fit> fits;
+  std::vector<std::string> refusals;
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
+      refusals.push_back(outcome.model + ": no fit: " + refusal->message);
+    } else {
+      fits.push_back(std::get<Fit>(outcome.result));
+    }
+  }
+  std::string text = fmt::format(head, html_text(fitted.source.title));
+  text += listed(fitted.source.notes);
+  if (!fits.empty()) text += paragraph(verdict(fits));
+  for (const PageFigure& figure : figures) text += figure_html(figure);
+  for (const Fit& fit : fits) text += law_html(fit);
+  text += listed(refusals);
+  text += "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval. ";
+  return text +
+         html_text(fmt::format("Made {} by jostle {} ({}): {}", by.started, by.version,
+                               by.git_revision, by.command_line)) +
+         "</p>\n</body></html>\n";
+}
+
+}  // namespace jostle::inline study
