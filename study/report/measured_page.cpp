@@ -58,18 +58,30 @@ std::string limits_cell(const Estimate& estimate) {
   return limits_text(estimate.intervals[1].lower, estimate.intervals[1].upper, 5);
 }
 
-std::string law_html(const Fit& fit) {
+std::string formula_html(const std::string& formula, const std::string& source) {
+  return fmt::format("<p><code>X = {}</code> {}</p>\n", html_text(formula), html_text(source));
+}
+
+std::string estimates_html(const std::vector<Estimate>& estimates) {
   std::string text =
-      fmt::format("<h2>{}</h2>\n<p><code>X = {}</code> {}</p>\n", html_text(fit.model),
-                  html_text(fit.formula), html_text(fit.source));
-  text +=
       "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>statement</th></tr>\n";
-  for (const Estimate& estimate : fit.estimates) {
+  for (const Estimate& estimate : estimates) {
     text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                         html_text(estimate.parameter.name), html_text(value_cell(estimate)),
                         html_text(limits_cell(estimate)), html_text(estimate.statement));
   }
-  return text + "</table>\n" + listed(fit.remarks);
+  return text + "</table>\n";
+}
+
+std::string law_html(const Fit& fit) {
+  std::string text = fmt::format("<h2>{}</h2>\n", html_text(fit.model));
+  text += formula_html(fit.formula, fit.source) + estimates_html(fit.estimates);
+  if (fit.restated) {
+    text += fmt::format("<p>The same curve as {}:</p>\n", html_text(fit.restated->model));
+    text += formula_html(fit.restated->formula, fit.restated->source);
+    text += estimates_html(fit.restated->estimates);
+  }
+  return text + listed(fit.remarks);
 }
 
 }  // namespace
