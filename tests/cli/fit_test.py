@@ -233,7 +233,7 @@ class Files(Case):
                 (["real.csv", "--gaps", "drop-row"], "give --realizations"),
                 (["real.csv", "--realizations", "--independent"], "of a curve alone"),
                 (["real.csv", "--realizations", "--gaps", "interpolate"], "--gaps"),
-                (["real.csv"], "with --realizations t, and a column of any name")):
+                (["real.csv"], "where realizations are asked for, t and a column of any name each")):
             with self.subTest(arguments=arguments):
                 done = self.jostle("fit", *arguments, expect=BAD_INPUT, environment=UNFOLDED)
                 self.assertIn(message, done.stderr)

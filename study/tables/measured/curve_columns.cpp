@@ -20,8 +20,8 @@ constexpr std::array t_names = {"t", "tap", "taps", "time"};
 constexpr std::array x_names = {"x", "mean", "value"};
 constexpr std::array sigma_names = {"sigma", "error", "se", "standard_error"};
 constexpr const char* allowed =
-    "t, tap or time; X, mean or value; sigma, error, se or standard_error (with --realizations t, "
-    "and a column of any name per realization)";
+    "t, tap or time; X, mean or value; sigma, error, se or standard_error (where realizations are "
+    "asked for, t and a column of any name each)";
 
 /// Lower case, without a unit in brackets behind it: "Time [s]" is "time".
 std::string plain_name(const std::string& name) {
@@ -188,7 +188,7 @@ ColumnRoles roles_by_place(const std::string& path, const DelimitedText& text, C
         "{}.",
         path, first.number, n, n == 1 ? "" : "s", printable(first.text, 100),
         several ? "t and one column per realization, of two or more"
-                : "t, X or t, X, sigma (with --realizations t and one column per realization)"));
+                : "t, X or t, X, sigma (where realizations are asked for, t and a column each)"));
   }
   ColumnRoles roles;
   roles.n_columns = n;

@@ -205,8 +205,7 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
   if (n_missing > 0 && gaps == Gaps::drop_row) {
     const std::size_t dropped = drop_rows(rows, kept.size(), kept.size());
     notes.push_back(
-        fmt::format("{} in which a realization has no value: left out (--gaps drop-row).",
-                    counted_rows(dropped)));
+        fmt::format("{} in which a realization has no value: left out.", counted_rows(dropped)));
   } else if (n_missing > 0) {
     notes.push_back(fmt::format(
         "{} of {} values are missing: each mean is of the realizations present, corrected for the "
@@ -216,14 +215,14 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
   if (kept.size() < 2) {
     throw BadInput(fmt::format(
         "{}: {} of {} realizations have values in the same rows. A fit needs two; fit one column "
-        "as t, X without --realizations.",
+        "as t, X.",
         path, kept.size(), m));
   }
   const auto groups = linked_groups(rows.values, kept.size());
   if (groups.size() > 1) {
     throw BadInput(fmt::format(
         "{}: the realizations {} have no row in common with {}, so the offset between them is not "
-        "known. Fit them one at a time, with --range or in files of their own.",
+        "known. Fit each group on its own: choose its t by a range, or its columns in a file.",
         path, printable(fmt::format("{}", fmt::join(names_of(roles, groups[0]), ", ")), 100),
         printable(fmt::format("{}", fmt::join(names_of(roles, groups[1]), ", ")), 100)));
   }
