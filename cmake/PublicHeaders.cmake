@@ -125,12 +125,14 @@ set(JOSTLE_PUBLIC_HEADERS
     study/seconds.hpp
     study/self_checks.hpp
     study/tables/analyse.hpp
-    study/tables/curve_file.hpp
     study/tables/derived_value.hpp
     study/tables/fit_source.hpp
     study/tables/fits.hpp
     study/tables/half_widths.hpp
     study/tables/laws/own_law.hpp
+    study/tables/measured/curve_columns.hpp
+    study/tables/measured/curve_file.hpp
+    study/tables/measured/delimited_text.hpp
     study/tables/motion.hpp
     study/tables/structure.hpp
     study/tables/sweep.hpp
