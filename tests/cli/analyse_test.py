@@ -141,7 +141,7 @@ class Analysed(Case):
             to_one = self.analyse(*asked, "--reference", "0.3")["tables"][0]["quantities"]
             self.assertEqual([round(x, 12) for x in to_one["to"]["values"]], [0.1, 0.2])
         refused = self.jostle("analyse", *asked, "--reference", "0.25", expect=BAD_INPUT,
-                              environment=UNFOLDED).stdout
+                              environment=UNFOLDED).stderr
         self.assertIn("there are, of sqrt_epsilon, 0.1, 0.2, 0.3", refused)
 
     def test_what_cannot_be_analysed_is_refused_in_words(self):
@@ -151,7 +151,7 @@ class Analysed(Case):
         done = self.jostle(*steady, "mean_heigth", expect=BAD_INPUT)
         self.assertIn("mean_height, bottom_fraction", done.stderr)
         done = self.jostle(*steady, "mean_height", expect=BAD_INPUT)
-        self.assertIn("there are 4", done.stdout)
+        self.assertIn("there are 4", done.stderr)
         self.write("no results", "data.csv")
         done = self.jostle("analyse", "data.csv", *steady[2:], "mean_height", expect=BAD_INPUT)
         self.assertIn("not a results file", done.stderr)
@@ -278,7 +278,7 @@ class Analysed(Case):
         self.run_scene("-o", "volumes.h5")
         for kind in ("volumes", "memory"):
             out = self.jostle("analyse", f"{kind}.h5", "--sweep-point", "1", kind, "--observable",
-                              "mean_height", expect=BAD_INPUT).stdout
+                              "mean_height", expect=BAD_INPUT).stderr
             self.assertIn("a choice of sweep points leaves 1 of the file's 3: take all",
                           " ".join(out.split()))
             self.jostle("analyse", f"{kind}.h5", kind, "--observable", "mean_height")
@@ -306,7 +306,7 @@ class Analysed(Case):
         self.write(TAPPED)
         self.run_scene()
         self.assertIn("at least two stages", self.jostle(
-            "analyse", "tiny.h5", "memory", "--observable", "mean_height", expect=BAD_INPUT).stdout)
+            "analyse", "tiny.h5", "memory", "--observable", "mean_height", expect=BAD_INPUT).stderr)
 
     def test_hysteresis_of_a_ramp_up_and_down(self):
         ramp = {"sqrt_from": 0.1, "sqrt_to": 0.3, "sqrt_step": 0.1}
@@ -402,7 +402,7 @@ class Analysed(Case):
         self.assertTrue(0.4 < min(curve["quantities"]["bottom_fraction"]["values"]) < 0.7)
         self.assertEqual(self.tables("single0.h5"), [])
         refused = self.jostle("analyse", "single0.h5", "sweep", "--observable", "mean_height",
-                              "--quantity", "kww/tau", expect=BAD_INPUT).stdout
+                              "--quantity", "kww/tau", expect=BAD_INPUT).stderr
         self.assertIn("make the analysis or the fit first", refused)
 
     def test_several_files_are_each_given_their_tables(self):

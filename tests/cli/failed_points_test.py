@@ -80,7 +80,7 @@ class FailedPoints(Case):
                 self.assertRegex(self.analyse(*SWEEP, "--reference", place).stdout,
                                  r"(?m)^ *0 +5\.196 ")
         self.assertRegex(self.analyse(*SWEEP, "--against", "width_1").stdout, "against +width_1")
-        self.assertRegex(self.analyse(*SWEEP, "--reference", "5.2", expect=BAD_INPUT).stdout,
+        self.assertRegex(self.analyse(*SWEEP, "--reference", "5.2", expect=BAD_INPUT).stderr,
                          r"no such point; there are, of width_1, 3.4641, 5.19615, 6.9282")
 
     def test_where_all_failed_every_analysis_says_so(self):
@@ -92,7 +92,7 @@ class FailedPoints(Case):
                               (("hysteresis", *of_bed), "no realization has taps at width/1 = 4"),
                               (("memory", *of_bed), "left out: width/1 = 4: no realization has taps")):
             with self.subTest(analysis=analysis[0]):
-                self.assertIn(why, self.analyse(*analysis, expect=BAD_INPUT).stdout)
+                self.assertIn(why, self.analyse(*analysis, expect=BAD_INPUT).stderr)
 
     def test_strengths_without_taps_are_left_out_of_volumes(self):
         strengths = [0.02, 0.05, 0.1, 0.2]
