@@ -44,7 +44,7 @@ class FilesTogether(Case):
         self.refused("a.h5", "far.h5", "b.h5", says=same.format("b", 0, 3))
         done = self.jostle("analyse", "a.h5", "b.h5", "sweep", "--observable", "mean_height", "--quantity",
                            "steady/sigma", expect=BAD_INPUT)
-        self.assertIn("hold the same", " ".join(done.stdout.split()))
+        self.assertIn("hold the same", " ".join(done.stderr.split()))
 
     def test_different_seeds_points_and_scenes_are_joined(self):
         self.run_sweep("a", [0.02, 0.1])
