@@ -38,7 +38,7 @@ _{0}() {{
   done
   if ! offered=$(_{0}_value "$command $before" "$word"); then
     case $word in
-      -*) offered=$(compgen -W "$(_{0}_options "$command $kind")" -- "$word") ;;
+      -*) offered=$(compgen -W "$(_{0}_options "$command $kind")" -- "$word") || : ;;
       *) offered=$(_{0}_words "$command" "$word") ;;
     esac
   fi

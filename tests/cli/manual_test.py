@@ -100,6 +100,15 @@ class Bash(Case):
         self.assertEqual(self.complete("report", "run.h5", "-o", ""), ["folder", "page.html"])
         self.assertEqual(self.complete("fit", "--csv", "n"), ["notes.md"])
 
+    def test_no_name_is_a_pattern_of_names(self):
+        for name in ("*.h5", "a.h5", "[ab].h5", "$(touch made).h5", "?.h5"):
+            self.write("", name)
+        names = sorted(["*.h5", "a.h5", "[ab].h5", "$(touch made).h5", "?.h5"])
+        self.assertEqual(self.complete("info", ""), names)
+        self.assertEqual(self.complete("info", "*"), ["*.h5"])
+        self.assertEqual(self.complete("run", "--no-such"), [])
+        self.assertEqual(self.files(), names)
+
     def test_the_word_after_a_command_that_is_a_value_is_no_command(self):
         self.assertEqual(self.complete("new", "run", "--fr"), ["--from"])
 
