@@ -264,7 +264,7 @@ class Terminals(Case):
     def test_a_line_of_an_input_with_a_nul_is_quoted_whole(self):
         self.write("1 2\n3 4\0\x1b[2J after\n", "curve.csv")
         refused = self.jostle("fit", "curve.csv", expect=BAD_INPUT)
-        self.assertIn(r'("3 4\x00\x1b[2J after")', refused.stderr)
+        self.assertIn(r'"3 4\x00\x1b[2J after"', refused.stderr)
         self.write('1\nLattice="4 0 0 0 4 0 0 0 4" pbc="T T F"\nX 1 2 3\0\x1b4\n', "a.xyz")
         refused = self.jostle("structure", "a.xyz", expect=BROKEN)
         self.assertIn(r'a.xyz: line 3: "3\x00\x1b4" is not a finite number', refused.stderr)
