@@ -8,6 +8,7 @@
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
@@ -18,7 +19,7 @@ constexpr double narrowest_half = 4;  // diameters
 
 /// The double nearest to the value's first 15 digits: 1e-7, not 1.0000000000000001e-07.
 double rounded(double value) {
-  return std::stod(fmt::format("{:.15g}", value));
+  return std::isfinite(value) ? std::stod(finite_text("{:.15g}", value)) : value;
 }
 
 std::uint64_t raised(std::uint64_t sweeps, double factor) {
@@ -89,19 +90,19 @@ class GrainLadder : LadderMaker {
       QuietRest other = rest;
       other.kinetic_energy = rounded(rest.kinetic_energy * factor);
       if (other.kinetic_energy > 1) continue;
-      ended_by(other, fmt::format("quiet below {:.3g} m g d", other.kinetic_energy));
+      ended_by(other, finite_text("quiet below {:.3g} m g d", other.kinetic_energy));
     }
     for (const double factor : {5.0, 25.0}) {
       QuietRest other = rest;
       other.seconds = rounded(rest.seconds * factor);
-      ended_by(other, fmt::format("quiet for {:.3g} s", other.seconds));
+      ended_by(other, finite_text("quiet for {:.3g} s", other.seconds));
     }
   }
 
   void rests(const TimedRest& rest) {
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
       const TimedRest other{rounded(rest.seconds * factor)};
-      ended_by(other, fmt::format("{:.3g} s after the floor", other.seconds));
+      ended_by(other, finite_text("{:.3g} s after the floor", other.seconds));
     }
   }
 
@@ -123,7 +124,7 @@ class GrainLadder : LadderMaker {
       const double steps = rounded(steps_of_contact(grains_) * factor);
       if (steps < 40 || steps > 1e6) continue;
       other.steps_per_contact = steps;
-      add(PilotSetting::Part::step, fmt::format("{:g} steps a contact", steps), other);
+      add(PilotSetting::Part::step, finite_text("{:g} steps a contact", steps), other);
     }
   }
 
@@ -169,7 +170,7 @@ class RelaxationLadder : LadderMaker {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
       MeanHeightStop other = rule;
       other.eta = rounded(rule.eta * factor);
-      if (other.eta < 1) stop(other, factor, fmt::format("eta = {:.3g}", other.eta));
+      if (other.eta < 1) stop(other, factor, finite_text("eta = {:.3g}", other.eta));
     }
     intervals(rule);
   }
@@ -178,7 +179,7 @@ class RelaxationLadder : LadderMaker {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
       HeightChangeStop other = rule;
       other.change = rounded(rule.change * factor);
-      if (other.change <= 1) stop(other, factor, fmt::format("change = {:.3g} d", other.change));
+      if (other.change <= 1) stop(other, factor, finite_text("change = {:.3g} d", other.change));
     }
     intervals(rule);
   }
@@ -199,11 +200,11 @@ class RelaxationLadder : LadderMaker {
     for (const double factor : {10.0, 0.1}) {
       BulkFractionStop other = rule;
       other.change = rounded(rule.change * factor);
-      stop(other, factor, fmt::format("change = {:.3g}", other.change));
+      stop(other, factor, finite_text("change = {:.3g}", other.change));
     }
     for (const double eta : {1e-5, 1e-6}) {
       stop(MeanHeightStop{.eta = eta, .every_sweeps = complete_interval}, 0.01,
-           fmt::format("mean height, eta = {:.3g}", eta));
+           finite_text("mean height, eta = {:.3g}", eta));
     }
   }
 
@@ -229,7 +230,7 @@ class RelaxationLadder : LadderMaker {
       if (other.max_step > least_periodic_width) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
-      add(PilotSetting::Part::step, fmt::format("{} = {:.3g}", name, other.max_step), relax);
+      add(PilotSetting::Part::step, finite_text("{} = {:.3g}", name, other.max_step), relax);
     }
   }
 
@@ -241,7 +242,7 @@ class RelaxationLadder : LadderMaker {
       if (other.theta0 < least_theta0 || other.theta0 > most_theta0) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
-      add(PilotSetting::Part::step, fmt::format("theta_0 = {:.3g}", other.theta0), relax);
+      add(PilotSetting::Part::step, finite_text("theta_0 = {:.3g}", other.theta0), relax);
     }
   }
 

@@ -105,7 +105,8 @@ SnapshotRecord Realization::snapshot_of_row() const {
   record.tap = state_.rows;
   if (wanted.positions) record.centres = packing_.centres;
   if (wanted.coordination) record.coordination = coordination(packing_, wanted.contact_cut);
-  if (wanted.height_histogram)
+  // What a bed has none of is stored as missing.
+  if (wanted.height_histogram && has_height_bins(packing_, wanted.bin_width))
     record.height_histogram = height_histogram(packing_, wanted.bin_width);
   if (moves_in_time(wanted)) add_mechanics(record);
   return record;
@@ -115,7 +116,7 @@ void Realization::add_mechanics(SnapshotRecord& record) const {
   const Snapshots& wanted = plan_.snapshots;
   BedMechanics bed = dynamics_->mechanics();
   if (bed.velocities.empty()) return;
-  if (wanted.granular_temperature) {
+  if (wanted.granular_temperature && has_height_bins(packing_, wanted.bin_width)) {
     GranularTemperature temperature =
         granular_temperature(packing_, bed.velocities, wanted.bin_width);
     record.temperature_lateral = std::move(temperature.lateral);

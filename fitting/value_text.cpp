@@ -53,6 +53,7 @@ std::string in_last_digits(double value, double error, int decimals) {
 
 std::string number_text(double value, int digits) {
   if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return value > 0 ? "infinite" : "-infinite";
   return in_format(value, std::chars_format::general, digits);
 }
 

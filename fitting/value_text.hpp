@@ -16,7 +16,8 @@ std::string value_with_error(double value, double error, double scale = 1);
 /// neither end is finite.
 std::string limits_text(double low, double high, int digits);
 
-/// The value with so many significant digits; "-" where it is no number.
+/// The value with so many significant digits; "-" where it is no number, else "infinite" or
+/// "-infinite" where it is not finite.
 std::string number_text(double value, int digits);
 
 }  // namespace jostle::inline fitting

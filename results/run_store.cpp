@@ -41,7 +41,9 @@ std::uint64_t file_bytes(const std::string& path) {
 }
 
 void require_room_for_run(const std::string& path, std::uint64_t bytes) {
-  require_free_space(path, bytes, "free some space, write elsewhere, or keep fewer snapshots");
+  require_free_space(path, bytes,
+                     "free some space, write elsewhere, keep fewer snapshots, or give the run a "
+                     "time limit, at which it stops with what it has");
 }
 
 /// A study with another scene or other sizes: the file must say so before parts follow it.
@@ -58,8 +60,8 @@ bool same_points(const Study& stored, const Study& study) {
 
 class RunStore::Impl {
  public:
-  Impl(const std::string& results_path, const Shard& a_shard, bool force)
-      : path(output_path(results_path)), shard(a_shard), lock(path, force) {
+  Impl(const std::string& results_path, const Shard& a_shard, bool force, Room a_room)
+      : path(output_path(results_path)), shard(a_shard), room(a_room), lock(path, force) {
     require_replaceable_file(path);
     remove_stale_temporaries(path);
   }
@@ -68,6 +70,7 @@ class RunStore::Impl {
   void go_on(const std::function<Study(const ResultsFile&)>& study_for,
              const Provenance& provenance);
   void fold(const StoringProgress& progress = {});
+  void require_room(std::uint64_t have) const;
   RealizationSummary summary(RealizationId id) const;
   PartState last_checkpoint(RealizationId id) const;
   std::size_t n_columns(RealizationId id) const;
@@ -76,6 +79,7 @@ class RunStore::Impl {
   std::string path;
   Study study;
   Shard shard;
+  Room room;
   std::string run_id;
   std::vector<Provenance> processes;
   std::optional<ResultsFile> file;                       // what the parts go on from
@@ -94,8 +98,14 @@ class RunStore::Impl {
   FileIdentity opened;  // of the file that `file` reads
 };
 
+/// `have`: bytes of the run that are on the disk already.
+void RunStore::Impl::require_room(std::uint64_t have) const {
+  const std::uint64_t needed = disk_estimate(study, shard);
+  if (room == Room::for_all && needed > have) require_room_for_run(path, needed - have);
+}
+
 void RunStore::Impl::start(const Provenance& provenance) {
-  require_room_for_run(path, disk_estimate(study, shard));
+  require_room(0);
   run_id = random_identity();
   processes = {provenance};
   write_results(path, {study, shard, processes, run_id, {}}, [this] { remove_parts(path); });
@@ -113,9 +123,7 @@ void RunStore::Impl::go_on(const std::function<Study(const ResultsFile&)>& study
   in_parts = verify_parts(path, run_id, file->study());
   // What lies there already is a part of the estimate: a chain of runs that fits at first fits to
   // its end.
-  const std::uint64_t needed = disk_estimate(study, shard),
-                      have = parts_bytes(path) + file_bytes(path);
-  if (needed > have) require_room_for_run(path, needed - have);
+  require_room(parts_bytes(path) + file_bytes(path));
   if (!same_points(file->study(), study)) fold_parts_of_the_stored_points();
   if (differs(file->study(), study))
     fold();
@@ -224,8 +232,8 @@ RunStore::~RunStore() = default;
 
 std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
-                                           bool force) {
-  auto impl = std::make_unique<Impl>(path, shard, force);
+                                           bool force, Room room) {
+  auto impl = std::make_unique<Impl>(path, shard, force, room);
   impl->study = study;
   if (!force && file_exists(path))
     throw ResultsError(path, "exists already; resume it, choose another name, or replace it",
@@ -248,8 +256,8 @@ std::unique_ptr<RunStore> RunStore::resume(const std::string& path, const Study&
 
 std::unique_ptr<RunStore> RunStore::resume(
     const std::string& path, const std::function<Study(const ResultsFile&)>& study_for,
-    const Shard& shard, const Provenance& provenance, bool force) {
-  auto impl = std::make_unique<Impl>(path, shard, force);
+    const Shard& shard, const Provenance& provenance, bool force, Room room) {
+  auto impl = std::make_unique<Impl>(path, shard, force, room);
   impl->go_on(study_for, provenance);
   return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
 }
@@ -291,9 +299,7 @@ void RunStore::extend(std::uint32_t realizations) {
   assert(realizations >= impl_->study.realizations);
   const std::lock_guard guard(impl_->mutex);
   impl_->study.realizations = realizations;
-  const std::uint64_t needed = disk_estimate(impl_->study, impl_->shard),
-                      have = file_bytes(impl_->path);
-  if (needed > have) require_room_for_run(impl_->path, needed - have);
+  impl_->require_room(file_bytes(impl_->path));
   impl_->fold();
 }
 

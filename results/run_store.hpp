@@ -20,11 +20,15 @@ namespace jostle::inline results {
 /// time from one; everything else from one thread. Every function throws ResultsError.
 class RunStore : public Sink {
  public:
+  /// Whether a disk with less space than disk_estimate() is refused. A run that may be stopped
+  /// before it has computed everything may need less.
+  enum class Room { for_all, for_a_part };
+
   /// Starts a file. An existing one is refused unless `force`, which discards it and its parts and
-  /// takes over the lock of another host. Refuses a disk with less space than disk_estimate().
+  /// takes over the lock of another host.
   static std::unique_ptr<RunStore> create(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
-                                          bool force = false);
+                                          bool force = false, Room room = Room::for_all);
   /// Goes on with a file. `study` is the stored one, or it has more taps at the end, more
   /// realizations or more sweep points, in any order: the caller compares the scenes
   /// (ResultsFile::study) and refuses other changes. Points are known by their ids. A share of a
@@ -38,7 +42,7 @@ class RunStore : public Sink {
   static std::unique_ptr<RunStore> resume(const std::string& path,
                                           const std::function<Study(const ResultsFile&)>& study_for,
                                           const Shard& shard, const Provenance& provenance,
-                                          bool force = false);
+                                          bool force = false, Room room = Room::for_all);
   /// Gives the lock back; parts that were not folded stay for a resume.
   ~RunStore() override;
   /// Ends a store: gives the lock back, and its file as the last fold left it, open and verified.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -50,6 +51,16 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
   return curve;
 }
 
+namespace {
+
+/// Of more bins nearly all are empty: the spheres have left each other.
+double most_height_bins(const Packing& packing) {
+  constexpr double bins_of_a_sphere = 100, always_taken = 1e5;
+  return std::max(always_taken, bins_of_a_sphere * static_cast<double>(packing.centres.size()));
+}
+
+}  // namespace
+
 std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers) {
   std::vector<std::uint64_t> spheres;
   for (const unsigned number : numbers) {
@@ -59,15 +70,21 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
   return spheres;
 }
 
+bool has_height_bins(const Packing& packing, double bin_width) {
+  return top_height(packing) / bin_width < most_height_bins(packing);
+}
+
 std::size_t n_height_bins(const Packing& packing, double bin_width) {
   assert(bin_width > 0 && !packing.centres.empty());
-  constexpr double most_bins = 1e7;
   const double top = top_height(packing);
-  if (!(top / bin_width < most_bins)) {
-    throw std::length_error("height_histogram: centres up to " + std::to_string(top) +
-                            " diameters make more than ten million bins of " +
-                            std::to_string(bin_width) +
-                            "; widen bin_width, or keep no height_histogram");
+  if (!has_height_bins(packing, bin_width)) {
+    throw std::invalid_argument(
+        std::to_string(packing.centres.size()) + " spheres with centres up to " +
+        std::to_string(top) + " diameters make more than " +
+        std::to_string(static_cast<std::uint64_t>(most_height_bins(packing))) + " bins of " +
+        std::to_string(bin_width) +
+        " by height, nearly all of them empty: take wider ones, and see whether a sphere lies far "
+        "above the bed");
   }
   return static_cast<std::size_t>(top / bin_width) + 1;
 }

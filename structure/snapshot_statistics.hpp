@@ -35,13 +35,17 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
 /// How many spheres have k neighbours, k = 0 .. up to the greatest number.
 std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers);
 
+/// Whether bins of height up to the highest centre are at most 100,000, or 100 for each sphere:
+/// nearly all of more would be empty. Requires a sphere.
+bool has_height_bins(const Packing& packing, double bin_width);
+
 /// Bins [k width, (k + 1) width), k = 0 .. up to the highest centre. Requires a sphere. Throws
-/// std::length_error above ten million.
+/// std::invalid_argument without has_height_bins().
 std::size_t n_height_bins(const Packing& packing, double bin_width);
 
 /// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
-/// highest centre. Sums to 1. Requires a sphere. Throws std::length_error above ten million bins.
-/// Rosato et al. 2010, fig. 6.
+/// highest centre. Sums to 1. Requires a sphere. Throws as n_height_bins() does. Rosato et al.
+/// 2010, fig. 6.
 std::vector<double> height_histogram(const Packing& packing, double bin_width = 0.1);
 
 }  // namespace jostle::inline structure

@@ -1,9 +1,9 @@
 #include "study/amounts.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <initializer_list>
+
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -14,8 +14,8 @@ std::string scaled(double number, double base, std::initializer_list<const char*
     number /= base;
     ++unit;
   }
-  if (unit == units.begin()) return fmt::format("{:.0f}{}", number, *unit);
-  return fmt::format("{:.1f}{}", number, *unit);
+  if (unit == units.begin()) return finite_text("{:.0f}{}", number, *unit);
+  return finite_text("{:.1f}{}", number, *unit);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "engine/monte_carlo/trial_loop.hpp"
+#include "results/export/printable.hpp"
 #include "study/version.hpp"
 
 namespace jostle::inline study {
@@ -15,8 +16,25 @@ bool needs_no_quotes(unsigned char c) {
          std::string_view("_-./=,:+@%").find(static_cast<char>(c)) != std::string_view::npos;
 }
 
+/// In bash's quotes $'...', in which every byte that a terminal does not show has an escape.
+std::string escaped_shell_word(const std::string& argument) {
+  std::string word = "$'";
+  for (const char c : argument) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < ' ' || byte >= 0x7f) {
+      constexpr std::string_view digits = "0123456789abcdef";
+      word.append("\\x").append({digits[byte / 16], digits[byte % 16]});
+    } else {
+      if (c == '\'' || c == '\\') word += '\\';
+      word += c;
+    }
+  }
+  return word + "'";
+}
+
 std::string shell_word(const std::string& argument) {
   if (!argument.empty() && std::ranges::all_of(argument, needs_no_quotes)) return argument;
+  if (printable_name(argument) != argument) return escaped_shell_word(argument);
   std::string word = "'";
   for (const char c : argument) {
     if (c == '\'') {

@@ -59,14 +59,15 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   std::error_code unreadable;  // a ring of links, a name too long: said when it is opened
   if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
     store_ = RunStore::create(output, study_, settings.shard, by,
-                              settings.take_over || settings.existing == Existing::replace);
+                              settings.take_over || settings.existing == Existing::replace,
+                              settings.room);
     return;
   }
   if (!resumes) throw OutputExists(output);
   retry_failed_ = settings.retry_failed;
   store_ = RunStore::resume(
       output, [this](const ResultsFile& file) { return study_for(file); }, settings.shard, by,
-      settings.take_over);
+      settings.take_over, settings.room);
   auto pending = store_->pending(retry_failed_);
   std::ranges::sort(pending);
   for (const RealizationSummary& one : store_->realizations()) {

@@ -27,6 +27,8 @@ struct RunSettings {
   Shard shard = {};
   int threads = 1;
   Seconds checkpoint_every{60};
+  /// A run that stops at a time limit is not refused where the disk has too little space for all.
+  RunStore::Room room = RunStore::Room::for_all;
   const std::atomic<bool>* stop = nullptr;  // stops all realizations at the end of a slice
   /// A stop is soon over: where the results are larger, it leaves the parts beside the file, for
   /// the resume to go on from and the end of the run to fold. Some 20 s at the slowest rate of a

@@ -12,6 +12,7 @@
 #include "engine/starts/starts.hpp"
 #include "ensemble/realization.hpp"
 #include "ensemble/run.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
 #include "results/error.hpp"
@@ -30,7 +31,7 @@ void require(bool holds, const std::string& otherwise) {
 void require_no_overlap(const Packing& packing, const std::string& where) {
   const Overlap overlap = deepest_overlap_brute_force(packing);
   require(overlap.depth <= overlap_bound(packing),
-          fmt::format("{}: spheres {} and {} overlap by {:.3g} diameters", where, overlap.first,
+          finite_text("{}: spheres {} and {} overlap by {:.3g} diameters", where, overlap.first,
                       overlap.second, overlap.depth));
 }
 
@@ -129,9 +130,9 @@ std::string fit_certified_set() {
   const double error = std::max(std::abs(found.estimates[0].value / b1 - 1),
                                 std::abs(found.estimates[2].value * b2 - 1));
   require(error < 1e-6,
-          fmt::format("Misra1a: {:.9g} and 1/{:.9g}, certified are {:.9g} and 1/{:.9g}",
+          finite_text("Misra1a: {:.9g} and 1/{:.9g}, certified are {:.9g} and 1/{:.9g}",
                       found.estimates[0].value, found.estimates[2].value, b1, 1 / b2));
-  return fmt::format("Misra1a to {:.0f} digits", std::min(16.0, -std::log10(error + 1e-16)));
+  return finite_text("Misra1a to {:.0f} digits", std::min(16.0, -std::log10(error + 1e-16)));
 }
 
 std::string run_into_file(const std::string& path, int threads) {

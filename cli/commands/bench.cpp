@@ -11,6 +11,7 @@
 #include "bench/standard_states.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -45,7 +46,7 @@ bench::Rate rate_of(const bench::Case& bed) {
 }
 
 void print_line(std::string_view state, std::size_t n_spheres, const bench::Rate& rate) {
-  print(fmt::format(
+  print(finite_text(
       "{:<11} {} spheres {:7.1f} million trials/s, acceptance {:.4f}, {:.2f} distance tests a "
       "trial, {:.1f} list renewals a sweep, {:.0f} bytes a sphere\n",
       state, n_spheres, rate.trials_per_second() / 1e6, rate.acceptance,

@@ -17,6 +17,7 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/cost/scene_pilot.hpp"
@@ -70,7 +71,7 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   const char* const about = estimate.settled ? "about" : "at least";
   const std::string a_tap = total_taps(plan) == 0
                                 ? ""
-                                : fmt::format("{} {:.0f} {} a tap, ", about,
+                                : finite_text("{} {:.0f} {} a tap, ", about,
                                               estimate.rounds_per_tap, round_name(plan.engine));
   print_wrapped(fmt::format(
       "  {}{}{}, {} {} at {} {}/s: {}{} {} a realization\n", plan.label,
@@ -101,7 +102,7 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t turns = (realizations + threads - 1) / threads;
   const Seconds mean = pilot.mean_realization();
-  print_wrapped(fmt::format(
+  print_wrapped(finite_text(
       "  time: {} {} on {}, {:.3g} core-hours\n", pilot.settled() ? "about" : "at least",
       format_duration(mean * static_cast<double>(turns)), counted(threads, "thread"),
       mean.count() * static_cast<double>(realizations) / 3600));

@@ -117,9 +117,7 @@ void add_duration(Command& command, CostArguments& arguments) {
       "--budget",
       [&arguments](const std::string& text) {
         const auto duration = parse_duration(text);
-        if (!duration) {
-          throw BadValue(fmt::format("\"{}\" is not a duration, as 10m", text));
-        }
+        if (!duration) throw BadValue(duration_fault(text));
         arguments.budget = *duration;
       },
       "How long to run, in whole replicates, at least two (default: 10m)");

@@ -14,6 +14,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "results/export/export.hpp"
 #include "results/export/h5md.hpp"
+#include "results/export/printable.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/bad_input.hpp"
@@ -139,7 +140,7 @@ int export_results(const ExportArguments& arguments) {
   require_text_output("-o", arguments.output, std::span(&input, 1), arguments.force);
   if (arguments.force) require_results_or_empty(arguments.output);
   write_copy(input, arguments.output, arguments.live == Live::yes);
-  print(fmt::format("{}: {} of {}\n", arguments.output,
+  print(fmt::format("{}: {} of {}\n", printable_name(arguments.output),
                     arguments.live == Live::yes ? "results and last checkpoints" : "results",
                     input));
   return exit_ok;

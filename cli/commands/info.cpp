@@ -13,6 +13,7 @@
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
+#include "results/export/printable.hpp"
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/amounts.hpp"
@@ -114,8 +115,8 @@ std::string counts(const ResultsFile& file, const RunStatus& status) {
 void print_info(const ResultsFile& file, const RunStatus& status, const Layout& layout) {
   const Study& study = file.study();
   const Json scene = stored_scene(file);
-  std::string text =
-      fmt::format("{}: {}, {}\n", file.path(), text_of(scene, "name"), state_of(status));
+  std::string text = fmt::format("{}: {}, {}\n", printable_name(file.path()),
+                                 text_of(scene, "name"), state_of(status));
   if (const std::string about = text_of(scene, "description"); !about.empty()) {
     text += about + "\n";
   }

@@ -23,8 +23,8 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/output_path.hpp"
-#include "results/export/printable.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/number_text.hpp"
@@ -60,9 +60,7 @@ Shard parse_shard(std::string_view text) {
 
 Seconds duration_argument(const std::string& text) {
   const auto duration = parse_duration(text);
-  if (!duration) {
-    throw BadValue(fmt::format("\"{}\" is not a duration, as 90s, 30m, 2h or 1h30m", text));
-  }
+  if (!duration) throw BadValue(duration_fault(text));
   return *duration;
 }
 
@@ -81,6 +79,7 @@ RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded
                        .shard = arguments.shard,
                        .threads = threads,
                        .checkpoint_every = arguments.checkpoint_every};
+  if (arguments.time_limit) settings.room = RunStore::Room::for_a_part;
   require_not_read("-o", settings.output, loaded.files);
   if (arguments.resume || arguments.retry_failed) {
     settings.existing = Existing::resume;
@@ -110,7 +109,7 @@ std::string process_line(const Progress& progress, Seconds elapsed, int threads,
   const auto units = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
   if (one_engine && units > 0 && relaxing > 0) {
-    line += fmt::format("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
+    line += finite_text("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
                         format_count(units / relaxing), unit,
                         static_cast<double>(progress.pair_tests) / units,
                         unit == "trials" ? "a trial" : "for each");
@@ -211,8 +210,7 @@ int run(const RunArguments& arguments) {
   SceneRun run(loaded, settings, display);
   std::vector<std::string> warnings = scene_warnings(loaded);
   if (const std::string lock = run.lock_warning(); !lock.empty()) warnings.push_back(lock);
-  for (const std::string& warning : warnings)
-    log_line(fmt::format("warning: {}", printable(warning)));
+  for (const std::string& warning : warnings) log_line(fmt::format("warning: {}", warning));
   try {
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
     return run_to_end(arguments, run, settings, stop);

@@ -17,7 +17,9 @@
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/output_path.hpp"
+#include "results/export/printable.hpp"
 #include "results/slurm_job.hpp"
 #include "study/cluster/job_plan.hpp"
 #include "study/cost/scene_pilot.hpp"
@@ -28,6 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int most_cpus = 65535;  // of a job, which has one node: Slurm counts those in 16 bits
+
 struct SlurmArguments {
   std::string scene, output, folder;
   double hours = 0;
@@ -36,21 +40,14 @@ struct SlurmArguments {
   bool force = false;
 };
 
-/// A command line as a comment of one line: what would end it is shown as printable() shows the
-/// rest.
-std::string commented(const std::string& text) {
-  std::string line;
-  for (const char c : text) line += c == '\n' ? std::string("\\x0a") : std::string(1, c);
-  return line;
-}
-
-/// What a text in the script must be: one line.
+/// What a text in the script must be: one line that shows what it holds.
 std::string one_line(const std::string& text, const char* what) {
-  if (std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; }))
+  const std::string shown = printable_name(text);
+  if (shown != text)
     throw BadInput(
-        fmt::format("{} \"{}\" has a character that no line of a script can hold: "
-                    "take another name",
-                    what, text));
+        fmt::format("{} \"{}\" has a character that no line of a script can hold or "
+                    "show: take another name",
+                    what, shown));
   return text;
 }
 
@@ -62,6 +59,10 @@ std::string without_last_slashes(std::string folder) {
 
 /// Slurm counts whole minutes.
 Seconds time_limit(const SlurmArguments& arguments) {
+  constexpr double most_hours = 87600;  // ten years, which Slurm's minutes can count
+  if (arguments.hours > most_hours)
+    throw BadInput(finite_text("--hours {:.4g}: a time limit has at most {:.0f} hours, ten years",
+                               arguments.hours, most_hours));
   return Seconds(60 * std::max(1.0, std::ceil(arguments.hours * 60 - 1e-6)));
 }
 
@@ -84,7 +85,7 @@ std::uint64_t megabytes_to_ask_for(double bytes) {
 
 std::string estimate_line(const JobPlan& plan, const SlurmArguments& arguments, bool settled) {
   const char* const about = settled ? "about" : "at least";
-  return fmt::format("{}, {} on {} each: {} {:.3g} core-hours; the longest task {} {} of {}",
+  return finite_text("{}, {} on {} each: {} {:.3g} core-hours; the longest task {} {} of {}",
                      counted(plan.tasks, "task"), counted(plan.shards, "shard"),
                      counted(arguments.cpus, "CPU"), about, plan.core_time.count() / 3600, about,
                      format_duration(plan.longest_task), format_duration(time_limit(arguments)));
@@ -127,7 +128,7 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
               "--folder"),
           .folder = one_line(fs::current_path().string(), "the folder"),
           .program = one_line(fs::read_symlink("/proc/self/exe").string(), "the program"),
-          .made_by = commented(shell_words(command_line())),
+          .made_by = shell_words(command_line()),
           .cpus = arguments.cpus,
           .time_limit = time_limit(arguments),
           .megabytes = megabytes_to_ask_for(
@@ -140,6 +141,7 @@ void say(const std::string& text) {
 }
 
 void write_script(const SlurmArguments& arguments) {
+  time_limit(arguments);  // refused before the pilot runs
   const LoadedScene loaded = load_scene(arguments.scene);
   require_text_output("-o", arguments.output, loaded.files, arguments.force);
   if (arguments.jobs > 1 && !loaded.scene.until.targets.empty()) {
@@ -191,7 +193,7 @@ void add_slurm(Command& app, int& code) {
       .positive_number();
   command.add_option("--cpus", arguments->cpus, "CPUs of a job: realizations at once")
       .required()
-      .whole_from(1);
+      .between(1, most_cpus);
   command.add_option("--jobs", arguments->jobs, "Shards, each a job and a results file")
       .required()
       .whole_from(1);

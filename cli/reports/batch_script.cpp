@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/export/printable.hpp"
 #include "study/provenance.hpp"
 
@@ -28,7 +29,7 @@ std::string header(const BatchScript& script, const JobPlan& plan) {
       {"cpus-per-task", fmt::to_string(script.cpus)},
       {"time", slurm_time(script.time_limit)},
       {"mem", fmt::format("{}M", script.megabytes)},
-      {"signal", fmt::format("B:USR1@{:.0f}", plan.notice.count())},
+      {"signal", finite_text("B:USR1@{:.0f}", plan.notice.count())},
       {"open-mode", "append"},
       {"output", script.name + ".slurm.log"},
       {"chdir", script.folder}};
@@ -40,7 +41,7 @@ std::string header(const BatchScript& script, const JobPlan& plan) {
       "# Submit with sbatch: options of its command line (-p, -A, --array, ...) win over those "
       "here.\n"
       "# This file may be submitted any number of times: what is done is not done again.\n",
-      script.name, printable(script.made_by), printable(script.estimate));
+      script.name, printable_name(script.made_by), printable_name(script.estimate));
   for (const auto& [option, value] : options)
     text += fmt::format("#SBATCH --{}={}\n", option, shell_words({value}));
   return text + "#SBATCH --requeue\n";

@@ -11,6 +11,7 @@
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 #include "fitting/value_text.hpp"
 
@@ -33,14 +34,14 @@ std::string over_replicates(const PairedBias& bias) {
 }
 
 std::string core_time(double seconds) {
-  if (seconds < 3600) return format_duration(Seconds(seconds)) + " of core time";
-  return fmt::format("{:.3g} core-hours", seconds / 3600);
+  if (!(seconds >= 3600)) return format_duration(Seconds(seconds)) + " of core time";
+  return finite_text("{:.3g} core-hours", seconds / 3600);
 }
 
 /// Sweeps are whole numbers by the thousand, simulated seconds are few.
 std::string work_text(const CostStudy& study, std::size_t setting) {
   const double work = study.times()[setting].work;
-  return work >= 100 ? fmt::format("{:.0f}", work) : fmt::format("{:.3g}", work);
+  return work >= 100 && std::isfinite(work) ? finite_text("{:.0f}", work) : number_text(work, 3);
 }
 
 std::string rows(const CostStudy& study, const CostOfObservable& cost, const Layout& layout) {
@@ -55,11 +56,11 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost, const Lay
     const double gain = bias.variance_reduction;
     std::vector<std::string> cells{
         study.settings()[p].name, reference ? "0, the reference" : over_replicates(bias),
-        fmt::format("{:.3g}", study.times()[p].tap_seconds),
+        number_text(study.times()[p].tap_seconds, 3),
         format_duration(Seconds(study.realization_seconds(p))), front[p] != 0 ? "front" : ""};
     if (all) {
       cells.insert(cells.begin() + 2,
-                   {reference || !std::isfinite(gain) ? "-" : fmt::format("{:.2g} x", gain),
+                   {reference || !std::isfinite(gain) ? "-" : finite_text("{:.2g} x", gain),
                     work_text(study, p)});
     }
     table.add(std::move(cells));
@@ -139,10 +140,10 @@ std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& c
       fmt::format("Biases are those after {}. Since tap {} the scene's changed by {}: ", taps,
                   study.middle_tap(), over_replicates(growth.change));
   if (!growth.is_seen()) {
-    return text + fmt::format("no change is seen; one of {:.2g} would have been with 80 %.\n",
+    return text + finite_text("no change is seen; one of {:.2g} would have been with 80 %.\n",
                               growth.detectable);
   }
-  return text + fmt::format("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
+  return text + finite_text("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
                             std::abs(now) > std::abs(before) ? "still grows" : "shrinks",
                             growth.tails, growth.change.pairs);
 }
@@ -157,11 +158,11 @@ std::string other_windows_line(const CostOfObservable& cost) {
 }
 
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
-  const std::string wanted = fmt::format("For an error of {:g} in {}", target, cost.label.name);
+  const std::string wanted = finite_text("For an error of {:g} in {}", target, cost.label.name);
   const auto choice = cheapest(cost.limits, target);
   if (choice) {
     const SettingCost& limit = cost.limits[choice->setting];
-    return fmt::format(
+    return finite_text(
         "{}: {}, {}, about {} for {} taps; by a bias of at most {:.2g} and a spread of at most "
         "{:.2g} after tap {}, either of which these {} replicates let pass once in five times, if "
         "relaxations beyond the ladder change {}.\n",
@@ -179,7 +180,7 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
            "most complete setting may lack any amount: more replicates, or a scene whose own stop "
            "is more complete, may tell.\n";
   }
-  return fmt::format(
+  return finite_text(
       "{} no setting will do: the least limit of a bias, with what the most complete setting may "
       "lack, is {:.2g}.\nMore replicates make errors of biases smaller.\n",
       wanted, least);
@@ -194,13 +195,15 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
   if (std::isnan(own.realization_seconds))
     return wrapped(failures(study), layout.width);  // every replicate of the scene's own
   std::string head = target ? advice(study, cost, *target) : "";
-  head += fmt::format(
-      "The scene's own settings: bias {}, statistical error {:.2g} with {} realization{}, {} for "
+  head += finite_text(
+      "The scene's own settings: bias {}, statistical error {} with {} realization{}, {} for "
       "{} taps.\n",
       over_replicates(own.bias, own.bias_error, cost.biases.front().pairs),
-      own.sigma / std::sqrt(static_cast<double>(scene_realizations)), scene_realizations,
-      scene_realizations == 1 ? "" : "s", core_time(own.realization_seconds * scene_realizations),
-      study.taps());
+      std::isfinite(own.sigma)
+          ? number_text(own.sigma / std::sqrt(static_cast<double>(scene_realizations)), 2)
+          : "not known",
+      scene_realizations, scene_realizations == 1 ? "" : "s",
+      core_time(own.realization_seconds * scene_realizations), study.taps());
   head += fmt::format(
       "\n{}: after {} tap{}, {} replicates, against {}; a(b): b is half the 68 % "
       "interval\n",

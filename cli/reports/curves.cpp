@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/tables/wrapped.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {
@@ -171,7 +172,7 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
   if (!(range.low < range.high)) return "";
   longest = std::min(longest, width / 2);
   std::string text =
-      wrapped(fmt::format("{} over log tap, from {:.4g} to {:.4g}, and its last value:\n", name,
+      wrapped(finite_text("{} over log tap, from {:.4g} to {:.4g}, and its last value:\n", name,
                           range.low, range.high),
               width);
   for (std::size_t point = 0; point < curves.size(); ++point) {

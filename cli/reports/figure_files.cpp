@@ -10,6 +10,8 @@
 #include "cli/files/output_file.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/checkpoints/output_path.hpp"
+#include "results/error.hpp"
+#include "results/export/printable.hpp"
 #include "study/figures/figures.hpp"
 #include "study/report/study_words.hpp"
 #include "study/results_input.hpp"
@@ -26,14 +28,44 @@ struct FigureOfFile {
 
 constexpr const char* kinds[] = {".dat", ".gp", ".svg", ".pdf"};
 
-/// Makes the folder, and refuses what stands there already.
-void require_folder_for(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
-                        const std::vector<std::string>& inputs) {
-  std::error_code fault;
-  if (fs::exists(folder.path, fault) && !fs::is_directory(folder.path, fault)) {
-    throw BadInput(fmt::format("--figures {}: it is a file. Name a folder.", folder.path));
+/// The folder of the figures, and what is written into it. What did not exist before is removed
+/// again unless it is kept: a full disk leaves neither an empty folder nor some of the data.
+class WrittenFigures {
+ public:
+  explicit WrittenFigures(const std::string& folder) : folder_(folder) {
+    std::error_code fault;
+    if (fs::exists(folder_, fault) && !fs::is_directory(folder_, fault)) {
+      throw BadInput(fmt::format("--figures {}: it is a file. Name a folder.", folder));
+    }
+    made_ = !fs::is_directory(folder_, fault);
+    make_folder(folder);
   }
-  make_folder(folder.path);
+  WrittenFigures(const WrittenFigures&) = delete;
+  WrittenFigures& operator=(const WrittenFigures&) = delete;
+  ~WrittenFigures() {
+    if (kept_) return;
+    std::error_code fault;  // what failed before is reported
+    for (const fs::path& file : files_) fs::remove(file, fault);
+    if (made_) fs::remove(folder_, fault);
+  }
+  void write(const std::string& name, const std::string& text) {
+    const fs::path path = folder_ / name;
+    std::error_code fault;
+    if (!fs::exists(path, fault)) files_.push_back(path);
+    write_text(path.string(), text);
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  fs::path folder_;
+  std::vector<fs::path> files_;
+  bool made_ = false, kept_ = false;
+};
+
+/// Refuses what stands there already.
+void require_room_for(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
+                      const std::vector<std::string>& inputs) {
+  std::error_code fault;
   for (const FigureOfFile& one : figures) {
     for (const char* const kind : kinds) {
       const std::string path = (fs::path(folder.path) / (one.figure.name + kind)).string();
@@ -57,28 +89,30 @@ void require_folder_for(const FigureFolder& folder, const std::vector<FigureOfFi
 /// Refuses first; then writes data and scripts, and draws.
 void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
                const std::vector<std::string>& inputs) {
-  require_folder_for(folder, figures, inputs);
+  WrittenFigures written(folder.path);
+  require_room_for(folder, figures, inputs);
   std::vector<std::vector<NamedText>> sources;
   for (const FigureOfFile& one : figures) {
     const std::string& name = one.figure.name;
     sources.push_back({{name + ".dat", figure_data(one.figure, one.origin)},
                        {name + ".gp", figure_script(one.figure, folder.columns)}});
     for (const NamedText& source : sources.back()) {
-      write_text((fs::path(folder.path) / source.name).string(), source.text);
+      written.write(source.name, source.text);
     }
   }
+  written.keep();  // data and scripts are of use without gnuplot
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const std::string& name = figures[i].figure.name;
     for (const NamedText& one :
          run_gnuplot(name + ".gp", sources[i], {name + ".svg", name + ".pdf"})) {
-      write_text((fs::path(folder.path) / one.name).string(), one.text);
+      written.write(one.name, one.text);
     }
   }
 }
 
 std::string written_text(const FigureFolder& folder, std::size_t n) {
   return fmt::format("{}: {}, each as SVG and PDF with its data (.dat) and its script (.gp)\n",
-                     folder.path, counted(n, "figure"));
+                     printable_name(folder.path), counted(n, "figure"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "cli/tables/wrapped.hpp"
 #include "fitting/report.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {
 
@@ -79,7 +80,7 @@ std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
     const Estimate& estimate = fit.estimates[j];
     text += fmt::format("{} {} {}", j == 0 ? "" : ",", estimate.parameter.name,
-                        estimate.has_value() ? fmt::format("{:.2g}", resampled.errors[j]) : "-");
+                        estimate.has_value() ? number_text(resampled.errors[j], 2) : "-");
   }
   text += "\n";
   if (resampled.failed > 0) {

@@ -12,6 +12,7 @@
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/value_text.hpp"
 #include "study/amounts.hpp"
 #include "study/report/thinning.hpp"
@@ -37,7 +38,7 @@ std::string count_line(const EnsembleSeries& happened, const PointSeries& series
     times += happened.mean[tap] * happened.count[tap];
   }
   if (times < 0.5) return sentence(happened.label.if_none, "");
-  return sentence(happened.label.if_any, fmt::format("{:.0f} of {:.0f}", times, taps));
+  return sentence(happened.label.if_any, finite_text("{:.0f} of {:.0f}", times, taps));
 }
 
 /// The mean over the taps that have any.
@@ -49,7 +50,7 @@ std::string share_line(const EnsembleSeries& share) {
     sum += share.mean[tap];
   }
   if (taps == 0) return sentence(share.label.if_none, "");
-  return sentence(share.label.if_any, fmt::format("{:.1f} %", 100 * sum / taps));
+  return sentence(share.label.if_any, finite_text("{:.1f} %", 100 * sum / taps));
 }
 
 std::string sentences(const PointSeries& series) {
@@ -69,7 +70,7 @@ std::string growth_line(const PointSeries& series) {
   if (height == series.columns.end()) return "";
   const double first = height->mean[0], last = height->mean[series.reached.size() - 1];
   if (!(last > most_growth * first)) return "";
-  return fmt::format(
+  return finite_text(
       "<Z> has grown from {:.3g} d to {:.3g} d: these taps lift the bed further than it comes down "
       "before the next; tap less strongly, or stop relaxing later\n",
       first, last);
@@ -86,16 +87,17 @@ std::string fitting_line(const ResultsFile& file, std::uint32_t point) {
     }
   }
   if (!(mean.spheres_moved > 0)) return "";
-  const std::string central =
-      std::isfinite(mean.central_fraction_before) && std::isfinite(mean.central_fraction_after)
-          ? fmt::format("{:.4f} -> {:.4f}", mean.central_fraction_before,
-                        mean.central_fraction_after)
-          : "not known, the bed is too shallow for it";
-  return fmt::format(
+  const auto change = [](double before, double after) -> std::string {
+    return std::isfinite(before) && std::isfinite(after)
+               ? finite_text("{:.4f} -> {:.4f}", before, after)
+               : "not known, the bed is too shallow for it";
+  };
+  return finite_text(
       "fitting between the walls moved {:.0f} of {} spheres, up by {:.2f} d on average: "
-      "corrected fraction {:.4f} -> {:.4f}, away from the walls {}\n",
+      "corrected fraction {}, away from the walls {}\n",
       mean.spheres_moved, file.study().points[point].n_spheres, mean.mean_rise,
-      mean.corrected_fraction_before, mean.corrected_fraction_after, central);
+      change(mean.corrected_fraction_before, mean.corrected_fraction_after),
+      change(mean.central_fraction_before, mean.central_fraction_after));
 }
 
 /// Realizations of one point by how they ended, and what they cost.

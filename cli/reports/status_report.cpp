@@ -11,6 +11,7 @@
 #include "cli/reports/durations.hpp"
 #include "cli/reports/redo_command.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/error.hpp"
 #include "results/export/input_file.hpp"
@@ -155,8 +156,8 @@ std::string status_text(const ShardsStatus& study) {
   line("realizations", fmt::format("{} of {} done{}", sums.done, sums.realizations,
                                    sums.failed > 0 ? fmt::format(", {} failed", sums.failed) : ""));
   line("taps", fmt::format("{} of {}", sums.rows, sums.all_rows));
-  line("core-hours", fmt::format("{:.3g} used, {}", hours(study.used),
-                                 study.left ? fmt::format("about {:.3g} left", hours(*study.left))
+  line("core-hours", finite_text("{:.3g} used, {}", hours(study.used),
+                                 study.left ? finite_text("about {:.3g} left", hours(*study.left))
                                             : "what is left is not known before the first tap"));
   for (const std::string& path : study.twice)
     line("twice", path + " holds a shard that another file holds");

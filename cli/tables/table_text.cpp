@@ -86,7 +86,8 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
     const double low = number_at(beside(quantity, block, "_low_95"), index);
     const double high = number_at(beside(quantity, block, "_high_95"), index);
     if (!std::isfinite(low) || !std::isfinite(high)) return cell(quantity, index);
-    return fmt::format("{:.4g} ({})", number_at(&quantity, index), limits_text(low, high, 4));
+    return fmt::format("{} ({})", number_text(number_at(&quantity, index), 4),
+                       limits_text(low, high, 4));
   }
   const Quantity* error = beside(quantity, block, "_error");
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);

@@ -8,6 +8,7 @@
 
 #include "cli/options/command_words.hpp"
 #include "results/error.hpp"
+#include "results/export/printable.hpp"
 #include "study/provenance.hpp"
 #include "study/results_input.hpp"
 #include "study/run.hpp"
@@ -66,7 +67,9 @@ std::string text_of(const OtherShard& error) {
 }
 
 std::string text_of(const ResultsError& error) {
-  return fmt::format("{}{}", error.what(), error.force_helps() ? " (--force)" : "");
+  // A name must not look like further lines of the message.
+  const std::string reason = std::string(error.what()).substr(error.path().size());
+  return printable_name(error.path()) + reason + (error.force_helps() ? " (--force)" : "");
 }
 
 /// Nothing for an error of another kind.

@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "results/export/printable.hpp"
+
 namespace jostle::inline cli {
 
 void begin_log() {
@@ -12,7 +14,7 @@ void begin_log() {
 }
 
 void log_line(const std::string& text) {
-  spdlog::default_logger_raw()->info(text);
+  spdlog::default_logger_raw()->info(printable(text));
 }
 
 void silence_log() {

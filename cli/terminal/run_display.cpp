@@ -7,6 +7,7 @@
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/screen.hpp"
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/export/printable.hpp"
 
 namespace jostle::inline cli {
@@ -14,7 +15,7 @@ namespace jostle::inline cli {
 void RunDisplay::computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
                            std::uint64_t all) {
   if (!file_.empty()) {
-    log_line(fmt::format("{}: {} of {} to do on {}", printable(file_), pending,
+    log_line(fmt::format("{}: {} of {} to do on {}", printable_name(file_), pending,
                          counted(all, "realization"),
                          counted(static_cast<std::uint64_t>(threads_), "thread")));
   }
@@ -41,8 +42,8 @@ std::string precision_line(const PrecisionStatus& status) {
                                   : "NOT reached, and no more are allowed";
   const PrecisionStatus::Target& farthest = status.farthest;
   const std::string value = std::isnan(farthest.value) ? "not known (fewer than two realizations)"
-                                                       : fmt::format("{:.2g}", farthest.value);
-  return fmt::format("{}: target precision {}: {} of {} is {}, wanted at most {:.2g}\n",
+                                                       : finite_text("{:.2g}", farthest.value);
+  return finite_text("{}: target precision {}: {} of {} is {}, wanted at most {:.2g}\n",
                      counted(status.realizations, "realization"), verdict, farthest.spread,
                      farthest.observable, value, farthest.at_most);
 }

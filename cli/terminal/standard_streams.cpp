@@ -43,7 +43,7 @@ void print(std::string_view text) {
 
 // std::cout holds the one bit of state that standard output has; nothing is written through it.
 void print_json(const Json& json) {
-  print_exactly(json.dump(2) + "\n");
+  print_exactly(printable_json(json.dump(2)) + "\n");
 }
 
 void print_exactly(std::string_view text) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "config/json/suggestion.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
@@ -13,9 +14,9 @@ namespace {
 
 std::string allowed(Range range) {
   if (range.low_included && range.high_included) {
-    return fmt::format("from {} to {}", range.low, range.high);
+    return finite_text("from {} to {}", range.low, range.high);
   }
-  return fmt::format("{} {} and {} {}", range.low_included ? "at least" : "above", range.low,
+  return finite_text("{} {} and {} {}", range.low_included ? "at least" : "above", range.low,
                      range.high_included ? "at most" : "below", range.high);
 }
 

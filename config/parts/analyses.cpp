@@ -3,6 +3,7 @@
 #include "config/grids.hpp"
 #include "config/names.hpp"
 #include "config/parts/parts.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
@@ -34,7 +35,7 @@ void read_settings(const Reader& in, SpectrumSettings& settings) {
   const auto highest = band->element(1).number({0, 0.5, false, true});
   if (!lowest || !highest) return;
   if (*highest <= *lowest) {
-    band->fault(fmt::format("the band from {} to {} is empty: the lowest frequency comes first",
+    band->fault(finite_text("the band from {} to {} is empty: the lowest frequency comes first",
                             *lowest, *highest));
   }
   settings.band = Band{*lowest, *highest};

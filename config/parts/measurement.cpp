@@ -5,6 +5,7 @@
 
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
@@ -24,7 +25,7 @@ std::optional<Bounds> read_bounds(const Reader& in, double most) {
   const auto high = in.element(1).number(between(0, most));
   if (!low || !high) return std::nullopt;
   if (*low < *high) return Bounds{*low, *high};
-  in.fault(fmt::format("the window from {} to {} is empty: the first number must be the lower",
+  in.fault(finite_text("the window from {} to {} is empty: the first number must be the lower",
                        *low, *high));
   return std::nullopt;
 }
@@ -63,7 +64,7 @@ Observable read_bulk_fraction(const Reader& in) {
   const auto* window = std::get_if<HeightWindow>(&bulk.window);
   if (window && window->low < 0.5 * bulk.taper) {
     in.fault(
-        fmt::format("a window from {} tapered over {} begins below the floor: begin at {} or more",
+        finite_text("a window from {} tapered over {} begins below the floor: begin at {} or more",
                     window->low, bulk.taper, 0.5 * bulk.taper));
   }
   return bulk;

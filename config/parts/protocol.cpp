@@ -5,6 +5,7 @@
 #include "config/grids.hpp"
 #include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
@@ -41,7 +42,7 @@ Ramp read_ramp(const Reader& in, Range strengths, bool may_be_square_root) {
     const double step = ramp.from > ramp.to ? -ramp.step : ramp.step;
     const double before = ramp.from + std::floor((ramp.to - ramp.from) / step) * step;
     in.fault(
-        fmt::format("steps of {} from {} do not reach {} but {:.6g} and {:.6g}: both ends are "
+        finite_text("steps of {} from {} do not reach {} but {:.6g} and {:.6g}: both ends are "
                     "included, so the step must divide the distance",
                     ramp.step, ramp.from, ramp.to, before, before + step));
   } else if (*steps >= most_strengths) {

@@ -4,6 +4,7 @@
 
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "structure/voids/pores.hpp"
 
 namespace jostle::inline config {
@@ -231,7 +232,7 @@ void read_settings(const Reader& in, HolesSettings& settings) {
   if (!has_keys<BondLengths>(in)) return;
   read_numbers(in, bonds);
   if (in.sound() && bonds.last < bonds.first) {
-    in.fault(fmt::format("bond lengths from {} to {} are none: first must not be above last",
+    in.fault(finite_text("bond lengths from {} to {} are none: first must not be above last",
                          bonds.first, bonds.last));
   }
 }

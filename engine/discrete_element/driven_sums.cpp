@@ -5,6 +5,13 @@
 
 namespace jostle::inline engine {
 
+namespace {
+
+/// Nearly all bins above are empty: spheres that are thrown so far are counted in none.
+constexpr double most_bins = 1e5;
+
+}  // namespace
+
 void add_sample(DrivenSums& sums, std::span<const GrainState> grains, double floor_height) {
   struct Sample {
     double n = 0;
@@ -14,7 +21,11 @@ void add_sample(DrivenSums& sums, std::span<const GrainState> grains, double flo
   const auto bin_of = [&](const GrainState& grain) {
     return static_cast<std::size_t>(std::max(0.0, grain.centre.z - floor_height) / sums.bin_width);
   };
+  const auto is_counted = [&](const GrainState& grain) {
+    return grain.centre.z - floor_height < most_bins * sums.bin_width;
+  };
   for (const GrainState& grain : grains) {
+    if (!is_counted(grain)) continue;
     const std::size_t bin = bin_of(grain);
     if (bin >= samples.size()) samples.resize(bin + 1);
     samples[bin].n += 1;
@@ -29,6 +40,7 @@ void add_sample(DrivenSums& sums, std::span<const GrainState> grains, double flo
     sums.bins[bin].freedom += one.n - 1;
   }
   for (const GrainState& grain : grains) {
+    if (!is_counted(grain)) continue;
     const std::size_t bin = bin_of(grain);
     const Vec3 about = grain.velocity - samples[bin].mean;
     sums.bins[bin].lateral += 0.5 * (about.x * about.x + about.y * about.y);

@@ -1,11 +1,10 @@
 #include "ensemble/analysis/histogram_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 #include "fitting/intervals/distributions.hpp"
 
@@ -87,7 +86,7 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
 
 std::string verdict(const Goodness& found, std::uint32_t realizations) {
   if (std::isnan(found.p)) return "fitted; too few counts to tell whether the law holds";
-  const std::string test = fmt::format("{} test over {} bins, p = {:.2g}",
+  const std::string test = finite_text("{} test over {} bins, p = {:.2g}",
                                        realizations > 1 ? "F" : "chi2", found.bins, found.p);
   return (found.p < doubted ? "the law does not hold: " : "the law is not refuted: ") + test;
 }

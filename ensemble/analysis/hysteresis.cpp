@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -188,11 +189,18 @@ std::string Loop::statement() const {
     return fmt::format("cannot decide with {} realization{}: an area needs two for its error",
                        realizations, realizations == 1 ? "" : "s");
   }
+  if (area == 0 && error.error == 0) {
+    return fmt::format("the branches are equal in every realization, {} realizations",
+                       realizations);
+  }
+  if (std::isnan(corrected)) {
+    return fmt::format("cannot decide with {} realizations: the area is not known", realizations);
+  }
   if (corrected < level) {
-    return fmt::format("the branches differ: area {:+.2g} (p = {:.2g}, {} realizations)", area,
+    return finite_text("the branches differ: area {:+.2g} (p = {:.2g}, {} realizations)", area,
                        corrected, realizations);
   }
-  return fmt::format(
+  return finite_text(
       "cannot decide with {} realizations: p = {:.2g}, only an area of {:.2g} or more would have "
       "been "
       "found with 80 %",

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/dependence.hpp"
 
 namespace jostle::inline ensemble {
@@ -23,15 +24,11 @@ std::string reasons_for_doubt(const SteadyState& state) {
   if (state.trend.tests == 0) {
     add("one realization, too short for its memory, tells nothing of a drift");
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
-    add(
-        fmt::format("only a change of {:.2g} or more over the taps, {:.2g} times the scatter of "
-                    "taps about their line, "
-                    "would have been found with 80 %",
-                    state.trend.detectable, state.detectable()));
+    add("only " + state.trend.power());
   }
   if (!state.autocorrelation.found() ||
       n < SteadyStateTest::fewest_times * state.autocorrelation.time) {
-    add(fmt::format("{} taps are fewer than {} autocorrelation times ({:.3g} taps{})", state.n_taps,
+    add(finite_text("{} taps are fewer than {} autocorrelation times ({:.3g} taps{})", state.n_taps,
                     SteadyStateTest::fewest_times, state.autocorrelation.time,
                     state.autocorrelation.found() ? "" : " or more"));
   }
@@ -80,7 +77,7 @@ std::vector<double> thinned(std::span<const double> series) {
 }  // namespace
 
 double SteadyState::detectable() const {
-  return trend.detectable == 0 ? 0 : trend.detectable / trend.sigma;
+  return trend.detectable_in_sigma();
 }
 
 Verdict SteadyState::verdict() const {
@@ -93,11 +90,7 @@ std::string SteadyState::statement() const {
     case Verdict::not_reached:
       return "not reached: " + trend.statement();
     case Verdict::reached:
-      return fmt::format(
-          "reached: {}; a change of {:.2g} over the taps, {:.2g} times the scatter of taps about "
-          "their line, would "
-          "have been found with 80 %",
-          trend.statement(), trend.detectable, detectable());
+      return "reached: " + trend.statement() + (trend.is_constant() ? "" : "; " + trend.power());
     case Verdict::cannot_decide:
       return fmt::format("cannot decide with {} realization{}: {}{}{}", realizations,
                          realizations == 1 ? "" : "s", trend.tests > 0 ? trend.statement() : "",

@@ -91,7 +91,8 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
       one("drift_p", state.trend.tests > 0 ? state.trend.p : not_a_number, "1",
           "of no drift, the tests of line and halves together (Bonferroni)"));
   table.quantities.push_back(
-      one("drift_detectable", state.trend.detectable, series.units,
+      one("drift_detectable", state.trend.tests > 0 ? state.trend.detectable : not_a_number,
+          series.units,
           "smallest change over the taps that would have been found with probability 0.8"));
   add_blocking(table, series, state.blocking);
   const std::string plateau =

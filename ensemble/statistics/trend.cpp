@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
@@ -157,15 +158,27 @@ Trend TrendTest::result() const {
 }
 
 std::string Trend::statement() const {
+  if (is_constant()) return "no drift: the series is constant";
   if (tests == 0) return "no test of a drift is possible";
   const std::string test =
-      fmt::format("p = {:.2g} of {} test{}, least by the {}, {:.3g} degree{} of freedom", p, tests,
+      finite_text("p = {:.2g} of {} test{}, least by the {}, {:.3g} degree{} of freedom", p, tests,
                   tests == 1 ? "" : "s", decisive, decisive_dof, decisive_dof == 1 ? "" : "s");
   if (!drifts()) return fmt::format("no drift found ({})", test);
-  return fmt::format(
+  return finite_text(
       "it drifts{}: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",
       line.over.known() ? "" : ", or remembers for longer than these taps", line.value,
       halves.value, test);
+}
+
+std::string Trend::power() const {
+  const double relative = detectable_in_sigma();
+  if (!std::isfinite(relative))
+    return finite_text("a change of {:.2g} over the taps would have been found with 80 %",
+                       detectable);
+  return finite_text(
+      "a change of {:.2g} over the taps, {:.2g} times the scatter of taps about their line, would "
+      "have been found with 80 %",
+      detectable, relative);
 }
 
 }  // namespace jostle::inline ensemble

@@ -44,9 +44,16 @@ struct Trend {
 
   static constexpr double level = 0.01;  // false alarms, all tests together
   bool drifts() const { return p < level; }
-  /// "it drifts: +0.02 over the taps (p = 0.0003, slope, within series, 35 degrees of freedom)", or
-  /// "no drift found (p = 0.4, ...)".
+  /// No series changes at all: there is neither a drift nor scatter that could hide one.
+  bool is_constant() const { return sigma == 0 && line.value == 0 && halves.value == 0; }
+  /// "it drifts: +0.02 over the taps (p = 0.0003, slope, within series, 35 degrees of freedom)",
+  /// "no drift found (p = 0.4, ...)", or "no drift: the series is constant".
   std::string statement() const;
+  /// "a change of 0.01 over the taps, 0.3 times the scatter of taps about their line, would have
+  /// been found with 80 %". After at least one test, of series that are not constant.
+  std::string power() const;
+  /// `detectable` in deviations `sigma`; 0 where every change is found, infinite without a test.
+  double detectable_in_sigma() const { return detectable == 0 ? 0 : detectable / sigma; }
 };
 
 /// One series after another, all of one length, at least 32.

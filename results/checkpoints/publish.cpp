@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
@@ -118,7 +119,7 @@ void require_free_space(const std::string& path, std::uint64_t bytes, const char
   if (free_bytes >= bytes) return;
   throw ResultsError(
       path,
-      fmt::format("{:.1f} MB of disk may be needed, but only {:.1f} MB are free; {}",
+      finite_text("{:.1f} MB of disk may be needed, but only {:.1f} MB are free; {}",
                   static_cast<double>(bytes) / 1e6, static_cast<double>(free_bytes) / 1e6, advice));
 }
 

@@ -20,13 +20,22 @@ std::size_t character_length(std::string_view text) {
 }
 
 /// U+061C, U+200E, U+200F, U+202A to U+202E and U+2066 to U+2069 turn the direction of what is
-/// written: a name could show another one.
+/// written, U+2028 and U+2029 begin a line: a name could show another one.
 bool turns_direction(std::string_view character) {
   if (character == "\xd8\x9c" || character == "\xe2\x80\x8e" || character == "\xe2\x80\x8f")
     return true;
   if (!character.starts_with("\xe2\x80") && !character.starts_with("\xe2\x81")) return false;
   const auto last = static_cast<unsigned char>(character[2]);
-  return character[1] == '\x80' ? last >= 0xaa && last <= 0xae : last >= 0xa6 && last <= 0xa9;
+  return character[1] == '\x80' ? last >= 0xa8 && last <= 0xae : last >= 0xa6 && last <= 0xa9;
+}
+
+/// The number of a character of UTF-8 of at most three bytes.
+unsigned code_point(std::string_view character) {
+  unsigned code = static_cast<unsigned char>(character[0]);
+  if (character.size() > 1) code &= character.size() == 2 ? 0x1f : 0x0f;
+  for (const char next : character.substr(1))
+    code = code << 6 | (static_cast<unsigned char>(next) & 0x3f);
+  return code;
 }
 
 std::string printable_line(std::string_view line, std::size_t longest) {
@@ -56,6 +65,35 @@ std::string printable(std::string_view text, std::size_t longest_line) {
     shown += '\n';
     text.remove_prefix(end + 1);
   }
+}
+
+std::string printable_name(std::string_view name) {
+  std::string shown;
+  for (const char c : printable(name)) {
+    if (c == '\n' || c == '\t')
+      shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      shown += c;
+  }
+  return shown;
+}
+
+std::string printable_json(std::string_view json) {
+  std::string shown;
+  while (!json.empty()) {
+    const auto first = static_cast<unsigned char>(json[0]);
+    // Valid UTF-8 is what a JSON text is: controls of two bytes are the C1 of U+0080 to U+009F.
+    const std::size_t length = std::min<std::size_t>(json.size(), first >= 0xf0   ? 4
+                                                                  : first >= 0xe0 ? 3
+                                                                  : first >= 0xc0 ? 2
+                                                                                  : 1);
+    const std::string_view character = json.substr(0, length);
+    const bool shows =
+        character == "\n" || (character_length(character) > 0 && !turns_direction(character));
+    shown += shows ? std::string(character) : fmt::format("\\u{:04x}", code_point(character));
+    json.remove_prefix(length);
+  }
+  return shown;
 }
 
 }  // namespace jostle::inline results

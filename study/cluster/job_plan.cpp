@@ -7,6 +7,7 @@
 #include <functional>
 #include <queue>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {
@@ -21,7 +22,9 @@ constexpr double most_of_the_limit = 0.25;
 Seconds shard_time(const SceneCost& cost, const JobRequest& request, std::uint64_t index) {
   const std::uint64_t points = cost.realization.size(), all = points * cost.realizations;
   std::priority_queue<double, std::vector<double>, std::greater<>> ends;  // of the CPUs, seconds
-  for (std::uint32_t cpu = 0; cpu < request.cpus; ++cpu) ends.push(0);
+  const std::uint64_t most_busy = (all + request.shards - 1) / request.shards;
+  for (std::uint64_t cpu = 0; cpu < std::min<std::uint64_t>(request.cpus, most_busy); ++cpu)
+    ends.push(0);
   double last = 0;
   for (std::uint64_t n = index - 1; n < all; n += request.shards) {
     const double end = ends.top() + cost.realization[n % points].count();
@@ -64,7 +67,7 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
   const Seconds usable = request.time_limit - plan.notice;
   if (cost.start > usable) {
     throw BadInput(
-        fmt::format("a start takes about {:.2g} h, and a job has {:.2g} h until it is told to "
+        finite_text("a start takes about {:.2g} h, and a job has {:.2g} h until it is told to "
                     "stop: a start that is stopped is made anew, so that none would ever end. Ask "
                     "for more hours",
                     cost.start.count() / 3600, usable.count() / 3600));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline study {
 
@@ -66,12 +67,12 @@ void add_windows(const CostOfObservable& cost, Table& table) {
 }
 
 std::string window_name(const BulkFraction& bulk) {
-  const std::string taper = bulk.taper > 0 ? fmt::format(", tapered over {:g}", bulk.taper) : "";
+  const std::string taper = bulk.taper > 0 ? finite_text(", tapered over {:g}", bulk.taper) : "";
   if (const auto* heights = std::get_if<HeightWindow>(&bulk.window)) {
-    return fmt::format("heights {:g} to {:g}{}", heights->low, heights->high, taper);
+    return finite_text("heights {:g} to {:g}{}", heights->low, heights->high, taper);
   }
   const auto& quantiles = std::get<QuantileWindow>(bulk.window);
-  return fmt::format("quantiles {:g} to {:g}{}", quantiles.low, quantiles.high, taper);
+  return finite_text("quantiles {:g} to {:g}{}", quantiles.low, quantiles.high, taper);
 }
 
 /// What the most complete setting may itself be off by.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
@@ -136,7 +137,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
     const DrawnSnapshots& kept =
         *std::ranges::find(file.snapshots(), point, &DrawnSnapshots::point);
     FigurePanel panel{.title = "Centres by height, n(z)",
-                      .caption = fmt::format(
+                      .caption = finite_text(
                           "Fraction of all centres in a bin of height, {:.6g} diameters, means "
                           "over realizations, at some of the kept taps.",
                           kept.bin_width),

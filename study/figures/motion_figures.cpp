@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
@@ -103,7 +104,7 @@ FigurePanel susceptibility(const TableView& table) {
       high(table, name + "_high_68", n);
   return {
       .title = "Spheres that move together",
-      .caption = fmt::format(
+      .caption = finite_text(
           "χ_4, the variance over realizations of the share of spheres that moved sideways by "
           "less than {:.4g} d, times their number, at the overlap length where it is greatest; "
           "bars are 68 % intervals, left out where few spheres have moved.",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/figures/builders.hpp"
 
 // Of ordering, volumes and memory: what state beds are in, and when they get there.
@@ -69,7 +70,7 @@ FigurePanel response(const TableView& table) {
   for (std::size_t k = 0; k < n; ++k)
     panel.series.push_back(
         {.name =
-             fmt::format("{} = {:.4g} before", control_symbol(control), table.value(control, k)),
+             finite_text("{} = {:.4g} before", control_symbol(control), table.value(control, k)),
          .colour = colour_of(k, n),
          .drawn = Drawn::joined_points,
          .rows = rows_of(lags, table.row("response", k), table.row("response_error", k)),

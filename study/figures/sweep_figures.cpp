@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
@@ -93,7 +94,7 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
                     .rows = rows_of(table.axis(x), table.values(y), table.values(errors))}}};
     const double maximum = table.value("maximum_at");
     if (table.value("maximum_p") < SweepMaximum::level) {
-      panel.caption += fmt::format(
+      panel.caption += finite_text(
           " The highest point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the "
           "maximum's place.",
           maximum);

@@ -5,21 +5,22 @@
 #include <algorithm>
 
 #include "ensemble/statistics/counted.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline study {
 namespace {
 
 std::string words(const PeriodicBox& box) {
-  return fmt::format("periodic sides, {} x {} diameters", box.width_x, box.width_y);
+  return finite_text("periodic sides, {} x {} diameters", box.width_x, box.width_y);
 }
 std::string words(const WalledBox& box) {
-  return fmt::format("four walls, {} x {} diameters", box.width_x, box.width_y);
+  return finite_text("four walls, {} x {} diameters", box.width_x, box.width_y);
 }
 std::string words(const Cylinder& tube) {
-  return fmt::format("a cylinder, {} diameters wide", tube.diameter);
+  return finite_text("a cylinder, {} diameters wide", tube.diameter);
 }
 std::string words(const FullyPeriodicBox& box) {
-  return fmt::format("a fully periodic box, {} x {} x {} diameters", box.width_x, box.width_y,
+  return finite_text("a fully periodic box, {} x {} x {} diameters", box.width_x, box.width_y,
                      box.height);
 }
 

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "engine/discrete_element/discrete_element.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -42,7 +43,7 @@ std::vector<std::string> grain_summary(const Plan& plan) {
   const auto* engine = std::get_if<DiscreteElement>(&plan.engine);
   if (engine == nullptr) return {};
   const ContactTimes times = contact_times(*engine);
-  std::vector<std::string> lines{fmt::format("contact time {:.3g} s, time step {:.3g} s",
+  std::vector<std::string> lines{finite_text("contact time {:.3g} s, time step {:.3g} s",
                                              times.contact_seconds, times.step_seconds)};
   std::set<std::string> known;
   const double stiffness =
@@ -54,7 +55,7 @@ std::vector<std::string> grain_summary(const Plan& plan) {
     const double gamma = floor->amplitude * engine->diameter * omega * omega / engine->gravity;
     const double speed = floor->amplitude * engine->diameter * omega;
     const double overlap = speed * std::sqrt(times.mass / (2 * stiffness)) / engine->diameter;
-    const std::string line = fmt::format(
+    const std::string line = finite_text(
         "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap {:.2g} "
         "d where two spheres meet at it and up to some {:.2g} d in beds, "
         "{:.0f} steps while the floor moves{}",

@@ -8,6 +8,7 @@
 #include <set>
 #include <variant>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/amounts.hpp"
 
 namespace jostle::inline study {
@@ -49,20 +50,20 @@ class Warnings {
   void look_at_engine(const DiscreteElement& engine) {
     const double rest = std::visit([](const auto& one) { return one.seconds; }, engine.rest);
     if (rest > engine.most_seconds) {
-      add(fmt::format(
+      add(finite_text(
           "/engine: a bed rests no sooner than after {:g} s, and is capped after {:g} s: "
           "every tap will be",
           rest, engine.most_seconds));
     }
     if (engine.diameter <= large_diameter) return;
-    add(fmt::format("/engine: the diameter is in metres, and {:g} m is a boulder",
+    add(finite_text("/engine: the diameter is in metres, and {:g} m is a boulder",
                     engine.diameter));
   }
   void look_at(const char* key, const Relaxation& relax) {
     const auto* move = std::get_if<PolarMove>(&relax.move);
     if (move == nullptr || move->theta0 <= largest_angle || move->theta0 > largest_degrees) return;
     add(
-        fmt::format("{}: theta0 is an angle in radians, and {:g} is more than a right angle; "
+        finite_text("{}: theta0 is an angle in radians, and {:g} is more than a right angle; "
                     "{:g} degrees are {:.4f}",
                     key, move->theta0, move->theta0, move->theta0 * std::numbers::pi / 180));
   }
@@ -71,7 +72,7 @@ class Warnings {
   void look_at_tap(const Shake& tap) { look_at_stretch("shake", tap.lambda); }
   void look_at_tap(const Lift& tap) {
     if (tap.gamma <= largest_lift) return;
-    add(fmt::format("/protocol: lift {:g} drops the bed from {:g} diameters above the floor",
+    add(finite_text("/protocol: lift {:g} drops the bed from {:g} diameters above the floor",
                     tap.gamma, tap.gamma));
   }
   void look_at_tap(const HalfSine& tap) { look_at_floor("half_sine", tap); }
@@ -79,13 +80,13 @@ class Warnings {
   template <class FloorTap>
   void look_at_floor(const char* name, const FloorTap& tap) {
     if (tap.kind != FloorStrength::amplitude || tap.strength <= largest_lift) return;
-    add(fmt::format("/protocol: {}: the amplitude is in diameters, and {:g} are many", name,
+    add(finite_text("/protocol: {}: the amplitude is in diameters, and {:g} are many", name,
                     tap.strength));
   }
   void look_at_stretch(const char* name, double strength) {
     if (strength < largest_stretch) return;
     add(
-        fmt::format("/protocol: {} {:g} stretches the bed to {:g} times its height; {:g} percent "
+        finite_text("/protocol: {} {:g} stretches the bed to {:g} times its height; {:g} percent "
                     "are {:g}",
                     name, strength, 1 + strength, strength, strength / 100));
   }

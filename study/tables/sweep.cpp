@@ -15,6 +15,7 @@
 #include "config/sweep.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/bad_input.hpp"
 #include "study/observable_series.hpp"
 #include "study/scenes/point_scenes.hpp"
@@ -165,7 +166,7 @@ Streams streams_of(std::span<const Member> members) {
 /// The point of the curve at this place of its axis, to the four digits that tables have of it,
 /// where these leave one.
 std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
-  const auto in_table = [](double place) { return fmt::format("{:.4g}", place); };
+  const auto in_table = [](double place) { return finite_text("{:.4g}", place); };
   std::optional<std::size_t> nearest;
   std::vector<std::size_t> alike;
   std::vector<std::string> places;
@@ -175,11 +176,11 @@ std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis)
     const bool as_listed = off <= 5e-6 * std::abs(place);  // to the digits below
     if (as_listed && (!nearest || off < std::abs(curve.x()[*nearest] - x))) nearest = i;
     if (in_table(place) == in_table(x)) alike.push_back(i);
-    places.push_back(fmt::format("{:.6g}", place));
+    places.push_back(finite_text("{:.6g}", place));
   }
   if (nearest) return *nearest;
   if (alike.size() == 1) return alike.front();
-  throw BadInput(fmt::format("reference {}: there is no such point; there are, of {}, {}", x, axis,
+  throw BadInput(finite_text("reference {}: there is no such point; there are, of {}, {}", x, axis,
                              joined(places, ", ")));
 }
 
@@ -192,7 +193,7 @@ void add_notes(std::span<const Member> members, Table& table) {
       taps.push_back(member.taps);
     if (!member.no_value.empty()) {
       left_out.append(left_out.empty() ? "" : "; ")
-          .append(fmt::format("at {:.4g}: {}", member.x, member.no_value));
+          .append(finite_text("at {:.4g}: {}", member.x, member.no_value));
     }
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));

@@ -108,6 +108,48 @@ class Numbers(Refused):
         self.assertNotEqual(fits[0], fits[2])
         self.assertIn("10 resamples", fits[0])
 
+    def test_durations_that_may_mean_two_things_are_refused(self):
+        self.write(TINY)
+        for command, option in (("run", "--time-limit"), ("run", "--checkpoint-every"), ("cost", "--budget")):
+            for text in ("1h30", "30m1h", "1e400", "-5s", "inf", "99999999999d", "1h 30m"):
+                self.refused(command, "scene.json", f"{option}={text}", answer=f'"{text}" is not a duration')
+        self.assertEqual(self.files(), ["scene.json"])
+
+    def test_absurd_numbers_of_a_job_are_refused_before_its_scene_is_run(self):
+        self.write(TINY)
+        job = {"--hours": "2", "--cpus": "1", "--jobs": "1"}
+        for option, texts in {"--hours": ("0", "-1", "1e18", "87601", "1e400", "inf", "nan"),
+                              "--cpus": ("0", "-1", "65536", "4294967295", "1e18", "99999999999999999999"),
+                              "--jobs": ("0", "-1", "7", "4294967295", "1e18"),
+                              "--array-limit": ("0", "-1", "1e18")}.items():
+            for text in texts:
+                words = [f"{key}={value}" for key, value in {**job, option: text}.items()]
+                self.refused("slurm", "scene.json", *words,
+                             answer="more than the scene has" if text in ("7", "4294967295")
+                             and option == "--jobs" else option)
+
+    def test_absurd_counts_of_analyses_are_refused_by_the_name_of_their_option(self):
+        self.results()
+        large = ("1e18", "18446744073709551615", "99999999999999999999")
+        for option, arguments in (
+                ("--last", ["analyse", "tiny.h5", *STEADY, "--no-store"]),
+                ("--segment", ["analyse", "tiny.h5", "--no-store", "spectrum", "--observable", "mean_height"]),
+                ("--hold", ["analyse", "tiny.h5", "--no-store", "ordering", "--observable", "mean_height",
+                            "--threshold", "1"]),
+                ("--waiting-times", ["analyse", "tiny.h5", "--no-store", "ageing", "--observable", "mean_height"]),
+                ("--lags", ["analyse", "tiny.h5", "--no-store", "ageing", "--observable", "mean_height"]),
+                ("--tap", ["structure", "tiny.h5", "--no-store"]),
+                ("--tap", ["export", "tiny.h5", "--format", "vtp"]),
+                ("--realization", ["export", "tiny.h5", "--format", "vtp"]),
+                ("--resamples", ["fit", "tiny.h5", "--observable", "mean_height", "--no-store"]),
+                ("--replicates", ["cost", "scene.json"]),
+                ("--taps", ["cost", "scene.json"]),
+                ("--threads", ["run", "scene.json"])):
+            for text in large:
+                with self.subTest(option=option, text=text):
+                    done = self.jostle(*arguments, f"{option}={text}", expect=BAD_INPUT)
+                    self.assertTrue(done.stderr + done.stdout)
+
     def test_waiting_times_are_of_the_run_and_once(self):
         self.results()
         ageing = ("analyse", "tiny.h5", "ageing", "--observable", "mean_height")

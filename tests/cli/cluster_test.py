@@ -56,6 +56,28 @@ class Script(Case):
         self.assertIn("#SBATCH --requeue\n", text)
         self.assertEqual(subprocess.run(["bash", "-n"], input=text, text=True).returncode, 0)
 
+    def test_the_longest_time_limit_is_written_as_such(self):
+        text = self.jostle("slurm", "scene.json", "--hours", "87600", "--cpus", 65535, "--jobs", 1).stdout
+        self.assertEqual(self.options(text)["time"], "3650-00:00:00")
+
+    def test_a_script_shows_what_it_holds(self):
+        turned = "evil\u202elmth"
+        (self.folder / turned).mkdir()
+        for arguments in (["--folder", turned], ["--folder", "two\nlines"], ["--folder", "\x1b[31m"],
+                          ["--folder", "line\u2028break"], ["--folder", "c1\u009b"]):
+            with self.subTest(arguments=arguments):
+                done = self.script("--jobs", 1, *arguments, expect=BAD_INPUT)
+                self.assertIn("has a character that no line of a script can hold or show", done.stderr)
+                self.assertEqual(done.stdout, "")
+                self.assertNotRegex(done.stderr, "[\u202e\x1b\u2028\u009b]")
+        # Of the command line, which is no more than a comment, the rest is escaped.
+        text = self.script("--jobs", 1, "-o", f"{turned}/tiny.sbatch").stderr
+        script = (self.folder / turned / "tiny.sbatch").read_text()
+        self.assertNotIn("\u202e", script + text)
+        self.assertIn(r"$'evil\xe2\x80\xaelmth/tiny.sbatch'", script)
+        self.assertEqual(subprocess.run(["bash", "-c", r"printf %s $'evil\xe2\x80\xaelmth'"], text=True,
+                                        capture_output=True).stdout, turned)
+
     def test_its_tasks_compute_every_shard_once_and_again_nothing(self):
         told = self.script("--jobs", 3, "-o", "tiny.sbatch").stderr
         self.assertIn("jostle merge tiny.shards -o tiny.h5", told)

@@ -58,6 +58,13 @@ class SelfTest(Case):
             self.assertRegex(line, r"^ok      [a-z, 0-9]+: ")
         self.assertEqual(self.files(), [])
 
+    def test_its_files_are_small(self):
+        limit = 'ulimit -f 4096; exec "$0" selftest --folder .'  # pieces of 1024 bytes
+        done = subprocess.run(["bash", "-c", limit, JOSTLE], cwd=self.folder, env=PLAIN, text=True,
+                              capture_output=True, timeout=600)
+        self.assertEqual((done.returncode, done.stderr), (OK, ""), done.stdout)
+        self.assertNotIn("FAILED", done.stdout)
+
     def test_a_folder_that_cannot_be_written_is_named(self):
         result = self.jostle("selftest", "--folder", "missing", expect=BAD_INPUT)
         self.assertIn("missing: cannot make a folder there (No such file", result.stderr)

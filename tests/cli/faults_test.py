@@ -167,6 +167,18 @@ class Folders(Faults):
         self.assertEqual(ended.stdout.split(), [straight, "tiny.h5"])
 
 
+    def test_a_plan_that_no_disk_holds_is_run_to_its_time_limit_or_refused(self):
+        self.write(changed(TINY, name="long", protocol=[{"tap": {"dilate": 0.05}, "count": 1000000000}],
+                           snapshots={"taps": [0]}))
+        refused = self.run_scene(expect=BROKEN)
+        self.assertIn("of disk may be needed", refused.stderr)
+        self.assertIn("or give the run a time limit", refused.stderr)
+        self.run_scene("--time-limit", "1s", expect=STOPPED)
+        refused = self.run_scene("--resume", expect=BROKEN)
+        self.assertIn("of disk may be needed", refused.stderr)
+        self.run_scene("--resume", "--time-limit", "1s", expect=STOPPED)
+        self.assertEqual(self.info("long.h5")["status"], "running")
+
     @needs_mounts
     def test_a_merge_that_does_not_fit_is_refused_before_it_is_written(self):
         for share in ("1/2", "2/2"):

@@ -13,7 +13,7 @@ import numpy
 
 from crafted_test import SEAL, sealed
 from report_test import EVERYTHING, HOSTILE
-from support import BAD_INPUT, BROKEN, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, SHIM, TINY, Case, changed
 
 KINDS = ("dat", "gp", "svg", "pdf")
 ALL_POINTS = {
@@ -201,6 +201,18 @@ class Output(Figures):
             with self.subTest(arguments):
                 self.jostle("report", "tiny.h5", *arguments, expect=BAD_INPUT)
         self.assertFalse((self.folder / "figures").exists())
+
+    def test_a_disk_that_is_full_leaves_no_folder(self):
+        full = {**SHIM, "JOSTLE_FAULT_PATH": str(self.folder / "full"), "JOSTLE_FAULT_AT": "3",
+                "JOSTLE_FAULT_ACTION": "no_space"}
+        before = self.files()
+        done = self.jostle("report", "tiny.h5", "--figures", "full", environment=full, expect=BROKEN)
+        self.assertIn("No space left", done.stderr)
+        self.assertEqual(self.files(), before)
+        (self.folder / "full").mkdir()
+        (self.folder / "full/own.txt").write_text("own")
+        self.jostle("report", "tiny.h5", "--figures", "full", environment=full, expect=BROKEN)
+        self.assertEqual(self.files(), sorted([*before, "full", "full/own.txt"]))
 
     def test_without_gnuplot_data_and_scripts_are_written(self):
         done = self.figures("tiny.h5", environment={"PATH": str(self.folder)}, expect=BROKEN)

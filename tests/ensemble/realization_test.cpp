@@ -109,6 +109,18 @@ TEST_CASE("A realization records its start, every tap and the snapshots asked fo
   CHECK(record.rows[0].observables == Observer(plan.observables, first)(first));
 }
 
+TEST_CASE("A bed whose spheres have left each other has no height histogram") {
+  Plan plan = small_plan();
+  plan.protocol = {{Dilate{10}, 5}};
+  plan.snapshots.taps = {0, 5};
+  monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 1}};
+  const RecordedRealization record = straight(plan);
+  REQUIRE(record.snapshots.size() == 2);
+  CHECK(record.snapshots[0].height_histogram.size() < 1000);
+  CHECK(record.snapshots[1].height_histogram.empty());
+  CHECK(record.snapshots[1].centres.size() == plan.n_spheres);
+}
+
 TEST_CASE("A start that settles is recorded once it has") {
   Plan plan = small_plan();
   plan.protocol.clear();

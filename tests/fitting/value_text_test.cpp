@@ -54,7 +54,10 @@ TEST_CASE("what has no error stands alone, and what has no limit says so") {
   CHECK(value_with_error(0.123456789, -1) == "0.123457");
   CHECK(value_with_error(0.123456789, infinity) == "no limit");
   CHECK(value_with_error(nan, 0.1) == "-");
-  CHECK(value_with_error(infinity, 1) == "inf");
+  CHECK(value_with_error(infinity, 1) == "infinite");
+  CHECK(value_with_error(-infinity, 1) == "-infinite");
+  CHECK(number_text(infinity, 3) == "infinite");
+  CHECK(number_text(nan, 3) == "-");
 }
 
 TEST_CASE("rounding noise is 0 beside the scale of what is measured") {

@@ -119,5 +119,23 @@ TEST_CASE("The height histogram counts centres in half-open bins up to the highe
   CHECK(deposit[5] * 4096 >= reference_measurements().at("floor_spheres").get<double>());
   CHECK(deposit[4] == 0);
 
-  CHECK_THROWS_AS(height_histogram({PeriodicBox{5, 5}, {{1, 1, 2e8}}}, 0.1), std::length_error);
+  CHECK_THROWS_AS(height_histogram({PeriodicBox{5, 5}, {{1, 1, 2e8}}}, 0.1), std::invalid_argument);
+}
+
+TEST_CASE("A height histogram has at most 100,000 bins, or 100 for each sphere") {
+  const auto column = [](std::size_t n, double spacing) {
+    Packing packing{PeriodicBox{5, 5}, {}};
+    for (std::size_t i = 0; i < n; ++i)
+      packing.centres.push_back({1, 1, (static_cast<double>(i) + 0.5) * spacing});
+    return packing;
+  };
+  CHECK(n_height_bins(column(1, 19990), 0.1) == 99951);
+  CHECK_THROWS_AS(n_height_bins(column(1, 20010), 0.1), std::invalid_argument);
+  CHECK(n_height_bins(column(20000, 1), 0.1) == 199996);  // a single file fills its bins
+  CHECK_THROWS_AS(n_height_bins(column(20000, 11), 0.1), std::invalid_argument);
+  CHECK_FALSE(has_height_bins(column(80, 1000), 0.1));
+  CHECK(has_height_bins(column(80, 1000), 1));
+  CHECK_THROWS_WITH(height_histogram(column(80, 1000), 0.1),
+                    Catch::Contains("80 spheres with centres up to 79500") &&
+                        Catch::Contains("more than 100000 bins"));
 }

@@ -10,6 +10,7 @@
 
 #include "ensemble/analysis/ageing/law.hpp"
 #include "ensemble/parallel.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline ensemble {
@@ -40,11 +41,11 @@ std::string statement(const char* name, const LogEstimate& estimate) {
     if (estimate.high_95 <= wide * estimate.value && wide * estimate.low_95 >= estimate.value) {
       return "";
     }
-    return fmt::format("{} is wide: {:.3g} to {:.3g} (95 %)", name, estimate.low_95,
+    return finite_text("{} is wide: {:.3g} to {:.3g} (95 %)", name, estimate.low_95,
                        estimate.high_95);
   }
   if (!above && !below) return fmt::format("{} is not identifiable: no limit on either side", name);
-  return fmt::format("{} is not identifiable: the data say only {} {} {:.3g} (95 %)", name, name,
+  return finite_text("{} is not identifiable: the data say only {} {} {:.3g} (95 %)", name, name,
                      above ? '>' : '<', above ? estimate.low_95 : estimate.high_95);
 }
 
@@ -116,7 +117,7 @@ void fit_shared(const LogCurves& curves, std::size_t n_lags, int threads, Ageing
   std::string held;
   if (fit.describes() && !is_limited(b)) {
     held = statement("B", b) +
-           fmt::format(
+           finite_text(
                ": it is held at {:.3g}, and of A_inf and tau only ratios between waiting "
                "times mean something; ",
                b.value);

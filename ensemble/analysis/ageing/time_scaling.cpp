@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/tested_ends.hpp"
 #include "fitting/solver/decompositions.hpp"
 
@@ -192,13 +193,13 @@ std::string words(const AgeingExponent& found) {
   const bool low = std::isfinite(found.low_95), high = std::isfinite(found.high_95);
   if (!low && !high) return "mu is not identifiable: no limit on either side";
   if (!low || !high) {
-    return fmt::format("mu is not identifiable: the data say only mu {} {:.2g} (95 %)",
+    return finite_text("mu is not identifiable: the data say only mu {} {:.2g} (95 %)",
                        low ? '>' : '<', low ? found.low_95 : found.high_95);
   }
   const auto of = [&](double mu) {
     return found.low_95 <= mu && mu <= found.high_95 ? "not refuted" : "refuted";
   };
-  return fmt::format("mu is {:.2f} to {:.2f} (95 %), no ageing (0) {}, full ageing (1) {}",
+  return finite_text("mu is {:.2f} to {:.2f} (95 %), no ageing (0) {}, full ageing (1) {}",
                      found.low_95, found.high_95, of(0), of(1));
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "ensemble/statistics/finite_text.hpp"
+
 namespace jostle::inline ensemble {
 
 namespace {
@@ -33,11 +35,16 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
 
 // "p = 0.3; a factor of 4 would be found with power 0.8".
 std::string power_of(const AgeTrend& found, const std::string& of) {
+  if (std::isnan(found.p))
+    return fmt::format(
+        "change of {} from the first waiting time to the last: no test, its error "
+        "is not known",
+        of);
   const std::string power =
       std::isnan(found.detectable)
           ? "but its error is beyond all factors: none would be found"
-          : fmt::format("a factor of {:.3g} would be found with power 0.8", found.detectable);
-  return fmt::format("change of {} from the first waiting time to the last: p = {:.2g}, {}", of,
+          : finite_text("a factor of {:.3g} would be found with power 0.8", found.detectable);
+  return finite_text("change of {} from the first waiting time to the last: p = {:.2g}, {}", of,
                      found.p, power);
 }
 

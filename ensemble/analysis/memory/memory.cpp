@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
@@ -109,7 +110,7 @@ double MemoryTest::detectable() const {
 
 std::string MemoryTest::name_of(std::size_t history) const {
   const double strength = strengths[history];
-  std::string name = fmt::format("{:.4g}", strength);
+  std::string name = finite_text("{:.4g}", strength);
   if (std::ranges::count(strengths, strength) > 1) name += fmt::format(" (number {})", history);
   return name;
 }
@@ -118,13 +119,16 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   if (realizations < 3)
     return fmt::format("cannot decide with {} realization{}: errors need three", realizations,
                        realizations == 1 ? "" : "s");
+  if (response == 0)
+    return fmt::format("cannot decide: {} does not change after the switch of {}", observable,
+                       control);
   const auto key = [](const AlignedDifference& d) {
     return std::isnan(d.corrected) ? 2 : d.corrected;
   };
   const AlignedDifference& found = *std::ranges::min_element(differences, {}, key);
   if (found.corrected < level) {
     const LagWindow& at = windows[found.window];
-    return fmt::format(
+    return finite_text(
         "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} "
         "(68 %) at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
@@ -141,12 +145,12 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   }
   const double seen = unseen.detectable;
   if (!(seen <= response)) {
-    return fmt::format(
+    return finite_text(
         "cannot decide with {} realizations: p = {:.2g}, but only a difference of {:.2g} "
         "would have been found with 80 % at all lags, and the whole response is {:.2g}",
         realizations, found.corrected, seen, response);
   }
-  return fmt::format(
+  return finite_text(
       "no memory found: p = {:.2g} ({} tests together, {} realizations); a difference of {:.2g} "
       "would have been found with 80 % at any lag, the whole response is {:.2g}",
       found.corrected, differences.size(), realizations, seen, response);

@@ -1,12 +1,11 @@
 #include "ensemble/analysis/motion/motion_tables.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <functional>
 #include <utility>
 
 #include "ensemble/analysis/motion/motion_curves.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -163,7 +162,7 @@ void add_age(const MotionRecords& records, Table& table) {
       if (!is_limited(ratio)) continue;
       table.notes.emplace_back(
           "age",
-          fmt::format("over {} taps msd_lateral from tap {} is {:.3g} (95 %: {:.3g} to "
+          finite_text("over {} taps msd_lateral from tap {} is {:.3g} (95 %: {:.3g} to "
                       "{:.3g}) of that from tap {}",
                       lags[l], origins[o], ratio.value, ratio.low_95, ratio.high_95, origins[0]));
       return;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ensemble/analysis/ordering/ordering_table.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -157,7 +158,7 @@ Table ordering_comparison(const std::string& observable, const OrderingSettings&
   add_columns(table, points, value, found);
   table.notes = {
       {"observable", observable},
-      {"rule", fmt::format("at or above {} for {} tap{} running", settings.threshold, settings.hold,
+      {"rule", finite_text("at or above {} for {} tap{} running", settings.threshold, settings.hold,
                            settings.hold == 1 ? "" : "s")},
       {"streams", streams == Streams::matched ? "matched: realizations are paired" : "independent"},
       {"orders_first", first_statement(points, orders_first(times), found.first, any)},

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ensemble/analysis/ordering/weibull.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -63,14 +64,14 @@ void add_survival(Table& table, const Survival& curve) {
 
 std::string between(const Limits& limits) {
   const auto end = [](double tap) {
-    return std::isnan(tap) ? std::string("no limit") : fmt::format("{:.0f}", tap);
+    return std::isnan(tap) ? std::string("no limit") : finite_text("{:.0f}", tap);
   };
   if (std::isnan(limits.low) && std::isnan(limits.high)) return "no interval";
   return fmt::format("{} to {}", end(limits.low), end(limits.high));
 }
 
 std::string rule(const OrderingSettings& settings) {
-  return fmt::format("at or above {} for {} tap{} running", settings.threshold, settings.hold,
+  return finite_text("at or above {} for {} tap{} running", settings.threshold, settings.hold,
                      settings.hold == 1 ? "" : "s");
 }
 
@@ -124,7 +125,7 @@ void OrderingAnalysis::add_law(Table& table) const {
     return;
   }
   table.notes.emplace_back(
-      "law", fmt::format("{} (p = {:.2g} of shape 1): shape {:.2g}, 95 % {:.2g} to {:.2g}",
+      "law", finite_text("{} (p = {:.2g} of shape 1): shape {:.2g}, 95 % {:.2g} to {:.2g}",
                          law.memoryless_p >= 0.05 ? "memoryless, or not told from it"
                          : law.shape > 1          ? "not memoryless, order gets likelier with time"
                                                   : "not memoryless, order gets rarer with time",
@@ -153,7 +154,7 @@ Table OrderingAnalysis::table() const {
        {"realizations", fmt::to_string(times_.size())},
        {"verdict", std::isnan(median)
                        ? so_far + ": the median is not reached"
-                       : fmt::format("{}; half by tap {:.0f} (68 %: {}; 95 %: {})", so_far, median,
+                       : finite_text("{}; half by tap {:.0f} (68 %: {}; 95 %: {})", so_far, median,
                                      between(limits_68), between(limits_95))}});
   return table;
 }

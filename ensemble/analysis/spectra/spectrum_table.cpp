@@ -7,6 +7,7 @@
 
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/analysis/steady_state.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -37,19 +38,14 @@ SpectrumOptions prepared(const AnalysedSeries& series, const SpectrumSettings& s
 
 std::string drift_verdict(const Trend& trend, Detrending detrending) {
   if (!trend.drifts()) {
-    if (trend.tests == 0) return trend.statement();
-    const std::string power = fmt::format(
-        "a change of {:.2g} over the taps, {:.2g} times the scatter of taps about their line, "
-        "would have been found "
-        "with 80 %",
-        trend.detectable, trend.detectable / trend.sigma);
-    return trend.detectable <= SteadyStateTest::largest_unseen * trend.sigma
-               ? trend.statement() + "; " + power
+    if (trend.tests == 0 || trend.is_constant()) return trend.statement();
+    return trend.detectable_in_sigma() <= SteadyStateTest::largest_unseen
+               ? trend.statement() + "; " + trend.power()
                : fmt::format("cannot decide whether it drifts: {}, but only {}", trend.statement(),
-                             power);
+                             trend.power());
   }
   const std::string drift =
-      fmt::format("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);
+      finite_text("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);
   if (detrending == Detrending::linear) return drift + "; its straight part was removed";
   return drift + "; it adds a slope of -2 at low frequencies: use linear detrending or later taps";
 }
@@ -79,16 +75,19 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
 }
 
 std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& memory,
-                          const AutocorrelationTime& time) {
+                          const Trend& trend) {
+  const AutocorrelationTime& time = trend.memory;
+  if (trend.is_constant()) return "no slope: the series is constant";
   if (std::isnan(slope.slope)) return "no slope: fewer than three points in the band";
+  if (!std::isfinite(memory.slope)) return "no stationary AR(1) to compare the slope with";
   const std::string alone =
-      fmt::format("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
+      finite_text("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
                   time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
   if (memory.p >= 0.05) {
-    return fmt::format("{}: the slope is not told from it (p = {:.2g})", alone, memory.p);
+    return finite_text("{}: the slope is not told from it (p = {:.2g})", alone, memory.p);
   }
-  return fmt::format("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
+  return finite_text("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
 }
 
 }  // namespace
@@ -152,9 +151,9 @@ Table SpectrumAnalysis::table() const {
       spectrum.realizations > 2 ? "jackknife over realizations"
                                 : "from the scatter about the line");
   add("slope_dof", slope.dof, "1", "degrees of freedom of slope_error");
-  add("ar1_slope", memory.slope, "1",
+  add("ar1_slope", trend.is_constant() ? std::nan("") : memory.slope, "1",
       "in the same band, of an AR(1) process of the same autocorrelation time");
-  add("ar1_slope_error", memory.error.error, "1",
+  add("ar1_slope_error", trend.is_constant() ? std::nan("") : memory.error.error, "1",
       "standard error, from that of the time, and 0.03 for the bias of short series");
   add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
   add("drift", trend.line.value, series_.units,
@@ -170,10 +169,10 @@ Table SpectrumAnalysis::table() const {
                  {"detrending", name_of(options_.detrending)},
                  {"segments", fmt::format("{} of {} taps, {} shared with the next",
                                           spectrum.segments, options_.segment, options_.overlap)},
-                 {"band", fmt::format("{:.4g} to {:.4g} per tap, {} points", band.lowest,
+                 {"band", finite_text("{:.4g} to {:.4g} per tap, {} points", band.lowest,
                                       band.highest, slope.n_points)},
                  {"drift", drift_verdict(trend, options_.detrending)},
-                 {"verdict", slope_verdict(slope, memory, trend.memory)}};
+                 {"verdict", slope_verdict(slope, memory, trend)}};
   return table;
 }
 

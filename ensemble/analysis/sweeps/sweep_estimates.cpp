@@ -6,6 +6,7 @@
 #include <span>
 
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/polynomial.hpp"
 
@@ -111,7 +112,7 @@ std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
   if (std::isnan(found.p)) {
     return "cannot decide: there are no errors to test a maximum by";
   }
-  const std::string test = fmt::format("p = {:.2g}, two lines", found.p);
+  const std::string test = finite_text("p = {:.2g}, two lines", found.p);
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
     return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")" +

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
-
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
+
+#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -125,7 +125,7 @@ void add_scatter(const SweepCurve& curve, Table& table) {
   constexpr double doubted = 0.01;
   if (!(p < doubted) || !curve.pools()) return;
   table.notes.emplace_back(
-      "scatter", fmt::format("realizations do not scatter alike at all points (p = {:.2g}): errors "
+      "scatter", finite_text("realizations do not scatter alike at all points (p = {:.2g}): errors "
                              "from the pooled variance are too small where they scatter most",
                              p));
 }

@@ -10,6 +10,7 @@
 
 #include "ensemble/analysis/volumes/log_ratio.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
@@ -232,7 +233,8 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
       p.push_back(p_value(test.value, test.error));
       if (!test.error.known()) continue;
       const double level = CompactivityVerdict::level / static_cast<double>(2 * overlapping);
-      detectable.push_back(test.error.error * smallest_effect_found(level, test.error.dof) / size);
+      const double found = test.error.error * smallest_effect_found(level, test.error.dof);
+      detectable.push_back(size > 0 ? found / size : std::numeric_limits<double>::infinity());
     }
   }
   const std::vector<double> corrected = corrected_for_number(p);
@@ -243,31 +245,37 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
   verdict.detectable = detectable.empty() ? std::numeric_limits<double>::infinity()
                                           : *std::ranges::max_element(detectable);
   const std::string tests =
-      fmt::format("p = {:.2g} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
-                  verdict.difference_p, verdict.curvature_p, realizations);
+      std::isnan(verdict.difference_p) || std::isnan(verdict.curvature_p)
+          ? fmt::format("no test, for errors are not known, {} realizations", realizations)
+          : finite_text(
+                "p = {:.2g} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
+                verdict.difference_p, verdict.curvature_p, realizations);
   if (overlapping == 0) {
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";
   } else if (realizations < 2) {
     verdict.statement = "cannot decide with 1 realization: errors need two";
   } else if (verdict.drift_p < CompactivityVerdict::level) {
-    verdict.statement = fmt::format(
+    verdict.statement = finite_text(
         "cannot decide: the states together still drift, by {:.2g} deviations of single taps over "
         "theirs (p = {:.2g}); take later taps ({})",
         drift.value, verdict.drift_p, tests);
   } else if (std::fmin(verdict.difference_p, verdict.curvature_p) < CompactivityVerdict::level) {
     verdict.statement = fmt::format("disagree: {}", tests);
   } else if (verdict.separation < CompactivityVerdict::least_separation) {
-    verdict.statement = fmt::format(
+    verdict.statement = finite_text(
         "cannot decide: neighbours lie at most {:.2g} deviations apart, where the two would agree "
         "for any distribution; take wider steps ({})",
         verdict.separation, tests);
+  } else if (!std::isfinite(verdict.detectable)) {
+    verdict.statement =
+        fmt::format("cannot decide: {}; no disagreement, however large, would be found", tests);
   } else if (!(verdict.detectable <= CompactivityVerdict::largest_unseen)) {
-    verdict.statement = fmt::format(
+    verdict.statement = finite_text(
         "cannot decide: {}; only a disagreement of {:.2g} of a step of 1/X or more would have been "
         "found with 80 %",
         tests, verdict.detectable);
   } else {
-    verdict.statement = fmt::format(
+    verdict.statement = finite_text(
         "agree: {}; a disagreement of {:.2g} of a step of 1/X would have been found with 80 %",
         tests, verdict.detectable);
   }

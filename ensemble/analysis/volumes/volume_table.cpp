@@ -1,10 +1,9 @@
 #include "ensemble/analysis/volumes/volume_table.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
@@ -160,7 +159,7 @@ Table volume_table(std::string name, const Column& observable, const std::string
       steady.push_back(states[i].volumes);
       used.push_back(i);
     } else {
-      left_out += fmt::format("{}{:.4g}", left_out.empty() ? "" : ", ", states[i].strength);
+      left_out += finite_text("{}{:.4g}", left_out.empty() ? "" : ", ", states[i].strength);
     }
   }
   const std::vector<CompactivityStep> steps = compactivity_steps(steady, bins);
@@ -178,7 +177,7 @@ Table volume_table(std::string name, const Column& observable, const std::string
             "1/X less that of the first steady state, by overlapping histograms", dean);
   add_steps(steps, used, table);
   table.notes = {{"observable", observable.name},
-                 {"spheres", fmt::format("{:.6g}", volume_of.spheres)},
+                 {"spheres", finite_text("{:.6g}", volume_of.spheres)},
                  {"realizations", std::to_string(states.front().volumes.realizations())}};
   if (!left_out.empty())
     table.notes.emplace_back("left_out", "not steady, at " + control + " " + left_out);

@@ -11,6 +11,7 @@ from ..errors import NotThere
 from ..guards import takes_arguments
 from ..student import half_width
 from ..tables import Table
+from ..text import finite_text
 from .axes import axes_or_current, errorbars, label, tap_axis
 
 
@@ -87,7 +88,7 @@ def spectrum(table: Table, *, ax: Axes | None = None) -> Axes:
         middle = np.log(density[inside]).mean() - slope * np.log(frequency[inside]).mean()
         error = half_width(table["slope_error"], float(table["slope_dof"]))
         ax.plot(frequency[inside], np.exp(middle) * frequency[inside] ** slope, color="C3",
-                label=f"slope {slope:.2f} $\\pm$ {float(error):.2f}")
+                label=f"slope {finite_text(slope, '.2f')} $\\pm$ {finite_text(float(error), '.2f')}")
         ax.legend(fontsize="small")
     ax.set_xscale("log")
     ax.set_yscale("log")
@@ -129,7 +130,7 @@ def sweep(table: Table, *, ax: Axes | None = None) -> Axes:
     errorbars(ax, table[against], table[quantity], half, fmt="o-", linewidth=0.8)
     at = float(table["maximum_at"])
     if np.isfinite(at) and table["maximum_p"] < 0.05:
-        ax.axvline(at, color="C3", linewidth=0.8, label=f"parabola's top at {at:.3g}")
+        ax.axvline(at, color="C3", linewidth=0.8, label=f"parabola's top at {finite_text(at, '.3g')}")
         low, high = float(table["maximum_at_low"]), float(table["maximum_at_high"])
         if np.isfinite(low) and np.isfinite(high):
             ax.axvspan(low, high, color="C3", alpha=0.15, linewidth=0)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/models/models.hpp"
 #include "fitting/solver/grid.hpp"
 #include "fitting/solver/projection.hpp"
@@ -136,7 +137,7 @@ FormulaModel::FormulaModel(const OwnLaw& law) : law_(law) {
     const auto found = law.bounds.find(name);
     const ParameterBounds bounds = found == law.bounds.end() ? ParameterBounds{} : found->second;
     parameters_.push_back({.name = name,
-                           .meaning = fmt::format("begun at {}", value),
+                           .meaning = finite_text("begun at {}", value),
                            .lower = bounds.lower,
                            .upper = bounds.upper});
     start_.push_back(value);

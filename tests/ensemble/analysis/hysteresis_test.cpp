@@ -75,6 +75,11 @@ TEST_CASE("Branches on one line enclose nothing, whatever their steps") {
   }
 }
 
+TEST_CASE("Branches of equal values are equal, in words without a number") {
+  const Loop found = loops(std::vector{1.0, 2.0, 1.0}, std::vector<double>(6, 0.5), 2).at(0);
+  CHECK(found.statement() == "the branches are equal in every realization, 2 realizations");
+}
+
 TEST_CASE("Two realizations cannot decide on an area of eleven errors") {
   const std::vector<double> strengths = {1, 2, 1};
   const std::vector<double> values = {0, 0, 1, 1, 2, 2.4};

@@ -45,6 +45,15 @@ SteadyState steady_state(const std::vector<std::vector<double>>& ensemble) {
 
 }  // namespace
 
+TEST_CASE("A constant series is steady, in words without a number") {
+  for (const std::size_t realizations : {1, 2, 5}) {
+    const SteadyState state = steady_state({realizations, std::vector<double>(130, 0.1)});
+    CHECK(state.verdict() == Verdict::reached);
+    CHECK(state.statement() == "reached: no drift: the series is constant");
+    CHECK(state.detectable() == 0);
+  }
+}
+
 TEST_CASE("Blocking agrees with pyblock, and tells that its series has no plateau") {
   const std::vector<double> series = numbers_of("stats/pyblock_data_1D.dat");
   REQUIRE(series.size() == 1024);

@@ -51,11 +51,24 @@ TEST_CASE("A linear ramp is flagged as drift, whatever rides on it") {
   CHECK(many.tests == 4);
 }
 
+TEST_CASE("A series that changes without scatter is not constant, and every change is detectable") {
+  std::vector<double> ramp(64);
+  for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i);
+  const Trend trend = trend_of({ramp, ramp});
+  CHECK_FALSE(trend.is_constant());
+  CHECK(trend.drifts());
+  CHECK(trend.detectable_in_sigma() == 0);
+  CHECK(trend.power().starts_with("a change of 0 over the taps, 0 times the scatter"));
+}
+
 TEST_CASE("A constant series does not drift") {
   const Trend trend = trend_of({std::vector<double>(64, 0.1), std::vector<double>(64, 0.3)});
   CHECK(trend.line.value == 0);
   CHECK(trend.detectable == 0);
   CHECK_FALSE(trend.drifts());
+  CHECK(trend.is_constant());
+  CHECK(trend.statement() == "no drift: the series is constant");
+  CHECK(trend_of({std::vector<double>(32, 0.1)}).statement() == trend.statement());
 }
 
 TEST_CASE("The errors within series are the scatter of slopes and halves", "[statistics]") {

@@ -43,6 +43,13 @@ TEST_CASE("a shard takes as long as its realizations, as many at once as it has 
   CHECK(plan.starts == 1);
 }
 
+TEST_CASE("CPUs beyond a shard's realizations take neither memory nor time") {
+  const JobPlan all = plan_jobs(cost({1, 2}, 8), request(100, 4'000'000'000, 2));
+  const JobPlan busy = plan_jobs(cost({1, 2}, 8), request(100, 8, 2));
+  CHECK(all.longest_task == busy.longest_task);
+  CHECK(hours(all.longest_task) == Approx(2));
+}
+
 TEST_CASE("the longest shard is that of the costliest sweep points") {
   // As many shards as points: each has one point.
   const JobPlan plan = plan_jobs(cost({1, 2, 7}, 4), request(100, 1, 3));

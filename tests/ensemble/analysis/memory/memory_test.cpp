@@ -147,6 +147,16 @@ TEST_CASE("Tables name histories by their strengths") {
   CHECK(column("second_dilate") == std::vector{0.2});
 }
 
+TEST_CASE("An observable that never changes says nothing of memory") {
+  std::vector<History> histories;
+  for (const double strength : {0.1, 0.2})
+    histories.push_back({strength, 0, std::vector<double>(4, 0.5), std::vector<double>(8, 0.5)});
+  const std::uint64_t ends[] = {1, 10};
+  const MemoryTest test = memory_test(histories, lag_windows(ends));
+  CHECK(test.statement("x", "gamma") ==
+        "cannot decide: x does not change after the switch of gamma");
+}
+
 TEST_CASE("Two realizations cannot tell of memory") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.6}, {1, 2}}, {0.2, 20, {0.5, 0.61}, {3, 5}}};
   CHECK(memory_test(all, lag_windows(1)).statement("phi", "dilate").starts_with("cannot decide"));

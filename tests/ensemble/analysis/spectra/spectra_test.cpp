@@ -1,5 +1,6 @@
 #include "ensemble/analysis/spectra/spectra.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "ensemble/analysis/analyses.hpp"
 #include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
@@ -229,6 +231,25 @@ TEST_CASE("Expected Welch spectra are those of long averages") {
       }
     }
     CHECK(lines[k] == Approx(sum).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("A constant series has neither drift nor slope, in words without a number") {
+  for (const std::size_t realizations : {1, 2, 3}) {
+    SpectrumAnalysis analysis({.observable = "x", .units = "1", .first_tap = 1, .last_tap = 128},
+                              SpectrumSettings{});
+    for (std::size_t r = 0; r < realizations; ++r) analysis.add(std::vector<double>(128, 0.1));
+    const Table table = analysis.table();
+    const auto note = [&](const std::string& name) {
+      return std::ranges::find(table.notes, name, [](const auto& one) { return one.first; })
+          ->second;
+    };
+    CHECK(note("drift") == "no drift: the series is constant");
+    CHECK(note("verdict") == "no slope: the series is constant");
+    for (const char* const none : {"slope", "ar1_slope", "ar1_slope_p"}) {
+      const auto found = std::ranges::find(table.quantities, none, &Quantity::name);
+      CHECK(std::isnan(std::get<std::vector<double>>(found->values).at(0)));
+    }
   }
 }
 
