@@ -82,7 +82,6 @@ PairedBias paired_bias(std::span<const double> values, std::span<const double> r
 
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
                    std::span<const double> values, std::span<const double> reference) {
-  constexpr double level = 0.05;
   assert(values_before.size() == values.size() && reference_before.size() == values.size());
   std::vector<double> gained(values.size()), of_reference(values.size());
   for (std::size_t r = 0; r < values.size(); ++r) {
@@ -98,13 +97,12 @@ Growth bias_growth(std::span<const double> values_before, std::span<const double
   const PairedBias& change = growth.change;
   growth.tails = change.error > 0 ? student_tails(change.bias / change.error, dof)
                                   : (change.bias == 0 ? 1.0 : 0.0);
-  growth.detectable = smallest_effect_found(level, dof) * change.error;
+  growth.detectable = smallest_effect_found(significance_level, dof) * change.error;
   return growth;
 }
 
 bool is_seen(const PairedBias& bias) {
-  constexpr double level = 0.05;
-  return p_value(bias.bias, {bias.error, static_cast<double>(bias.pairs) - 1}) < level;
+  return p_value(bias.bias, {bias.error, static_cast<double>(bias.pairs) - 1}) < significance_level;
 }
 
 Remainder remainder(std::span<const double> two_before, std::span<const double> before,

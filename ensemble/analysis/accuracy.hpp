@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "ensemble/statistics/student_tests.hpp"
+
 // What accuracy costs: settings of a relaxation compared in pairs, realization by realization, each
 // pair from one starting packing.
 namespace jostle::inline ensemble {
@@ -28,7 +30,7 @@ struct Growth {
   PairedBias change;      // of the bias, in pairs
   double tails = 1;       // probability of such a change by chance (Student's t)
   double detectable = 0;  // a change that would be found at 5 % with power 0.8
-  bool is_seen() const { return tails < 0.05; }
+  bool is_seen() const { return tails < significance_level; }
 };
 
 /// values and reference at both taps: one a realization, NaN where it is missing. Nothing is known

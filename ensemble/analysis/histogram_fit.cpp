@@ -6,6 +6,7 @@
 
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
@@ -13,9 +14,9 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_expected = 5;    // of a bin, for chi2
-constexpr double least_scatter = 0.01;  // of counts, in Poisson's: less is none of counts
-constexpr double doubted = 0.01;        // p below which the law is called wrong
+constexpr double least_expected = 5;            // of a bin, for chi2
+constexpr double least_scatter = 0.01;          // of counts, in Poisson's: less is none of counts
+constexpr double doubted = significance_level;  // p below which the law is called wrong
 
 struct Groups {
   std::vector<double> expected;  // over all realizations, [n_groups]
@@ -86,8 +87,8 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
 
 std::string verdict(const Goodness& found, std::uint32_t realizations) {
   if (std::isnan(found.p)) return "fitted; too few counts to tell whether the law holds";
-  const std::string test = finite_text("{} test over {} bins, p = {:.2g}",
-                                       realizations > 1 ? "F" : "chi2", found.bins, found.p);
+  const std::string test = finite_text("{} test over {} bins, {}", realizations > 1 ? "F" : "chi2",
+                                       found.bins, p_text(found.p));
   return (found.p < doubted ? "the law does not hold: " : "the law is not refuted: ") + test;
 }
 

@@ -197,14 +197,13 @@ std::string Loop::statement() const {
     return fmt::format("cannot decide with {} realizations: the area is not known", realizations);
   }
   if (corrected < level) {
-    return finite_text("the branches differ: area {:+.2g} (p = {:.2g}, {} realizations)", area,
-                       corrected, realizations);
+    return finite_text("the branches differ: area {:+.2g} ({}, {} realizations)", area,
+                       p_text(corrected), realizations);
   }
   return finite_text(
-      "cannot decide with {} realizations: p = {:.2g}, only an area of {:.2g} or more would have "
-      "been "
+      "cannot decide with {} realizations: {}, only an area of {:.2g} or more would have been "
       "found with 80 %",
-      realizations, corrected, detectable);
+      realizations, p_text(corrected), detectable);
 }
 
 std::vector<double> step_values(const ProtocolSteps& steps, std::span<const double> series,

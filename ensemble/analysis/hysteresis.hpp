@@ -27,7 +27,7 @@ struct Loop {
   double detectable = 0;               // area that would have been found with probability 0.8
   std::size_t realizations = 0;        // that have all steps of both branches
 
-  static constexpr double level = 0.05;  // false alarms, all loops together
+  static constexpr double level = significance_level;  // false alarms, all loops together
   /// "encloses an area" or "cannot decide", with the test and what would have refuted it.
   std::string statement() const;
 };

@@ -1,5 +1,7 @@
 #include "ensemble/statistics/student_tests.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -75,6 +77,10 @@ double p_value(double value, const ErrorOf& error) {
   if (!error.known() || std::isnan(value)) return std::numeric_limits<double>::quiet_NaN();
   if (value == 0) return 1;
   return error.error > 0 ? tails(value / error.error, error.dof) : 0;
+}
+
+std::string p_text(double p) {
+  return fmt::format("p = {:.2g} at the {:g} % level", p, 100 * significance_level);
 }
 
 std::vector<double> corrected_for_number(std::span<const double> p_values) {

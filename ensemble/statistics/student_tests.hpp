@@ -1,10 +1,15 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 // Student's tests of an estimate against 0, and what they can see.
 namespace jostle::inline ensemble {
+
+/// The level of every test that a verdict rests on: how often chance alone raises an alarm, all
+/// tests of one question together.
+inline constexpr double significance_level = 0.05;
 
 /// The standard error of an estimate, with its degrees of freedom: infinite where the error is
 /// known, 0 where there is none.
@@ -24,6 +29,9 @@ ErrorOf combined(const ErrorOf& a, const ErrorOf& b);
 /// Probability that chance makes an estimate of 0 as large as this, on either side. NaN without an
 /// error; 1 for a value of 0, and 0 for any other whose error is 0.
 double p_value(double value, const ErrorOf& error);
+
+/// "p = 0.019 at the 5 % level": how every verdict names its test.
+std::string p_text(double p);
 
 /// The p-values of several tests made together, so that the chance of any false alarm is the level:
 /// Holm 1979, Scand. J. Statist. 6, 65. NaN stays and does not count.

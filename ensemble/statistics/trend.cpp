@@ -161,7 +161,7 @@ std::string Trend::statement() const {
   if (is_constant()) return "no drift: the series is constant";
   if (tests == 0) return "no test of a drift is possible";
   const std::string test =
-      finite_text("p = {:.2g} of {} test{}, least by the {}, {:.3g} degree{} of freedom", p, tests,
+      finite_text("{}, {} test{}, least by the {}, {:.3g} degree{} of freedom", p_text(p), tests,
                   tests == 1 ? "" : "s", decisive, decisive_dof, decisive_dof == 1 ? "" : "s");
   if (!drifts()) return fmt::format("no drift found ({})", test);
   return finite_text(

@@ -42,12 +42,12 @@ struct Trend {
   /// 0.8, by the errors as they are estimated. Infinite without a test.
   double detectable = 0;
 
-  static constexpr double level = 0.01;  // false alarms, all tests together
+  static constexpr double level = significance_level;  // all tests together
   bool drifts() const { return p < level; }
   /// No series changes at all: there is neither a drift nor scatter that could hide one.
   bool is_constant() const { return sigma == 0 && line.value == 0 && halves.value == 0; }
-  /// "it drifts: +0.02 over the taps (p = 0.0003, slope, within series, 35 degrees of freedom)",
-  /// "no drift found (p = 0.4, ...)", or "no drift: the series is constant".
+  /// "it drifts: +0.02 over the taps (p = 0.0003 at the 5 % level, 2 tests, ...)",
+  /// "no drift found (p = 0.4 at the 5 % level, ...)", or "no drift: the series is constant".
   std::string statement() const;
   /// "a change of 0.01 over the taps, 0.3 times the scatter of taps about their line, would have
   /// been found with 80 %". After at least one test, of series that are not constant.

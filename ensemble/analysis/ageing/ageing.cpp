@@ -60,13 +60,13 @@ void add_change(const Pairs& xy, AgeingCurves& curves) {
       {jackknife_error(ln_variances_without_one(values)), static_cast<double>(values.size()) - 1}));
 }
 
-struct Correlation {
+struct CovarianceRatio {
   double value = not_a_number, error = not_a_number;
 };
 
 // Leaving realization i out of n lowers a sum of products of deviations from the mean, S, to
 // S - n/(n - 1) dx_i dy_i.
-Correlation correlation(const Pairs& xy) {
+CovarianceRatio covariance_ratio(const Pairs& xy) {
   const std::size_t n = xy.early.size();
   if (n < 2) return {};
   Moments early, late;
@@ -122,7 +122,7 @@ AgeingCurves ageing_curves(const TapRows& rows, const AgeingGrid& grid) {
       const Pairs xy = pairs(rows.row(wait), rows.row(wait + lag));
       curves.a.push_back(mean_square(xy));
       add_change(xy, curves);
-      const Correlation c = correlation(xy);
+      const CovarianceRatio c = covariance_ratio(xy);
       curves.c.push_back(c.value);
       curves.c_error.push_back(c.error);
       curves.count.push_back(xy.early.size());

@@ -41,8 +41,9 @@ struct AgeingCurves {
   std::vector<LogEstimate> v;
 
   /// C(t, t_W) = <dX(t_W + t) dX(t_W)> / <dX(t_W)^2>, dX = X - <X> over realizations at the same
-  /// tap: 1 at t = 0. NaN where the realizations do not differ at t_W (a shared start). After
-  /// Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916.
+  /// tap: a covariance over the variance at t_W alone, 1 at t = 0 and not bounded by 1 (no
+  /// correlation coefficient). NaN where the realizations do not differ at t_W (a shared start).
+  /// After Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916.
   std::vector<double> c;
   std::vector<double> c_error;  // jackknife over realizations
 

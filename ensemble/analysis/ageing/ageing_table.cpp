@@ -58,7 +58,8 @@ void add_curves(const AgeingCurves& curves, const std::string& of_change, Table&
   for (const auto count : curves.count)
     dof.push_back(std::max(0.0, static_cast<double>(count) - 1));
   add("change_dof", dof, "1", "degrees of freedom of change_error", "");
-  add("c", curves.c, "1", "two-time autocorrelation over realizations, 1 at lag 0",
+  add("c", curves.c, "1",
+      "covariance with the value at t_W over the variance at t_W: 1 at lag 0, not bounded by 1",
       "Nicodemi & Coniglio 1999, doi:10.1103/PhysRevLett.82.916");
   add("c_error", curves.c_error, "1", "jackknife error of c", "");
   add("c_dof", dof, "1", "degrees of freedom of c_error", "");

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_mu = -1, most_mu = 2, mu_step = 0.05;
-constexpr double refuted = 0.05;
+constexpr double refuted = significance_level;
 constexpr Eigen::Index fewest_realizations = 4;  // of three, intervals hold the truth too seldom
 const double decade = std::log(10.0);
 

@@ -14,7 +14,7 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double significant = 0.05;
+constexpr double significant = significance_level;
 constexpr double decisive = 10;   // a factor that a test should find
 constexpr double farthest = 1e6;  // a factor beyond which nothing is stored
 
@@ -44,8 +44,8 @@ std::string power_of(const AgeTrend& found, const std::string& of) {
       std::isnan(found.detectable)
           ? "but its error is beyond all factors: none would be found"
           : finite_text("a factor of {:.3g} would be found with power 0.8", found.detectable);
-  return finite_text("change of {} from the first waiting time to the last: p = {:.2g}, {}", of,
-                     found.p, power);
+  return finite_text("change of {} from the first waiting time to the last: {}, {}", of,
+                     p_text(found.p), power);
 }
 
 // An error beyond all factors leaves a small p without a meaning.

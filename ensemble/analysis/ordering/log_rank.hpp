@@ -45,7 +45,7 @@ struct Candidates {
   std::vector<double> p;      // of the likeliest to beat it, times k - 1, at most 1; [k]
   std::vector<bool> may_be;   // [k]
   bool could_decide = false;  // realizations are enough for any pair to differ at the level
-  static constexpr double level = 0.025;  // of two such questions together 0.05
+  static constexpr double level = significance_level / 2;  // of two such questions
 };
 /// The earliest; k >= 2.
 Candidates may_order_first(std::span<const OrderingTimes> all, Streams streams);

@@ -84,10 +84,10 @@ std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& m
       finite_text("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
                   time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
-  if (memory.p >= 0.05) {
-    return finite_text("{}: the slope is not told from it (p = {:.2g})", alone, memory.p);
+  if (memory.p >= significance_level) {
+    return finite_text("{}: the slope is not told from it ({})", alone, p_text(memory.p));
   }
-  return finite_text("{}: the slope differs from it (p = {:.2g})", alone, memory.p);
+  return finite_text("{}: the slope differs from it ({})", alone, p_text(memory.p));
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ struct SweepMaximum {
   std::size_t points = 0;  // used
   std::string verdict;     // "found", "cannot decide" or "none", and why
 
-  static constexpr double level = 0.05;
+  static constexpr double level = significance_level;
   bool found() const { return p < level; }
 };
 

@@ -70,7 +70,7 @@ std::size_t different_values(std::span<const double> ascending) {
 /// them with 95 %.
 std::pair<std::size_t, std::size_t> possibly_highest(const SweepCurve& curve) {
   const std::size_t n = curve.n_points();
-  const double level = 0.05 / static_cast<double>(n - 1);
+  const double level = significance_level / static_cast<double>(n - 1);
   const auto is_exceeded = [&](std::size_t i) {
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i || curve.fitted_y()[j] <= curve.fitted_y()[i]) continue;
@@ -112,7 +112,7 @@ std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
   if (std::isnan(found.p)) {
     return "cannot decide: there are no errors to test a maximum by";
   }
-  const std::string test = finite_text("p = {:.2g}, two lines", found.p);
+  const std::string test = p_text(found.p) + ", two lines";
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
     return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")" +

@@ -122,12 +122,11 @@ void add_scatter(const SweepCurve& curve, Table& table) {
   const double p = curve.p_of_equal_scatter();
   add_value("pooled_sigma_p", p, "1", "of realizations scattering alike at all points", table,
             "Bartlett 1937, doi:10.1098/rspa.1937.0109");
-  constexpr double doubted = 0.01;
-  if (!(p < doubted) || !curve.pools()) return;
+  if (!(p < significance_level) || !curve.pools()) return;
   table.notes.emplace_back(
-      "scatter", finite_text("realizations do not scatter alike at all points (p = {:.2g}): errors "
+      "scatter", finite_text("realizations do not scatter alike at all points ({}): errors "
                              "from the pooled variance are too small where they scatter most",
-                             p));
+                             p_text(p)));
 }
 
 }  // namespace

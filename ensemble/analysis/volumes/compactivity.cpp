@@ -247,9 +247,8 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
   const std::string tests =
       std::isnan(verdict.difference_p) || std::isnan(verdict.curvature_p)
           ? fmt::format("no test, for errors are not known, {} realizations", realizations)
-          : finite_text(
-                "p = {:.2g} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
-                verdict.difference_p, verdict.curvature_p, realizations);
+          : finite_text("{} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
+                        p_text(verdict.difference_p), verdict.curvature_p, realizations);
   if (overlapping == 0) {
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";
   } else if (realizations < 2) {
@@ -257,8 +256,8 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
   } else if (verdict.drift_p < CompactivityVerdict::level) {
     verdict.statement = finite_text(
         "cannot decide: the states together still drift, by {:.2g} deviations of single taps over "
-        "theirs (p = {:.2g}); take later taps ({})",
-        drift.value, verdict.drift_p, tests);
+        "theirs ({}); take later taps ({})",
+        drift.value, p_text(verdict.drift_p), tests);
   } else if (std::fmin(verdict.difference_p, verdict.curvature_p) < CompactivityVerdict::level) {
     verdict.statement = fmt::format("disagree: {}", tests);
   } else if (verdict.separation < CompactivityVerdict::least_separation) {

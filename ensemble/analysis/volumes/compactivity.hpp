@@ -101,9 +101,9 @@ struct CompactivityVerdict {
   double drift_p = 1;     // of no drift of all states together; NaN of one realization
   std::string statement;  // "agree", "disagree" or "cannot decide", and why
 
-  static constexpr double level = 0.05;            // false alarms, all tests together
-  static constexpr double largest_unseen = 0.5;    // relative
-  static constexpr double least_separation = 0.5;  // deviations
+  static constexpr double level = significance_level;  // false alarms, all tests together
+  static constexpr double largest_unseen = 0.5;        // relative
+  static constexpr double least_separation = 0.5;      // deviations
 };
 
 /// What histograms say less what fluctuations say. Of steps that overlap.

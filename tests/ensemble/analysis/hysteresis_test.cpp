@@ -86,7 +86,8 @@ TEST_CASE("Two realizations cannot decide on an area of eleven errors") {
   const Loop found = loops(strengths, values, 2).at(0);
   CHECK(found.area / found.error.error == Approx(11));
   CHECK(found.p == Approx(0.0577).epsilon(1e-3));
-  CHECK(found.statement().starts_with("cannot decide with 2 realizations: p = 0.058, only"));
+  CHECK(found.statement().starts_with(
+      "cannot decide with 2 realizations: p = 0.058 at the 5 % level, only"));
   CHECK(found.detectable == Approx(16.334 * found.error.error).epsilon(1e-3));
   const Loop clear = loops(strengths, std::vector{0.0, 0.0, 1.0, 1.0, 2.0, 2.1}, 2).at(0);
   CHECK(clear.statement().starts_with("the branches differ"));

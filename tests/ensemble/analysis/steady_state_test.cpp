@@ -138,8 +138,8 @@ TEST_CASE("Errors of steady states are what the states scatter by", "[statistics
   CHECK(time_errors.mean() == Approx(times.sigma()).epsilon(spread + 0.05));
   CHECK(sigmas.mean() == Approx(exact_sigma()).epsilon(0.002).margin(3 * sigmas.standard_error()));
   CHECK(sigma_errors.mean() == Approx(sigmas.sigma()).epsilon(spread + 0.05));
-  // Of 1 %, 3 deviations of 400 ensembles.
-  CHECK(drifting <= 0.01 * ensembles + 3 * std::sqrt(0.01 * ensembles));
+  // 3 deviations of 400 ensembles.
+  CHECK(drifting <= Trend::level * ensembles + 3 * std::sqrt(Trend::level * ensembles));
 }
 
 TEST_CASE("Drift, a late step and a long memory are not a steady state") {
