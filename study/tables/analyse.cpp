@@ -172,6 +172,14 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
           .last_tap = available};
 }
 
+std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps) {
+  if (taps.n_taps() < SteadyStateTest::fewest_taps) return std::nullopt;
+  SteadyStateTest test;
+  series.for_each({taps.first_tap, taps.last_tap + 1},
+                  [&](std::span<const double> values) { test.add(values); });
+  return test.result().verdict();
+}
+
 bool is_made(const Table& table) {
   return std::ranges::none_of(table.notes,
                               [](const auto& note) { return note.first == "refused"; });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
 #include "study/observable_series.hpp"
@@ -28,6 +29,10 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
 AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
                          std::uint64_t divisor, std::uint64_t least,
                          std::optional<std::uint64_t> rows = std::nullopt);
+
+/// Whether these taps are steady, as the analysis of that name decides; nothing where they are too
+/// few for it.
+std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps);
 
 /// Whether the table holds an analysis, and no refusal.
 bool is_made(const Table& table);

@@ -108,6 +108,19 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
                       .error_is_no_basis = point->no_value.empty() && !point->error.known()};
 }
 
+void set_steadiness(const Table& table, DerivedValue& value) {
+  const auto note = [&](const char* key) {
+    const auto found =
+        std::ranges::find(table.notes, key, [](const auto& one) { return one.first; });
+    return found == table.notes.end() ? "" : found->second;
+  };
+  value.taps = note("taps");
+  const std::string verdict = note("verdict");
+  value.steady = verdict.starts_with("reached")       ? Verdict::reached
+                 : verdict.starts_with("not reached") ? Verdict::not_reached
+                                                      : Verdict::cannot_decide;
+}
+
 }  // namespace
 
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
@@ -124,7 +137,10 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
   const std::string kind = quantity.substr(0, slash), name = quantity.substr(slash + 1);
   for (const Table& table : tables.analyses) {
     if (table.name != fmt::format("{}/{}/{}", point_name(point), kind, observable)) continue;
-    if (auto found = single_value(table, name)) return *std::move(found);
+    auto found = single_value(table, name);
+    if (!found) continue;
+    if (kind == "steady") set_steadiness(table, *found);
+    return *std::move(found);
   }
   for (const Table& table : tables.fits) {
     if (table.name != fmt::format("{}/{}/{}", point_name(point), observable, kind)) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/column.hpp"
+#include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
@@ -34,6 +35,9 @@ struct DerivedValue {
   Column label;
   std::string no_value;    // why there is none
   bool error_is_no_basis;  // a fit's, of too few realizations
+  /// Of steady states: the taps that they were taken from, and whether these are steady.
+  std::string taps = {};
+  std::optional<Verdict> steady = {};
 };
 
 /// "steady/sigma" of analyses, "kww/rho_inf" of fits. Throws BadInput where it is not among the

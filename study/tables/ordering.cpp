@@ -28,10 +28,7 @@ void set_last_values(const ObservableSeries& series, const OrderingSettings& set
   for (std::size_t i = 0; i < means.size(); ++i) {
     point.last_values[series.realizations()[i]] = means[i];
   }
-  if (last.n_taps() < SteadyStateTest::fewest_taps) return;
-  SteadyStateTest test;
-  series.for_each(range, [&](std::span<const double> values) { test.add(values); });
-  point.steady = test.result().verdict();
+  point.steady = steadiness(series, last);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ struct Member {
   Column label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
   std::string taps;                                // whose mean the value is: "151 to 200"
+  std::optional<Verdict> steady;                   // whether these taps are; none of too few
   std::string no_value;                            // why it has none, where that is known
   bool error_is_no_basis = false;                  // a fit's, of too few realizations
 };
@@ -131,6 +132,7 @@ void set_values(std::span<Member> members, const std::string& observable,
     const AnalysedSeries taps = last_taps(series, last, 4, 1, shared.rows[i]);
     const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
     member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
+    member.steady = steadiness(series, taps);
     member.realizations.assign(member.file->study().realizations, not_a_number);
     for (std::size_t r = 0; r < means.size(); ++r)
       member.realizations[series.realizations()[r]] = means[r];
@@ -143,6 +145,8 @@ void set(Member& member, DerivedValue&& derived) {
   member.label = std::move(derived.label);
   member.no_value = std::move(derived.no_value);
   member.error_is_no_basis = derived.error_is_no_basis;
+  member.taps = std::move(derived.taps);
+  member.steady = derived.steady;
 }
 
 /// Throws BadInput where only some points share their random numbers: their errors are neither
@@ -182,6 +186,40 @@ std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis)
   if (alike.size() == 1) return alike.front();
   throw BadInput(finite_text("reference {}: there is no such point; there are, of {}, {}", x, axis,
                              joined(places, ", ")));
+}
+
+/// Places of the points whose averaged taps have this verdict.
+std::vector<std::string> places_of(std::span<const Member> members,
+                                   const std::optional<Verdict>& verdict) {
+  std::vector<std::string> places;
+  for (const Member& member : members) {
+    if (!member.taps.empty() && member.steady == verdict)
+      places.push_back(fmt::format("{:.4g}", member.x));
+  }
+  return places;
+}
+
+/// Means of beds that still move are kinetic: they depend on the number of taps, and so does what
+/// is read off the curve. A maximum says so itself.
+void add_steadiness(std::span<const Member> members, Table& table) {
+  if (std::ranges::all_of(members, [](const Member& one) { return one.taps.empty(); })) return;
+  const auto moving = places_of(members, Verdict::not_reached);
+  std::vector<std::string> open = places_of(members, Verdict::cannot_decide);
+  const auto too_few = places_of(members, std::nullopt);
+  open.insert(open.end(), too_few.begin(), too_few.end());
+  std::string condition;
+  if (!moving.empty())
+    condition = "kinetic: the averaged taps still drift at " + joined(moving, ", ");
+  if (!open.empty()) {
+    condition.append(condition.empty() ? "" : "; ")
+        .append("not shown to be steady: the averaged taps at ")
+        .append(joined(open, ", "));
+  }
+  table.notes.emplace_back(
+      "steady", condition.empty() ? "the averaged taps are steady at all points" : condition);
+  if (condition.empty()) return;
+  for (auto& [key, note] : table.notes)
+    if (key == "maximum") note += "; " + condition;
 }
 
 /// Which taps are averaged, and which points have no value.
@@ -229,6 +267,7 @@ Table curve_table(std::string name, std::span<const Member> members,
   Table table =
       sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
   add_notes(members, table);
+  add_steadiness(members, table);
   return table;
 }
 
