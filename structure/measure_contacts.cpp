@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "structure/measure_parts.hpp"
@@ -39,6 +40,15 @@ Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, 
     contacts += held.contacts[i];
   }
   return {all / spheres, rattlers / spheres, contacts / (spheres - rattlers)};
+}
+
+std::string tolerance_note(double tolerance) {
+  char gap[32];
+  std::snprintf(gap, sizeof gap, "%g", tolerance);
+  return std::string("surfaces up to ") + gap +
+         " d apart touch. A packing in which such contacts hold no sphere, as of hard spheres that "
+         "Monte Carlo stops at a distance, has no backbone: it counts neither in rattlers nor in "
+         "backbone_contacts";
 }
 
 }  // namespace
@@ -97,16 +107,19 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},
       {.name = "rattlers",
-       .values = {found.rattlers},
-       .long_name = "fraction of rattlers, taken away one after another",
-       .source = donev},
+       .values = {found.rattlers < 1 ? found.rattlers : std::nan("")},
+       .long_name =
+           "fraction of rattlers, taken away one after another, of packings with a backbone",
+       .source = donev,
+       .with_packings = true},
       {.name = "backbone_contacts",
        .values = {found.without_rattlers},
        .long_name = "mean number of contacts without rattlers, of packings with a backbone; 6 if "
                     "isostatic without friction",
        .source = donev,
        .with_packings = true}};
-  out.notes = {{"least_contacts", std::to_string(least) + " of a sphere that is no rattler"}};
+  out.notes = {{"least_contacts", std::to_string(least) + " of a sphere that is no rattler"},
+               {"tolerance", tolerance_note(settings.tolerance)}};
   return out;
 }
 

@@ -154,7 +154,7 @@ TEST_CASE("Spheres that rest on three are no rattlers under gravity") {
   settings.gaps->least_contacts.reset();
   settings.region = Region{0.5, 10, 0};
   const auto none = measure(chain(10), settings, StreamKey{}).at(0);
-  CHECK(none.find("rattlers")->values[0] == 1);
+  CHECK(std::isnan(none.find("rattlers")->values[0]));
   CHECK(std::isnan(none.find("backbone_contacts")->values[0]));
 }
 
