@@ -97,6 +97,14 @@ std::vector<Column> StudyPoint::columns() const {
   return all;
 }
 
+std::string common_unit(const Study& study) {
+  if (study.points.empty()) return "trials";
+  const std::string& unit = study.points.front().unit;
+  const bool one_engine = std::ranges::all_of(
+      study.points, [&](const StudyPoint& point) { return point.unit == unit; });
+  return one_engine ? unit : "";
+}
+
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations) {
   Study study{std::move(scene), std::move(resolved_scene), realizations, {}};

@@ -44,6 +44,10 @@ struct Study {
   std::vector<StudyPoint> points;
 };
 
+/// What the work of all sweep points is counted in; empty where their engines differ, whose units
+/// do not add up.
+std::string common_unit(const Study& study);
+
 /// The study of the given plans, one point a plan.
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations);

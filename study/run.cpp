@@ -142,7 +142,7 @@ void SceneRun::extend(std::uint32_t realizations) {
 }
 
 WorkAhead SceneRun::work_ahead(const std::vector<RealizationId>& pending) const {
-  WorkAhead ahead{.realizations = pending.size(), .taps = 0, .unit = study_.points.front().unit};
+  WorkAhead ahead{.realizations = pending.size(), .taps = 0, .unit = common_unit(study_)};
   for (const RealizationId& id : pending) ahead.taps += study_.points[id.point].taps;
   ahead.taps -= std::min(ahead.taps, taps_recorded_);
   ahead.realizations += progress_.realizations_done;

@@ -75,7 +75,7 @@ class OtherShard : public BadInput {
 struct WorkAhead {
   std::uint64_t realizations = 0;
   std::uint64_t taps = 0;       // of all of them, without the starts
-  std::string unit = "trials";  // what the engine's work is counted in
+  std::string unit = "trials";  // what the engine's work is counted in; empty of several engines
 };
 
 /// Told how a run goes on. Every call comes from the thread that runs.

@@ -22,12 +22,13 @@
 namespace jostle::inline cli {
 namespace {
 
-const char* name(RealizationStatus status) {
+/// A realization that is begun runs only while its process does.
+const char* name(RealizationStatus status, bool alive) {
   switch (status) {
     case RealizationStatus::missing:
       return "missing";
     case RealizationStatus::running:
-      return "running";
+      return alive ? "running" : "unfinished";
     case RealizationStatus::done:
       return "done";
     case RealizationStatus::failed:
@@ -36,19 +37,26 @@ const char* name(RealizationStatus status) {
   return "unknown";
 }
 
+bool is_alive(const RunStatus& status) {
+  return status.owner && status.owner->alive;
+}
+
 /// A file whose run was killed says "running" still, and one that a run goes on from says what it
 /// was: the lock tells.
 std::string state_of(const RunStatus& status) {
-  if (status.owner && status.owner->alive) return "running";
+  if (is_alive(status)) return "running";
   if (status.state != RunState::running) return name_of(status.state);
   return fmt::format("{}; --resume goes on", status.owner ? "killed" : "stopped");
 }
 
-Json realization_json(const RealizationSummary& one, std::string unit) {
+Json realization_json(const RealizationSummary& one, bool alive, std::string unit) {
   std::ranges::replace(unit, ' ', '_');
-  Json json{{"point", one.id.point},       {"realization", one.id.realization},
-            {"status", name(one.status)},  {"taps_recorded", one.rows},
-            {unit, one.work.effort.units}, {"seconds", one.work.seconds}};
+  Json json{{"point", one.id.point},
+            {"realization", one.id.realization},
+            {"status", name(one.status, alive)},
+            {"taps_recorded", one.rows},
+            {unit, one.work.effort.units},
+            {"seconds", one.work.seconds}};
   if (!one.reason.empty()) json["reason"] = one.reason;
   return json;
 }
@@ -81,11 +89,12 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
                       {"seed", point.seed}});
   }
   for (const auto& one : status.realizations) {
-    realizations.push_back(realization_json(one, study.points[one.id.point].unit));
+    realizations.push_back(
+        realization_json(one, is_alive(status), study.points[one.id.point].unit));
   }
   return {{"file", file.path()},
           {"state", name_of(status.state)},
-          {"alive", status.owner && status.owner->alive},
+          {"alive", is_alive(status)},
           {"shard", {{"index", file.shard().index}, {"count", file.shard().count}}},
           {"version", file.provenance().front().version},
           {"git_revision", file.provenance().front().git_revision},
@@ -107,7 +116,8 @@ std::string counts(const ResultsFile& file, const RunStatus& status) {
   }
   std::string text;
   for (const auto& [status_of_some, n] : by_status) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, name(status_of_some));
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : ", ", n, name(status_of_some, is_alive(status)));
   }
   return text + fmt::format("; {} of {} taps", rows, all_rows);
 }

@@ -98,17 +98,15 @@ std::string resume_command(const RunArguments& arguments) {
   return shell_words(words);
 }
 
-/// What this process computed, all sweep points together. Rates of different engines do not add up.
+/// What this process computed, all sweep points together; `unit` is empty of several engines, whose
+/// rates do not add up.
 std::string process_line(const Progress& progress, Seconds elapsed, int threads,
-                         const std::vector<StudyPoint>& points) {
-  const std::string& unit = points.front().unit;
-  const bool one_engine =
-      std::ranges::all_of(points, [&](const StudyPoint& point) { return point.unit == unit; });
+                         const std::string& unit) {
   std::string line = fmt::format("this run: {} on {}", format_duration(elapsed),
                                  counted(static_cast<std::uint64_t>(threads), "thread"));
   const auto units = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
-  if (one_engine && units > 0 && relaxing > 0) {
+  if (!unit.empty() && units > 0 && relaxing > 0) {
     line += finite_text("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
                         format_count(units / relaxing), unit,
                         static_cast<double>(progress.pair_tests) / units,
@@ -164,7 +162,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   if (!arguments.quiet) {
     print_report((run.left_in_parts() ? "" : report(run.results(), arguments.layout)) +
                  wrapped(process_line(run.progress(), std::chrono::steady_clock::now() - began,
-                                      settings.threads, run.results().study().points),
+                                      settings.threads, common_unit(run.results().study())),
                          arguments.layout.width));
   }
   if (run.left_in_parts()) {

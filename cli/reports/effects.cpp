@@ -50,9 +50,34 @@ bool is_on(const std::string& part, const Json& value) {
   return !value.empty();
 }
 
+/// The scene with the word "swept" in place of every value that the sweep replaces.
+Json with_swept(Json scene) {
+  const Json* const sweep = scene.find("sweep");
+  if (sweep == nullptr || !sweep->is_object()) return scene;
+  std::vector<std::string> pointers;
+  for (const auto& [key, value] : sweep->members()) {
+    if (key != "zip") {
+      pointers.push_back(key);
+      continue;
+    }
+    const std::vector<Json> groups = value.is_array() ? value.elements() : std::vector<Json>{value};
+    for (const Json& group : groups)
+      for (const auto& [pointer, values] : group.members()) pointers.push_back(pointer);
+  }
+  for (const std::string& pointer : pointers) {
+    if (!pointer.starts_with('/')) continue;
+    if (Json* const value = scene.find_pointer(pointer))
+      *value = "swept";
+    else if (pointer.find('/', 1) == std::string::npos)
+      scene[std::string_view(pointer).substr(1)] = "swept";
+  }
+  return scene;
+}
+
 }  // namespace
 
-std::string effects_text(const Json& resolved) {
+std::string effects_text(const Json& scene) {
+  const Json resolved = with_swept(scene);
   std::string on = "effects\n", off;
   for (const char* part :
        {"container", "start", "protocol", "engine", "relax", "observe", "snapshots", "motion",

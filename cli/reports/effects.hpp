@@ -6,7 +6,8 @@
 
 namespace jostle::inline cli {
 
-/// Which effects of a resolved scene are on, a line each, and the names of those that are off.
-std::string effects_text(const Json& resolved);
+/// Lists which effects of a resolved scene are on, a line each, and the names of those that are
+/// off. A value that the sweep replaces is "swept".
+std::string effects_text(const Json& scene);
 
 }  // namespace jostle::inline cli

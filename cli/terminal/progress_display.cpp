@@ -27,10 +27,11 @@ Clock::duration interval_of(ProgressStyle style) {
 std::string progress_line(const Progress& progress, const WorkAhead& ahead, double rate,
                           std::chrono::duration<double> elapsed) {
   const std::uint64_t taps = progress.taps_done;
-  std::string line = fmt::format(
-      "{}/{} done, {} running, {} failed; taps {}/{}; {} {}/s", progress.realizations_done.load(),
-      ahead.realizations, progress.realizations_running.load(), progress.realizations_failed.load(),
-      taps, ahead.taps, format_count(rate), ahead.unit);
+  std::string line = fmt::format("{}/{} done, {} running, {} failed; taps {}/{}",
+                                 progress.realizations_done.load(), ahead.realizations,
+                                 progress.realizations_running.load(),
+                                 progress.realizations_failed.load(), taps, ahead.taps);
+  if (!ahead.unit.empty()) line += fmt::format("; {} {}/s", format_count(rate), ahead.unit);
   if (taps > 0 && taps <= ahead.taps) {
     const double left = static_cast<double>(ahead.taps - taps) / static_cast<double>(taps);
     line += fmt::format("; {} left", format_duration(elapsed * left));

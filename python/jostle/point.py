@@ -19,7 +19,7 @@ from .text import attribute, text, texts
 if TYPE_CHECKING:
     from .results import Results
 
-STATUS = ("missing", "running", "done", "failed")
+STATUS = ("missing", "unfinished", "done", "failed")
 FOLDS = ("mean", "sigma", "error", "count")
 
 
@@ -96,7 +96,7 @@ class Point:
     @property
     def has_taps(self) -> bool:
         """Whether any of its realizations has taps and did not fail: else means have no numbers."""
-        return any(status in ("running", "done") for status in self.status)
+        return any(status in ("unfinished", "done") for status in self.status)
 
     def _group(self, folder: str) -> h5py.Group:
         group = self._file.get(f"{folder}/{self._name}")
@@ -184,7 +184,7 @@ class Point:
 
     @property
     def status(self) -> list[str]:
-        """[realization]: "missing" (of another shard, or not begun), "running", "done" or "failed"."""
+        """[realization]: "missing" (of another shard, or not begun), "unfinished", "done" or "failed"."""
         if not self.begun:
             return ["missing"] * self.n_realizations
         return [STATUS[code] for code in self._group("observables")["status"][()]]

@@ -56,20 +56,22 @@ FigurePanel scaled_ageing(const TableView& table) {
           })};
 }
 
-FigurePanel two_time_correlation(const TableView& table) {
-  return {.title = "Two-time correlation of " + words(table.path().back()),
-          .caption =
-              "C(t, t_W): correlation over realizations of the deviations at t_W and t_W+t, "
-              "over the variance at t_W; bars are standard errors, left out above 1.",
-          .source = table.source("c"),
-          .x = {"lag t (taps)", AxisKind::logarithmic},
-          .y = {"C(t, t_W)"},
-          .rules = {{.y = 0}},
-          .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
-            const double error = at(table.row("c_error", k), j);
-            return FigureRow{
-                .x = lag, .y = at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
-          })};
+FigurePanel covariance_ratio(const TableView& table) {
+  return {
+      .title = "Covariance ratio of " + words(table.path().back()),
+      .caption =
+          "C(t, t_W): covariance over realizations of the values at t_W and t_W+t, over the "
+          "variance at t_W alone: 1 at lag 0, above 1 where realizations spread apart; bars are "
+          "standard errors, left out above 1.",
+      .source = table.source("c"),
+      .x = {"lag t (taps)", AxisKind::logarithmic},
+      .y = {"C(t, t_W)"},
+      .rules = {{.y = 0}},
+      .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
+        const double error = at(table.row("c_error", k), j);
+        return FigureRow{
+            .x = lag, .y = at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
+      })};
 }
 
 /// The line of the slope, through the geometric mean of what it was fitted to.
@@ -161,7 +163,7 @@ void add_ageing(const DrawnFile& file, Figures& into) {
       if (table.point() != point) continue;
       for (FigurePanel& panel :
            std::vector<FigurePanel>{measured_ageing(table), fluctuations(table),
-                                    scaled_ageing(table), two_time_correlation(table)}) {
+                                    scaled_ageing(table), covariance_ratio(table)}) {
         add_panel(file, point, std::move(panel), into);
       }
     }

@@ -22,7 +22,7 @@ ALL_POINTS = {
     "coordination-of-the-kept-packings"}
 ONE_POINT = {
     "fits-of-bottom-fraction", "blocking-of-mean-height", "ageing-of-mean-height-as-measured",
-    "two-time-correlation-of-mean-height", "packing-fraction-by-height",
+    "covariance-ratio-of-mean-height", "packing-fraction-by-height",
     "packing-fraction-by-height-smoothed", "centres-by-height-n-z", "how-sharp-the-layers-are",
     "how-full-the-layers-are", "pair-correlation-g-r", "bond-order-by-height",
     "fcc-surroundings-by-height", "free-volumes", "local-packing-fractions", "faces-of-the-cells"}

@@ -117,7 +117,7 @@ class Run(Case):
         for realization, n in enumerate(rows):
             self.assertTrue(np.isfinite(series[:n, realization]).all())
             self.assertTrue(np.isnan(series[n:, realization]).all())
-        self.assertEqual(results.points[0].status, ["running"] * 2)
+        self.assertEqual(results.points[0].status, ["unfinished"] * 2)
 
     def test_an_interrupt_stores_all_taps_and_goes_on_from_here(self):
         script = textwrap.dedent(f"""

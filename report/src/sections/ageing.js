@@ -37,15 +37,15 @@ function fluctuations(chapter, table, observable) {
   });
 }
 
-function correlation(chapter, table, observable) {
+function covarianceRatio(chapter, table, observable) {
   const lines = series(table, "c", (k, lag, j) => ({x: lag, y: table.row("c", k)[j],
     error: table.row("c_error", k)[j] <= 1 ? table.row("c_error", k)[j] : NaN}));
   if (lines.length === 0) return null;
   return figure({
     file: chapter.run.file,
-    title: `Two-time correlation of ${words(observable)}`,
-    caption: "C(t, t_W): correlation over realizations of the deviations at t_W and t_W+t, over the variance at t_W; bars are standard " +
-      "errors, left out above 1.",
+    title: `Covariance ratio of ${words(observable)}`,
+    caption: "C(t, t_W): covariance over realizations of the values at t_W and t_W+t, over the variance at t_W alone: 1 at lag 0, above 1 " +
+      "where realizations spread apart; bars are standard errors, left out above 1.",
     source: table.source("c"),
     x: {label: "lag t (taps)", type: "log", short: "lag"}, y: {label: "C(t, t_W)", short: "C"}, rules: [{y: 0}], series: lines,
   });
@@ -86,7 +86,7 @@ export function ageingSection(chapter) {
     made.filter((table) => table.point === point).flatMap((table) => {
       const observable = table.path.at(-1);
       const figures = [measured(chapter, table, observable), fluctuations(chapter, table, observable), scaled(chapter, table, observable),
-                       correlation(chapter, table, observable)].filter(Boolean);
+                       covarianceRatio(chapter, table, observable)].filter(Boolean);
       return [gallery(figures), statement("Change with age", table.notes.ageing_verdict),
               statement("Of the fluctuations", table.notes.fluctuation_verdict),
               statement("Collapse on eq. 6", table.notes.collapse_verdict),

@@ -78,7 +78,7 @@ export function spreadSection(chapter) {
 const energies = /energy|ledger|overlap|contacts|seconds|rest|spin/;
 
 export function engineSection(chapter) {
-  const isGrains = chapter.run.unit !== "trials";
+  const isGrains = chapter.run.points.some((point) => point.unit !== "trials");
   const names = namesOf(chapter, (column) => column.kind === "engine" && !["count", "share"].includes(column.shown) &&
     column.mean.some((value) => value !== 0 && Number.isFinite(value)));
   if (names.length === 0) return null;

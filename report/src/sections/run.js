@@ -25,7 +25,20 @@ const parts = ["container", "start", "protocol", "engine", "relax", "observe", "
 
 const longest = 500;  // characters of a part in words
 
-function effects(scene) {
+/// The scene with the word "swept" in place of every value that the sweep replaces.
+function withSwept(scene) {
+  const marked = structuredClone(scene);
+  const {zip, ...axes} = scene.sweep ?? {};
+  for (const pointer of [axes, ...[zip ?? []].flat()].flatMap((axis) => Object.keys(axis))) {
+    const keys = pointer.split("/").slice(1).map((key) => key.replaceAll("~1", "/").replaceAll("~0", "~"));
+    const holder = keys.slice(0, -1).reduce((value, key) => value?.[key], marked);
+    if (holder !== null && typeof holder === "object") holder[keys.at(-1)] = "swept";
+  }
+  return marked;
+}
+
+function effects(stored) {
+  const scene = withSwept(stored);
   const on = parts.filter((part) => isOn(part, scene[part]));
   const off = parts.filter((part) => !on.includes(part) && !(["engine", "relax"].includes(part)));
   if (on.length === 0) return null;
@@ -60,7 +73,8 @@ export function runSection(chapter) {
     ["taps", range(run.points.map((point) => point.taps))],
     ["sweep points", count(run.n_points)],
     ["realizations", `${count(run.realizations_a_point)} a sweep point: ${states}`],
-    ["cost", `${count(tally.units)} ${run.unit}, ${duration(tally.seconds)} of one core`],
+    // Work of different engines does not add up.
+    ["cost", `${run.unit ? `${count(tally.units)} ${run.unit}, ` : ""}${duration(tally.seconds)} of one core`],
     ["seed", run.points[0]?.seed ?? ""],
     ["version", first.version ? `jostle ${first.version}, revision ${first.git_revision}` : ""],
     ["digest", run.digest ? element("code", {class: "digest"}, run.digest) : "not known: the run goes on"],
@@ -71,9 +85,9 @@ export function runSection(chapter) {
       [chapter.pointLabel(one.point), String(one.realization), one.seed, one.reason]), "Failed realizations"));
   const points = run.points.length < 2 ? null : element("details", {},
     element("summary", {}, "Sweep points"),
-    dataTable(["sweep point", "spheres", "taps", "done", "failed", `${run.unit}`, "core time"], run.points.map((point) =>
+    dataTable(["sweep point", "spheres", "taps", "done", "failed", run.unit || "work", "core time"], run.points.map((point) =>
       [chapter.pointLabel(point.number), count(point.spheres), count(point.taps), count(point.realizations.done),
-       count(point.realizations.failed), count(point.realizations.units), duration(point.realizations.seconds)]), "Sweep points"));
+       count(point.realizations.failed), `${count(point.realizations.units)}${run.unit ? "" : ` ${point.unit}`}`, duration(point.realizations.seconds)]), "Sweep points"));
   const processes = element("details", {}, element("summary", {}, "Processes that worked on the file"),
     dataTable(["started", "host", "processor", "threads", "version", "command"], run.processes.map((one) =>
       [one.started, one.host, `${one.cpu} (${one.instruction_set})`, one.threads, `${one.version} (${one.git_revision})`,

@@ -2,8 +2,8 @@
 import {byPoint, dataTable, element, figure, gallery, pointsOf, refusals, rowsOf, section, verdict, withError, words} from "../section.js";
 
 function overview(chapter, tables) {
-  return dataTable(["observable", "sweep point", "mean", "\u03c3 of single taps", "memory \u03c4 (taps)", "drift", "verdict"],
-    tables.map((table) => [words(table.notes.observable ?? table.path.at(-1)), chapter.pointLabel(table.point),
+  return dataTable(["observable", "sweep point", "taps", "mean", "\u03c3 of single taps", "memory \u03c4 (taps)", "drift", "verdict"],
+    tables.map((table) => [words(table.notes.observable ?? table.path.at(-1)), chapter.pointLabel(table.point), table.notes.taps,
       withError(table.value("value"), table.value("value_error")), withError(table.value("sigma"), table.value("sigma_error")),
       withError(table.value("autocorrelation_time"), table.value("autocorrelation_time_error")),
       withError(table.value("drift"), table.value("drift_error")), verdict(table.notes.verdict)]),

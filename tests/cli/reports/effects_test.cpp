@@ -38,6 +38,19 @@ TEST_CASE("Effects are named with their settings") {
                                 "analyse, structure\n"));
 }
 
+TEST_CASE("A value that the sweep replaces is swept, wherever it stands") {
+  const std::string text = effects_text(Json::parse(
+      R"({"container": {"sides": "periodic", "width": [8, 9]},
+          "protocol": [{"tap": {"dilate": 0.02}, "count": 5}, {"tap": {"lift": 1}, "count": 7}],
+          "relax": {"polar": {"max_step": 0.1}, "stop": {"sweeps": 5}},
+          "sweep": {"/protocol/0/tap/dilate": [0.1, 0.3], "/engine": ["monte_carlo"],
+                    "zip": [{"/container/width/1": [4, 5], "/protocol/1/tap": [{"lift": 2}]}]}})"));
+  CHECK_THAT(text, Contains("tap (dilate swept), count 5; tap swept, count 7\n") &&
+                       Contains("width 8; swept\n") && Contains("engine     swept\n") &&
+                       Contains("relax      polar (max_step 0.1)") && Contains("dilate 0.1; 0.3") &&
+                       !Contains("0.02") && !Contains("lift 1"));
+}
+
 TEST_CASE("A long list is named by its first values, its last and their number") {
   std::string values = "1";
   for (int i = 2; i <= 100; ++i) values += ", " + std::to_string(i);

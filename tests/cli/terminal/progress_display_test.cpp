@@ -14,6 +14,15 @@ TEST_CASE("A progress line counts, and estimates the time left from the taps don
         "3/8 done, 2 running, 0 failed; taps 100/400; 41.0 M trials/s; 1 min 0 s left");
 }
 
+TEST_CASE("The work of several engines is not added up") {
+  Progress progress;
+  progress.realizations_done = 3;
+  progress.taps_done = 100;
+  const WorkAhead ahead{.realizations = 8, .taps = 400, .unit = ""};
+  CHECK(progress_line(progress, ahead, 4.1e7, std::chrono::seconds(20)) ==
+        "3/8 done, 0 running, 0 failed; taps 100/400; 1 min 0 s left");
+}
+
 TEST_CASE("Nothing is said of the time left before the first tap") {
   Progress progress;
   const WorkAhead ahead{.realizations = 1, .taps = 10};
