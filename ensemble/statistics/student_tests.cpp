@@ -1,11 +1,10 @@
 #include "ensemble/statistics/student_tests.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
@@ -80,7 +79,7 @@ double p_value(double value, const ErrorOf& error) {
 }
 
 std::string p_text(double p) {
-  return fmt::format("p = {:.2g} at the {:g} % level", p, 100 * significance_level);
+  return finite_text("p = {:.2g} at the {:g} % level", p, 100 * significance_level);
 }
 
 std::vector<double> corrected_for_number(std::span<const double> p_values) {
