@@ -14,13 +14,12 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
   if (found.clusters.empty() || found.clusters.front() < 2)
     throw std::invalid_argument("fewer than two whole cells lie in the region");
   std::vector<double> n, per_cell, relative, chi, independent, clusters;
-  const double free = found.mean.front() - 1 - least_free_volume, of_one = found.variance.front();
   for (std::size_t k = 0; k < found.cells.size(); ++k) {
     n.push_back(found.cells[k]);
     independent.push_back(found.independent[k]);
     per_cell.push_back(found.variance[k] / n.back() / independent.back());
-    relative.push_back(per_cell.back() / of_one);
-    chi.push_back(per_cell.back() / free);
+    relative.push_back(per_cell.back() / found.of_members[k]);
+    chi.push_back(per_cell.back() / (found.mean[k] / n.back() - 1 - least_free_volume));
     clusters.push_back(static_cast<double>(found.clusters[k]));
   }
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -41,8 +40,8 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .places = "cells",
        .values = relative,
        .long_name =
-           "variance of the volume of a cluster over its cells, over that of single cells: 1 "
-           "where cells are independent",
+           "variance of the volume of a cluster over its cells and over shared_cells, over that of "
+           "the single cells it is of: 1 where cells are independent",
        .beyond = nan},
       {.name = "shared_cells",
        .places = "cells",

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "structure/measure_parts.hpp"
+#include "structure/order/accessible.hpp"
 #include "structure/order/gaps.hpp"
 #include "structure/order/structure_factor.hpp"
 
@@ -59,11 +60,14 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   const NeighbourTable near = neighbours_within(in.packing, 1 + reach);
   const auto least = static_cast<unsigned>(
       settings.least_contacts.value_or(least_contacts_of(in.packing.container)));
-  std::vector<double> gaps;
+  const ShellPart part(in.packing.container);
+  std::vector<double> gaps, weights;  // shells that sides cut count as if they were whole
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (!in.in_region(i)) continue;
     for (const Neighbour& neighbour : near.of(i)) {
-      gaps.push_back(std::sqrt(neighbour.distance_squared) - 1);
+      const double distance = std::sqrt(neighbour.distance_squared);
+      gaps.push_back(distance - 1);
+      weights.push_back(1 / part(in.packing.centres[i], distance));
     }
   }
   std::vector<double> all, rattlers, without, exponents;
@@ -73,7 +77,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
     rattlers.push_back(found.rattlers);
     without.push_back(found.without_rattlers);
     exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
-                            ? gap_exponent(gaps, gap, settings.window.high)
+                            ? gap_exponent(gaps, gap, settings.window.high, weights)
                             : std::nan(""));
   }
   const Contacts found = contacts_within(in, near, settings.tolerance, least);
@@ -101,7 +105,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .values = exponents,
        .long_name = "gamma of g(1 + h) as h^-gamma, from this gap to the window's end"},
       {.name = "gap_exponent",
-       .values = {gap_exponent(gaps, settings.window.low, settings.window.high)},
+       .values = {gap_exponent(gaps, settings.window.low, settings.window.high, weights)},
        .long_name = "gamma of g(1 + h) as h^-gamma, gaps in the window"},
       {.name = "contacts",
        .values = {found.all},

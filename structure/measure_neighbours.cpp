@@ -58,7 +58,7 @@ constexpr OrderColumn order_columns[] = {
     {"q4", "q4_at_height", "mean q4 of the 12 nearest neighbours", steinhardt},
     {"q6", "q6_at_height", "mean q6 of the 12 nearest neighbours", steinhardt},
     {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours", steinhardt}};
-constexpr std::size_t n_order_columns = std::size(order_columns);
+constexpr std::size_t n_order_columns = std::size(order_columns), first_bond_column = 3;
 
 }  // namespace
 
@@ -104,12 +104,49 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
   const double r_max = settings.r_max.value_or(widest_pairs(in.packing.container));
   const PairCorrelation pairs =
       pair_correlation(in.packing, {.r_max = r_max, .bin_width = settings.bin_width});
+  const auto centres = static_cast<double>(pairs.n_centres);
+  const std::vector<double> counts(pairs.counts.begin(), pairs.counts.end());
+  std::vector<double> ends;
+  for (const double r : pairs.r) ends.push_back(r + 0.5 * pairs.bin_width);
   Measurement out;
-  out.places = {{"r", pairs.r, "diameter", "distance of centres, middle of a bin"}};
-  out.quantities = {{.name = "g",
-                     .places = "r",
-                     .values = pairs.g(),
-                     .long_name = "pair correlation, floor and surface corrected"}};
+  out.places = {{"r", pairs.r, "diameter", "distance of centres, middle of a bin"},
+                {"r_end", std::move(ends), "diameter", "distance of centres, end of a bin"}};
+  out.quantities = {
+      {.name = "g",
+       .places = "r",
+       .values = pairs.g(),
+       .long_name = "pair correlation, corrected for floor, surface and sides; pairs of all "
+                    "packings over those that an ideal gas would have",
+       .source = "Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641",
+       .pooling = Pooling::weighted,
+       .weights = pairs.expected,
+       .beyond = nan},
+      {.name = "pairs",
+       .places = "r",
+       .values = counts,
+       .long_name = "other centres found around the central spheres, of all packings",
+       .pooling = Pooling::sum},
+      {.name = "neighbours",
+       .places = "r_end",
+       .values = pairs.running_neighbours(),
+       .long_name = "mean number of other centres up to this distance, where shells are whole",
+       .pooling = Pooling::weighted,
+       .weights = std::vector(pairs.r.size(), centres),
+       .beyond = nan},
+      {.name = "density",
+       .values = {pairs.density},
+       .units = "1/diameter^3",
+       .long_name = "centres in the accessible region that shells sample, that g is relative to",
+       .pooling = Pooling::weighted,
+       .weights = {centres}},
+      {.name = "centres",
+       .values = {centres},
+       .long_name = "central spheres of all packings",
+       .pooling = Pooling::sum},
+      {.name = "packings",
+       .values = {centres > 0 ? 1.0 : 0.0},
+       .long_name = "packings that have a central sphere",
+       .pooling = Pooling::sum}};
   return out;
 }
 
@@ -129,7 +166,9 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                                             bonds[i].q4,
                                             bonds[i].q6,
                                             bonds[i].w6};
+    const bool surrounded = nearest.of(i).size() == 12;  // or q4, q6, w6 compare with no other's
     for (std::size_t c = 0; c < n_order_columns; ++c) {
+      if (c >= first_bond_column && !surrounded) continue;
       by_height[c].add(bin(in.packing.centres[i].z), values[c]);
       if (in.in_region(i)) of_region[c].add(0, values[c]);
     }

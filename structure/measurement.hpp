@@ -22,6 +22,13 @@ struct Places {
   }
 };
 
+/// How the values of packings become one.
+enum class Pooling {
+  mean,      // all packings that have a value alike
+  weighted,  // by their `weights`: a ratio of sums, whose denominators the weights are
+  sum        // over packings
+};
+
 /// One value, or one at each of some places.
 struct MeasuredQuantity {
   std::string_view name{};       // snake_case
@@ -30,6 +37,8 @@ struct MeasuredQuantity {
   std::string_view units{"1"};
   std::string_view long_name{};
   std::string_view source{};  // paper and equation; empty where it is our own
+  Pooling pooling = Pooling::mean;
+  std::vector<double> weights{};  // as many as values where `pooling` is weighted; 0: no value
   /// Its value at places that only another packing has, as heights above this one's surface: 0
   /// where there is nothing to find, NaN where there is nothing to measure.
   double beyond = 0;
@@ -41,6 +50,7 @@ struct MeasuredQuantity {
   bool with_packings = false;
 
   double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
+  double weight_at(std::size_t place) const { return place < weights.size() ? weights[place] : 0; }
 };
 
 /// One part of the structure of one packing.

@@ -8,6 +8,7 @@
 
 #include "ensemble/analysis/structure_fits.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -33,6 +34,37 @@ std::map<std::string_view, Places> longest_places(const PartPackings& part) {
 struct MeansAndErrors {
   std::vector<double> means, errors;
 };
+
+/// Sum over packings of what they have, or the ratio of the sums of value times weight and of
+/// weight with its error by the jackknife over packings (Efron 1982, Jackknife, Bootstrap and Other
+/// Resampling Plans, sec. 3), [n_taps, n_places].
+MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
+                      std::size_t n_places) {
+  MeansAndErrors out;
+  for (const auto& realizations : part) {
+    for (std::size_t place = 0; place < n_places; ++place) {
+      double top = 0, bottom = 0;
+      std::vector<std::pair<double, double>> terms;
+      for (const Measurement* packing : realizations) {
+        const auto* quantity = packing ? packing->find(example.name) : nullptr;
+        if (quantity == nullptr) continue;
+        const bool weighted = example.pooling == Pooling::weighted;
+        const double weight = weighted ? quantity->weight_at(place) : 1;
+        if (!(weight > 0)) continue;
+        terms.emplace_back(quantity->at(place) * weight, weight);
+        top += terms.back().first;
+        bottom += terms.back().second;
+      }
+      std::vector<double> left_out;
+      for (const auto& [value, weight] : terms) {
+        left_out.push_back((top - value) / (bottom - weight));
+      }
+      out.means.push_back(example.pooling == Pooling::sum ? top : top / bottom);
+      out.errors.push_back(jackknife_error(left_out));
+    }
+  }
+  return out;
+}
 
 /// Over realizations, [n_taps, n_places]; of the changes since the first tap where `change`.
 MeansAndErrors averages(const PartPackings& part, std::string_view name, std::size_t n_places,
@@ -63,7 +95,9 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
                   std::optional<std::uint64_t> since, Table& table) {
   std::vector<std::string> axes = {"tap"};
   if (!quantity.places.empty()) axes.emplace_back(quantity.places);
-  MeansAndErrors found = averages(part, quantity.name, n_places, since.has_value());
+  MeansAndErrors found = quantity.pooling == Pooling::mean
+                             ? averages(part, quantity.name, n_places, since.has_value())
+                             : pooled(part, quantity, n_places);
   std::string name(quantity.name), long_name(quantity.long_name);
   const std::string units(quantity.units);
   if (since) {
@@ -72,7 +106,7 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
   }
   table.quantities.push_back(
       {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
-  if (!quantity.with_error) return;
+  if (!quantity.with_error || quantity.pooling == Pooling::sum) return;
   name.append("_error");
   table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
                               "standard error over realizations", ""});
@@ -96,6 +130,36 @@ void add_packings_with_value(const PartPackings& part, const MeasuredQuantity& q
   table.quantities.push_back({std::string(quantity.name) + "_packings", std::move(axes),
                               std::move(counts), "1", "packings that have it, of realizations",
                               ""});
+}
+
+/// Notes where a pair correlation scatters by more than a fifth from bin to bin.
+void note_few_pairs(const PartPackings& part, const std::vector<std::uint64_t>& taps,
+                    Table& table) {
+  constexpr double fewest = 25;  // pairs of a bin beyond contact: one in five by Poisson's law
+  std::string few;
+  for (std::size_t tap = 0; tap < part.size(); ++tap) {
+    double centres = 0, packings = 0, expected = 0, bins = 0;
+    for (const Measurement* packing : part[tap]) {
+      const MeasuredQuantity* g = packing != nullptr ? packing->find("g") : nullptr;
+      if (g == nullptr) continue;
+      centres += packing->find("centres")->at(0);
+      packings += packing->find("packings")->at(0);
+      const auto beyond = g->weights.size() / 2;
+      bins = static_cast<double>(g->weights.size() - beyond);
+      for (std::size_t k = beyond; k < g->weights.size(); ++k) expected += g->weights[k];
+    }
+    if (expected >= fewest * bins) continue;
+    const auto number = [](double value) { return std::to_string(std::llround(value)); };
+    if (!few.empty()) few.append("; ");
+    few.append("tap ").append(std::to_string(taps[tap])).append(": ");
+    few.append(number(centres)).append(" central spheres in ").append(number(packings));
+    few.append(" packings, about ").append(number(bins > 0 ? expected / bins : 0));
+    few.append(" pairs per bin");
+  }
+  if (few.empty()) return;
+  table.notes.emplace_back("few_pairs",
+                           few.append(": g scatters by more than 20 % from bin to bin; "
+                                      "take a wider bin_width or more packings"));
 }
 
 Quantity number_of_packings(const PartPackings& part) {
@@ -190,6 +254,7 @@ std::vector<Table> structure_tables(const std::string& prefix, const EnsembleStr
         }
       }
       add_fits((*example)[k].part, part, settings, table);
+      if ((*example)[k].part == "pair_correlation") note_few_pairs(part, structure.taps, table);
     }
     tables.push_back(std::move(table));
   }

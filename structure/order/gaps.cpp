@@ -94,18 +94,21 @@ Backbone backbone(const Packing& packing, const NeighbourTable& near, double tol
   return found;
 }
 
-double gap_exponent(std::span<const double> gaps, double low, double high) {
+double gap_exponent(std::span<const double> gaps, double low, double high,
+                    std::span<const double> weights) {
   constexpr std::size_t fewest = 10;
   const double range = std::log(high / low);
-  double sum = 0;
+  double sum = 0, all = 0;
   std::size_t n = 0;
-  for (const double gap : gaps) {
-    if (gap < low || gap > high) continue;
-    sum += std::log(gap / low) / range;
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    if (gaps[k] < low || gaps[k] > high) continue;
+    const double weight = weights.empty() ? 1 : weights[k];
+    sum += weight * std::log(gaps[k] / low) / range;
+    all += weight;
     ++n;
   }
   if (n < fewest) return std::numeric_limits<double>::quiet_NaN();
-  const double mean = sum / static_cast<double>(n) - 0.5;
+  const double mean = sum / all - 0.5;
   // Of ln h the density is as h^(1 - gamma) (1 + h)^2.
   constexpr double steepest = 1e4;
   double below = -steepest, above = steepest;

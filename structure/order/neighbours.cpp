@@ -1,7 +1,6 @@
 #include "structure/order/neighbours.hpp"
 
 #include <cassert>
-#include <limits>
 #include <numeric>
 
 #include "engine/bed/boundary.hpp"
@@ -16,11 +15,11 @@ bool nearer(const Neighbour& a, const Neighbour& b) {
   return a.sphere < b.sphere;
 }
 
-// Beyond it no further centre is found; infinite where there are images.
+// Beyond it no further centre is found, nor a nearest image.
 double farthest_reach(const Packing& packing) {
   const Boundary boundary(packing.container);
-  if (!(boundary.periods() == Vec3{})) return std::numeric_limits<double>::infinity();
-  return boundary.width_x + boundary.width_y + top_height(packing);
+  return boundary.width_x + boundary.width_y +
+         (boundary.periodic_z ? boundary.height : top_height(packing));
 }
 
 }  // namespace
@@ -86,6 +85,28 @@ NeighbourTable neighbours_within(const Packing& packing, double cut) {
   return table;
 }
 
+namespace {
+
+/// Leaves out images of centre i, and images beyond 1.5 of a centre that has a nearer one: they
+/// repeat what is there, and few spheres would be surrounded by the lattice of the periods.
+void keep_centres(std::uint32_t i, std::vector<Neighbour>& near) {
+  constexpr double adjacent_squared = first_nearest_cut * first_nearest_cut;
+  std::erase_if(near, [&](const Neighbour& one) { return one.sphere == i; });
+  std::ranges::sort(near, nearer);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const bool adjacent = near[k].distance_squared <= adjacent_squared;
+    const auto same = [&](const Neighbour& one) { return one.sphere == near[k].sphere; };
+    if (adjacent ||
+        std::none_of(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), same)) {
+      near[kept++] = near[k];
+    }
+  }
+  near.resize(kept);
+}
+
+}  // namespace
+
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
   const auto n = static_cast<std::uint32_t>(packing.centres.size());
   std::vector<Neighbour> found(static_cast<std::size_t>(n) * count);
@@ -93,6 +114,7 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
   std::iota(waiting.begin(), waiting.end(), 0U);
   const double farthest = farthest_reach(packing);
   std::vector<Neighbour> near;
+  // Periods are wider than 2: within the first cut centre i meets no image of its own.
   for (double cut = first_nearest_cut; !waiting.empty() && count > 0; cut *= 1.4) {
     const NeighbourFinder finder(packing, cut);
     std::vector<std::uint32_t> short_of;
@@ -101,6 +123,7 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
       finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
         near.push_back({j, way, distance_squared});
       });
+      if (cut > first_nearest_cut) keep_centres(i, near);
       if (near.size() < count && cut < farthest) {
         short_of.push_back(i);
         continue;

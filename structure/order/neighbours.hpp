@@ -99,8 +99,9 @@ struct NeighbourTable {
 /// Whatever lies at most `cut` away.
 NeighbourTable neighbours_within(const Packing& packing, double cut);
 
-/// The `count` nearest, fewer only where there are no more. Equally far ones stand in order of
-/// their index.
+/// The `count` nearest of the other spheres, fewer only where there are no more. A sphere's own
+/// images are none of them, and of another sphere the nearest image is one; farther images only
+/// within 1.5, where they touch or nearly do. Equally far ones stand in order of their index.
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
 
 }  // namespace jostle::inline structure

@@ -28,7 +28,10 @@ double ordered_height(const Packing& packing, std::span<const CrystalOrder> orde
   };
   // A bed of n spheres that touch is at most n high: what lies above has no contiguous slices.
   std::vector<Slice> slices(packing.centres.size() + 2);
+  const Region away_from_walls{-std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::infinity(), 2 * sphere_radius};
   for (std::size_t i = 0; i < orders.size(); ++i) {
+    if (!away_from_walls.contains(packing.container, packing.centres[i])) continue;
     const double place = (packing.centres[i].z - first) / thickness + 0.5;
     if (!(place >= 0 && place < static_cast<double>(slices.size()))) continue;
     Slice& slice = slices[static_cast<std::size_t>(place)];

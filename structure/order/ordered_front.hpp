@@ -20,7 +20,8 @@ double crystalline_fraction(const Packing& packing, std::span<const CrystalOrder
 /// it, one after another, at least `least_share` of the spheres are crystalline up to the front,
 /// which is the upper edge of the last; 0 where already k = 1 has fewer. The top layer of a
 /// crystal lacks neighbours, too: the front of a perfect one of n layers is 1/2 + (n - 3/2) times
-/// sqrt(2/3). Periodic sides: between walls the spheres at them are disordered as well.
+/// sqrt(2/3). Spheres less than 1 from a wall lack neighbours too and are left out; in a container
+/// so narrow that all are, the front is 0.
 double ordered_height(const Packing& packing, std::span<const CrystalOrder> orders,
                       double least_share = 0.5);
 

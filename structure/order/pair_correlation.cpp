@@ -7,28 +7,18 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
+#include "structure/order/accessible.hpp"
 #include "structure/order/neighbours.hpp"
 
 namespace jostle::inline structure {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-// Heights where centres may be.
-HeightWindow centre_heights(const Packing& packing) {
-  if (!Boundary(packing.container).floor) return {-infinite, infinite};
-  return {sphere_radius, top_height(packing)};
-}
-
-// Half of a ball, cut at a distance from its middle.
-double half_ball_volume(double radius, double cut) {
-  if (cut >= radius) return 2 * std::numbers::pi / 3 * radius * radius * radius;
-  cut = std::max(cut, 0.0);
-  return std::numbers::pi * cut * (radius * radius - cut * cut / 3);
-}
+constexpr double least_share = 0.25;  // of central spheres that can make a displacement
 
 double narrowest_period(const Boundary& boundary) {
   const Vec3 periods = boundary.periods();
@@ -39,45 +29,183 @@ double narrowest_period(const Boundary& boundary) {
   return narrowest;
 }
 
-void check(const Packing& packing, const Region& region, double r_max) {
-  const Boundary boundary(packing.container);
-  if (r_max > 0.5 * narrowest_period(boundary)) {
-    throw std::invalid_argument(
-        "g(r): r_max is more than half a period of the box, where images repeat: take a smaller "
-        "r_max");
-  }
-  if (boundary.has_walls() && region.from_sides < r_max + sphere_radius) {
-    throw std::invalid_argument(
-        "g(r): shells of r_max reach the walls: keep the region r_max + 1/2 away from them");
-  }
-  if (boundary.periodic_z && (region.low < 0 || region.high > boundary.height)) {
-    throw std::invalid_argument("g(r): the region must lie within the box: heights 0 to its own");
-  }
-  if (region.high <= region.low || region.volume(packing.container) <= 0) {
-    throw std::invalid_argument(
-        "g(r): the region of the central spheres is empty: take a smaller r_max or another region");
-  }
+struct Heights {
+  HeightWindow centres;     // of central spheres
+  HeightWindow accessible;  // of centres that shells reach
+};
+
+// The lowest and the highest place of centres.
+HeightWindow centre_heights(const Packing& packing) {
+  double lowest = sphere_radius;
+  for (const Vec3& r : packing.centres) lowest = std::min(lowest, r.z);
+  return {lowest, std::min(top_height(packing), 2 * mean_height(packing) - sphere_radius)};
 }
 
-double number_density(const Packing& packing, const Region& region) {
-  const HeightWindow heights = centre_heights(packing);
-  const Region slab{std::max(region.low, heights.low + sphere_radius),
-                    std::min(region.high, heights.high - sphere_radius), region.from_sides};
-  if (slab.high <= slab.low) {
-    throw std::invalid_argument("g(r): the region lies outside the heights of the bed");
+Heights heights_of(const Packing& packing, const PairCorrelationSettings& settings) {
+  const HeightWindow centres = settings.heights.value_or(bulk_heights(packing, settings.r_max));
+  if (!(centres.low <= centres.high)) {
+    throw std::invalid_argument(
+        "g(r): the heights of the central spheres are empty: " + std::to_string(centres.low) +
+        " to " + std::to_string(centres.high));
   }
   const Boundary boundary(packing.container);
-  const Region column{-infinite, infinite, region.from_sides};
-  double solid = 0;
-  for (const Vec3& r : packing.centres) {
-    if (!column.contains(packing.container, r)) continue;
-    solid += sphere_volume_in_slab(r.z, slab.low, slab.high);
-    if (boundary.periodic_z) {
-      solid += sphere_volume_in_slab(r.z - boundary.height, slab.low, slab.high) +
-               sphere_volume_in_slab(r.z + boundary.height, slab.low, slab.high);
+  if (boundary.periodic_z) {
+    if (centres.low < 0 || centres.high > boundary.height) {
+      throw std::invalid_argument("g(r): the heights must lie within the box: 0 to " +
+                                  std::to_string(boundary.height));
     }
+    return {centres, {0, boundary.height}};
   }
-  return solid / (sphere_volume * slab.volume(packing.container));
+  const HeightWindow all = centre_heights(packing);
+  const Heights heights{{std::max(centres.low, all.low), std::min(centres.high, all.high)},
+                        {std::max(all.low, centres.low - settings.r_max),
+                         std::min(all.high, centres.high + settings.r_max)}};
+  constexpr double least_depth = 1.1;
+  if (heights.accessible.high - heights.accessible.low < least_depth) {
+    throw std::invalid_argument("g(r): centres lie between the heights " + std::to_string(all.low) +
+                                " and " + std::to_string(all.high) +
+                                ": too few layers for shells and their density");
+  }
+  return heights;
+}
+
+void require_room(const Packing& packing, const AccessibleFootprint& footprint) {
+  constexpr double least_area = 0.01;
+  if (footprint.area() >= least_area) return;
+  throw std::invalid_argument(
+      "g(r): the container is " + std::to_string(width_x(packing.container)) + " x " +
+      std::to_string(width_y(packing.container)) + " wide: centres have no room beside each other");
+}
+
+/// Of the accessible footprint: the mean of slabs that grow from the central spheres' heights to
+/// half a diameter inside the accessible ones.
+double number_density(const Packing& packing, const Heights& heights,
+                      const AccessibleFootprint& footprint) {
+  const Boundary boundary(packing.container);
+  if (boundary.periodic_z) {
+    return static_cast<double>(packing.centres.size()) / (footprint.area() * boundary.height);
+  }
+  const HeightWindow outer{heights.accessible.low + sphere_radius,
+                           heights.accessible.high - sphere_radius};
+  const HeightWindow inner{std::clamp(heights.centres.low, outer.low, outer.high),
+                           std::clamp(heights.centres.high, outer.low, outer.high)};
+  constexpr int n_slabs = 32;
+  double solid = 0, depth = 0;
+  for (int k = 0; k < n_slabs; ++k) {
+    const double grown = (k + 0.5) / n_slabs;
+    const double low = inner.low + grown * (outer.low - inner.low);
+    const double high = inner.high + grown * (outer.high - inner.high);
+    depth += high - low;
+    for (const Vec3& r : packing.centres) solid += sphere_volume_in_slab(r.z, low, high);
+  }
+  return solid / (sphere_volume * footprint.area() * depth);
+}
+
+std::vector<Vec3> between(const std::vector<Vec3>& centres, HeightWindow heights) {
+  std::vector<Vec3> found;
+  std::ranges::copy_if(centres, std::back_inserter(found),
+                       [&](const Vec3& r) { return r.z >= heights.low && r.z <= heights.high; });
+  return found;
+}
+
+/// How much of the accessible region displacements can use.
+class Displacements {
+ public:
+  Displacements(const Packing& packing, const Heights& heights, double r_max)
+      : footprint_(packing),
+        sampled_(between(packing.centres, heights.accessible)),
+        shares_(footprint_, sampled_, r_max) {
+    const Boundary boundary(packing.container);
+    if (boundary.periodic_z) {
+      half_height_ = 0.5 * boundary.height * (1 + 1e-9);
+      return;
+    }
+    std::vector<double> z;
+    for (const Vec3& r : between(packing.centres, heights.centres)) z.push_back(r.z);
+    std::ranges::sort(z);
+    upright_ = shares_inside(z, heights.accessible.low, heights.accessible.high, r_max);
+  }
+
+  struct Use {
+    double share = 0;       // of central spheres that have that place in the region
+    double even_share = 0;  // that share, evenly spread spheres counted along
+    double crowding = 1;    // density of the partners there over the mean
+  };
+  Use operator()(Vec3 way) const {
+    if (half_height_ > 0 && std::abs(way.z) > half_height_) return {};
+    const double overlap = footprint_.overlap(way.x, way.y);
+    if (overlap <= 0) return {};
+    const double up = half_height_ > 0 ? 1 : upright_(way.z);
+    const double share = shares_(way.x, way.y, overlap);
+    return {up * share, up * evened(share, overlap),
+            evened(shares_(-way.x, -way.y, overlap), overlap) / overlap};
+  }
+
+  const AccessibleFootprint& footprint() const { return footprint_; }
+  std::size_t n_sampled() const { return sampled_.size(); }
+
+ private:
+  /// Shares of few spheres scatter: some that are evenly spread are counted along.
+  double evened(double share, double overlap) const {
+    constexpr double evenly_spread = 20;
+    const auto n = static_cast<double>(sampled_.size());
+    return (n * share + evenly_spread * overlap) / (n + evenly_spread);
+  }
+
+  AccessibleFootprint footprint_;
+  std::vector<Vec3> sampled_;
+  FootprintShares shares_;
+  StepTable upright_;
+  double half_height_ = 0;  // of a box that is periodic upwards
+};
+
+double shell_volume(double low, double high) {
+  return 4 * std::numbers::pi / 3 * (high * high * high - low * low * low);
+}
+
+/// The part of the shell from `low` to `high` that is sampled, in [0, 1].
+double sampled_part(const Displacements& displacements, const std::vector<Vec3>& directions,
+                    double low, double high) {
+  constexpr double thickest = 0.05;
+  const int n = static_cast<int>(std::ceil((high - low) / thickest - 1e-9));
+  double volume = 0;
+  for (int k = 0; k < n; ++k) {
+    const double inner = low + (high - low) * k / n, outer = low + (high - low) * (k + 1) / n;
+    double sum = 0;
+    for (const Vec3& direction : directions) {
+      const double share = displacements(0.5 * (inner + outer) * direction).even_share;
+      sum += std::min(1.0, share / least_share);
+    }
+    volume += shell_volume(inner, outer) * sum / static_cast<double>(directions.size());
+  }
+  return volume / shell_volume(low, high);
+}
+
+void count_pairs(const Packing& packing, const Heights& heights, const Displacements& displacements,
+                 PairCorrelation& pairs) {
+  constexpr double early = 1e-9, edge = 1e-9;
+  const std::size_t n_bins = pairs.r.size();
+  const NeighbourFinder finder(packing, static_cast<double>(n_bins) * pairs.bin_width);
+  const double bins_per_length = 1 / pairs.bin_width;
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    const double z = packing.centres[i].z;
+    if (z < heights.centres.low || z > heights.centres.high) continue;
+    ++pairs.n_centres;
+    finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+      const double height = packing.centres[j].z;
+      if (j == i || height < heights.accessible.low - edge ||
+          height > heights.accessible.high + edge) {
+        return;
+      }
+      const Displacements::Use use = displacements(way);
+      const auto bin =
+          static_cast<std::size_t>(std::sqrt(distance_squared) * bins_per_length + early);
+      if (use.share <= 0 || bin >= n_bins) return;
+      ++pairs.counts[bin];
+      pairs.neighbours[bin] += 1 / std::max(use.share, least_share);
+      pairs.found[bin] += 1 / (std::max(use.even_share, least_share) * use.crowding);
+    });
+  }
 }
 
 // The constant of the cubic through g at x = (r - 1) / reach, least squares with weights.
@@ -111,28 +239,30 @@ class CubicFit {
 
 double widest_pairs(const Container& container) {
   constexpr double usual = 4, tenth = 0.1;
-  const Boundary boundary(container);
-  const double across = std::min(boundary.width_x, boundary.width_y);
-  const double widest =
-      boundary.has_walls() ? across / 2 - sphere_radius - 0.5 : narrowest_period(boundary) / 2;
-  return std::clamp(std::floor(widest / tenth + 1e-9) * tenth, 1.0, usual);
+  const double widest = narrowest_period(Boundary(container)) / 2;
+  return std::min(std::floor(widest / tenth + 1e-9) * tenth, usual);
 }
 
-Region bulk_region(const Packing& packing, double r_max) {
+HeightWindow bulk_heights(const Packing& packing, double r_max) {
   if (const Boundary boundary(packing.container); boundary.periodic_z) {
-    return {0, boundary.height, 0};
+    return {0, boundary.height};
   }
   const double floor = sphere_radius, surface = 2 * mean_height(packing);
-  const double depth = surface - floor;
-  return {floor + std::min(r_max, depth / 4), surface - std::min(r_max, depth / 4),
-          r_max + sphere_radius};
+  const double cut = std::min(r_max, (surface - floor) / 4);
+  const HeightWindow bulk{floor + cut, surface - cut};
+  return between(packing.centres, bulk).empty() ? HeightWindow{floor, surface} : bulk;
 }
 
 std::vector<double> PairCorrelation::g() const {
   std::vector<double> values(counts.size());
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    values[k] = static_cast<double>(counts[k]) / expected[k];
-  }
+  for (std::size_t k = 0; k < counts.size(); ++k) values[k] = found[k] / expected[k];
+  return values;
+}
+
+std::vector<double> PairCorrelation::running_neighbours() const {
+  std::vector<double> values(counts.size());
+  double sum = 0;
+  for (std::size_t k = 0; k < counts.size(); ++k) values[k] = sum += neighbours[k] / shells[k];
   return values;
 }
 
@@ -140,7 +270,10 @@ PairCorrelation& PairCorrelation::operator+=(const PairCorrelation& other) {
   assert(other.counts.size() == counts.size() && other.bin_width == bin_width);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     counts[k] += other.counts[k];
+    neighbours[k] += other.neighbours[k];
+    found[k] += other.found[k];
     expected[k] += other.expected[k];
+    shells[k] += other.shells[k];
   }
   const auto own = static_cast<double>(n_centres), others = static_cast<double>(other.n_centres);
   if (other.n_centres > 0) density = (own * density + others * other.density) / (own + others);
@@ -151,40 +284,31 @@ PairCorrelation& PairCorrelation::operator+=(const PairCorrelation& other) {
 PairCorrelation pair_correlation(const Packing& packing, const PairCorrelationSettings& settings) {
   assert(settings.bin_width > 0 && settings.r_max >= settings.bin_width);
   assert(!packing.centres.empty());
-  const Region region = settings.region.value_or(bulk_region(packing, settings.r_max));
-  check(packing, region, settings.r_max);
-  constexpr double early = 1e-9;
-  const auto n_bins = static_cast<std::size_t>(settings.r_max / settings.bin_width + early);
+  const Heights heights = heights_of(packing, settings);
+  const auto n_bins = static_cast<std::size_t>(settings.r_max / settings.bin_width + 1e-9);
+  const Displacements displacements(packing, heights, settings.r_max + settings.bin_width);
+  require_room(packing, displacements.footprint());
   PairCorrelation pairs;
   pairs.bin_width = settings.bin_width;
-  pairs.counts.assign(n_bins + 1, 0);  // and one beyond
-  pairs.expected.assign(n_bins, 0);
-  pairs.density = number_density(packing, region);
+  pairs.density = number_density(packing, heights, displacements.footprint());
+  pairs.counts.assign(n_bins, 0);
+  pairs.neighbours.assign(n_bins, 0);
+  pairs.found.assign(n_bins, 0);
   for (std::size_t k = 0; k < n_bins; ++k) {
     pairs.r.push_back((static_cast<double>(k) + 0.5) * settings.bin_width);
   }
-
-  const HeightWindow heights = centre_heights(packing);
-  const NeighbourFinder finder(packing, static_cast<double>(n_bins) * settings.bin_width);
-  const double bins_per_length = 1 / settings.bin_width;
-  for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    const Vec3 centre = packing.centres[i];
-    if (!region.contains(packing.container, centre)) continue;
-    ++pairs.n_centres;
-    finder.around(i, [&](std::uint32_t, Vec3, double distance_squared) {
-      const double place = std::sqrt(distance_squared) * bins_per_length + early;
-      ++pairs.counts[std::min(static_cast<std::size_t>(place), n_bins)];
-    });
-    double inner = 0;
-    for (std::size_t k = 0; k < n_bins; ++k) {
-      const double radius = static_cast<double>(k + 1) * settings.bin_width;
-      const double ball = half_ball_volume(radius, centre.z - heights.low) +
-                          half_ball_volume(radius, heights.high - centre.z);
-      pairs.expected[k] += pairs.density * (ball - inner);
-      inner = ball;
-    }
+  count_pairs(packing, heights, displacements, pairs);
+  // An ideal gas of as many spheres: of n there are n - 1 others.
+  const auto n = static_cast<double>(displacements.n_sampled());
+  const double others = n > 0 ? pairs.density * (n - 1) / n : 0;
+  const std::vector<Vec3> all_directions = even_directions(2000);
+  for (std::size_t k = 0; k < n_bins; ++k) {
+    const double low = static_cast<double>(k) * settings.bin_width, high = low + settings.bin_width;
+    const double part =
+        pairs.n_centres > 0 ? sampled_part(displacements, all_directions, low, high) : 0;
+    pairs.shells.push_back(static_cast<double>(pairs.n_centres) * part);
+    pairs.expected.push_back(pairs.shells.back() * others * shell_volume(low, high));
   }
-  pairs.counts.pop_back();
   return pairs;
 }
 
@@ -194,7 +318,7 @@ double contact_value(const PairCorrelation& pairs, double reach) {
   for (std::size_t k = 0; k < pairs.r.size(); ++k) {
     const double half = 0.5 * pairs.bin_width, slack = 1e-6 * pairs.bin_width;
     if (pairs.r[k] - half < 1 - slack || pairs.r[k] + half > 1 + reach + slack) continue;
-    const double g = static_cast<double>(pairs.counts[k]) / pairs.expected[k];
+    const double g = pairs.found[k] / pairs.expected[k];
     fit.add((pairs.r[k] - 1) / reach, g, pairs.expected[k]);
     ++n_bins;
   }

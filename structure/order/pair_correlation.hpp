@@ -5,26 +5,25 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
-#include "structure/region.hpp"
+#include "engine/bed/window.hpp"
 
-// g(r) of the bulk of a packing, corrected for floor and surface. Lengths in diameters.
+// g(r) of a packing in any container, corrected for floor, surface and sides. Lengths in diameters.
 namespace jostle::inline structure {
 
 struct PairCorrelationSettings {
   double r_max = 4;
   double bin_width = 0.02;
-  std::optional<Region> region = std::nullopt;  // of the central spheres; by default bulk_region
+  std::optional<HeightWindow> heights = std::nullopt;  // of the central spheres; by default
+                                                       // bulk_heights
 };
 
-/// The r_max that suits a container: 4, but at most half a period of its box, and between walls or
-/// in a tube so that central spheres have a column of 1 diameter; at least 1, which is too wide for
-/// the narrowest of them. A multiple of 0.1.
+/// The r_max that suits a container: 4, but at most half a period of its box. A multiple of 0.1.
 double widest_pairs(const Container& container);
 
-/// Where shells of r_max around a centre are whole, as far as the packing goes: r_max above the
-/// lowest centres that the floor allows and below 2<Z>, but at least the middle half of the heights
-/// up to there; r_max + 1/2 away from walls. All of a fully periodic box.
-Region bulk_region(const Packing& packing, double r_max);
+/// Heights of central spheres: r_max above the lowest centres that the floor allows and below 2<Z>,
+/// but at least the middle half of the heights up to there, and all of these where no centre lies
+/// in that half. All of a fully periodic box.
+HeightWindow bulk_heights(const Packing& packing, double r_max);
 
 /// Pairs of centres against their distance, in bins [k width, (k + 1) width). A bin begins 1e-9 of
 /// its width early, so that touching spheres are in the bin that begins at 1, whatever rounding
@@ -32,28 +31,45 @@ Region bulk_region(const Packing& packing, double r_max);
 struct PairCorrelation {
   std::vector<double> r;              // middles of the bins, [n_bins]
   std::vector<std::uint64_t> counts;  // neighbours found around all central spheres, [n_bins]
+  std::vector<double> neighbours;     // as many as whole shells around them would have, [n_bins]
+  std::vector<double> found;          // these, as if centres crowded nowhere at the sides, [n_bins]
   std::vector<double> expected;       // what an ideal gas would have, [n_bins]
+  std::vector<double> shells;  // central spheres, by the part of their shells sampled, [n_bins]
   double bin_width = 0;
-  double density = 0;           // centres a cubic diameter
+  double density = 0;           // centres a cubic diameter, of the heights that the shells sample
   std::uint64_t n_centres = 0;  // central spheres
 
-  /// g of each bin, counts / expected: 1 for an ideal gas, but for 1 / n_spheres where the box is
-  /// fully periodic (the sphere itself is none of its neighbours). NaN where nothing is expected.
+  /// g of each bin, found / expected: 1 for an ideal gas. NaN where nothing is expected.
   std::vector<double> g() const;
+
+  /// Mean number of other centres up to the end of each bin around a sphere whose shells are whole.
+  /// NaN from where no shell is sampled.
+  std::vector<double> running_neighbours() const;
 
   /// Pools the counts of another packing, measured in the same bins; density and n_centres become
   /// the mean, weighted by central spheres, and the sum.
   PairCorrelation& operator+=(const PairCorrelation& other);
 };
 
-/// Central spheres in the region; their neighbours anywhere. The ideal gas has the density of the
-/// region and fills the heights where centres may be: from 1/2 to the highest centre, so a shell
-/// cut by the floor or the top counts only with the part between them, in closed form. (A bed's
-/// surface is uneven: keep r_max below it if you can.) The density is the volume of the spheres in
-/// the region over a sphere's: it does not jump where the region cuts through a layer of centres.
-/// It is taken at least 1/2 inside the heights where centres may be.
-/// Throws std::invalid_argument if shells reach a wall or beyond half a period, or if the region is
-/// empty.
+/// Counts pairs of a central sphere, between `heights`, and another sphere in the accessible
+/// region: the accessible footprint (accessible.hpp) between the lowest centres and the surface,
+/// 2<Z> - 1/2 or the highest centre below it, and within r_max of `heights`.
+///
+/// Edges: n(d) of the n central spheres have the place at a displacement d inside that region, and
+/// a pair at d counts n / n(d) times (translation correction: Ohser 1983, Math. Operationsforsch.
+/// Statist. Ser. Statist. 14, 63). Lattices have neighbours in some directions alone, and their
+/// numbers come out exactly. A displacement that fewer than a quarter of the central spheres can
+/// make counts as if a quarter could, in pairs and in what is expected.
+///
+/// Density: that of the accessible footprint between the heights sampled, weighted by 1 at heights
+/// of central spheres and falling linearly to 0 at the last height sampled. Volumes of spheres are
+/// counted, not centres: the density does not jump where a height cuts a layer. Where centres crowd
+/// at the sides, the partners of a pair at d are denser than the mean by n(-d) / n over what evenly
+/// spread points have (adapted intensity: Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641).
+///
+/// Along periodic directions a pair is taken to its nearest image, and shells end at half a period.
+/// The sphere's own images are no neighbours. Throws std::invalid_argument where centres have no
+/// room beside each other, or fewer than about two layers of it.
 PairCorrelation pair_correlation(const Packing& packing,
                                  const PairCorrelationSettings& settings = {});
 

@@ -52,14 +52,36 @@ double independent_variance(const std::vector<std::uint32_t>& members, double n)
                    : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Variance of single cells, each counted as often as clusters have it: what is to be expected of
+/// cells drawn as they are.
+double variance_of_members(const std::vector<std::uint32_t>& members, const VoronoiCells& cells) {
+  double number = 0, squared_numbers = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const double c = members[i];
+    number += c;
+    squared_numbers += c * c;
+    sum += c * cells.volumes[i] / sphere_volume;
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const double apart = cells.volumes[i] / sphere_volume - sum / number;
+    squares += members[i] * apart * apart;
+  }
+  const double independent = number - squared_numbers / number;
+  return independent > 0 ? squares / independent : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells,
                                std::uint32_t largest,
                                const std::function<bool(std::uint32_t)>& around) {
   largest = std::min(largest, static_cast<std::uint32_t>(cells.size() / 2));
-  ClusterVolumes found{
-      .cells = sizes(largest), .mean = {}, .variance = {}, .independent = {}, .clusters = {}};
+  ClusterVolumes found{.cells = sizes(largest),
+                       .mean = {},
+                       .variance = {},
+                       .of_members = {},
+                       .independent = {},
+                       .clusters = {}};
   const std::size_t n_sizes = found.cells.size();
   std::vector<std::vector<double>> volumes(n_sizes);
   std::vector clusters_of(n_sizes, std::vector<std::uint32_t>(cells.size(), 0));
@@ -95,6 +117,7 @@ ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     found.mean.push_back(n > 0 ? sum / n : none);
     found.variance.push_back(n > 1 ? squares / (n - 1) : none);
+    found.of_members.push_back(variance_of_members(clusters_of[size], cells));
     found.independent.push_back(independent_variance(clusters_of[size], found.cells[size]));
     found.clusters.push_back(of_size.size());
   }

@@ -13,6 +13,10 @@ namespace jostle::inline structure {
 struct ClusterVolumes {
   std::vector<std::uint32_t> cells;    // n, ascending: 1, 2, 3, 4, 6, 8, 12, 16, 24, ...
   std::vector<double> mean, variance;  // [n_sizes], sphere volumes, and squared
+  /// Variance of the single cells that these clusters are of, each counted as often as it is in
+  /// one: clusters of many cells keep farther from the boundaries. [n_sizes], sphere volumes
+  /// squared.
+  std::vector<double> of_members;
   /// What `variance` would be in the mean if volumes of cells were independent of each other, or
   /// dealt out anew among the cells, over n times the variance of one: 1 but for cells that
   /// clusters share. [n_sizes], NaN where all clusters are one and the same.

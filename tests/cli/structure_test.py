@@ -1,6 +1,7 @@
 """jostle structure: what kept packings look like inside, in results files and in extended XYZ."""
 
 import json
+import pathlib
 import unittest
 
 import h5py
@@ -92,22 +93,44 @@ class Structure(Case):
                              together["coordination"]["quantities"][name]["values"], name)
 
     def test_a_part_that_is_not_there_says_so_and_the_rest_is_measured(self):
-        self.write(TINY)
+        self.write(changed(TINY, spheres=4))
         self.run_scene()
-        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store",
-                            "--settings", '{"pair_correlation": {"r_max": 4}}')
-        self.assertIn("half a period", found["point_0000/pair_correlation"]["notes"]["refused"])
+        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store")
+        self.assertIn("too few layers", found["point_0000/pair_correlation"]["notes"]["refused"])
         self.assertNotIn("refused", found["point_0000/sides"]["notes"])
         with h5py.File(self.folder / "tiny.h5") as file:
             self.assertNotIn("structure", file)
 
-    def test_pairs_reach_as_far_as_the_container_allows(self):
-        for sides, reach in (("periodic", 2), ("walls", 1)):
+    def test_pairs_reach_four_diameters_or_half_a_period(self):
+        for sides, reach in (("periodic", 2), ("walls", 4)):
             self.write(changed(TINY, container={"sides": sides, "width": 4}, spheres=64))
             self.run_scene("--force")
             found = self.tables("tiny.h5", "--part", "pair_correlation", "--no-store")
             r = found["point_0000/pair_correlation"]["axes"]["r"]["values"]
             self.assertAlmostEqual(r[-1], reach - 0.01)
+
+    def test_lattices_have_their_neighbours_and_few_pairs_are_said(self):
+        data = pathlib.Path(__file__).parents[1] / "data"
+        for name in ("gr_lattice_walls.xyz", "gr_lattice_periodic.xyz"):
+            found = self.tables(str(data / name), "--part", "pair_correlation")["pair_correlation"]
+            quantities = found["quantities"]
+            r, g = np.array(found["axes"]["r"]["values"]), np.array(quantities["g"]["values"])
+            shell = 4 / 3 * np.pi * ((r + 0.01) ** 3 - (r - 0.01) ** 3) * g / 1.2 ** 3
+            self.assertAlmostEqual(shell[(r > 1.15) & (r < 1.25)].sum(), 6, delta=0.12)
+            self.assertAlmostEqual(shell[(r > 1.65) & (r < 1.75)].sum(), 12, delta=0.24)
+            ends = np.array(found["axes"]["r_end"]["values"])
+            neighbours = np.array(quantities["neighbours"]["values"])
+            self.assertAlmostEqual(neighbours[np.argmin(abs(ends - 1.22))], 6, delta=1e-9)
+            self.assertEqual(quantities["packings"]["values"], [1])
+            self.assertGreater(quantities["centres"]["values"][0], 100)
+        self.write_frame("gas.xyz", [[1 + 2 * (k % 3), 1 + 2 * (k // 3 % 2), 0.6 + 1.3 * k] for k in range(12)])
+        found = self.tables("gas.xyz", "--part", "pair_correlation")["pair_correlation"]
+        self.assertIn("central spheres in 1 packings", found["notes"]["few_pairs"])
+
+    def write_frame(self, name, centres):
+        rows = "".join(f"X {x} {y} {z}\n" for x, y, z in centres)
+        (self.folder / name).write_text(
+            f'{len(centres)}\nLattice="7 0 0 0 7 0 0 0 20" Properties=species:S:1:pos:R:3 pbc="F F F"\n{rows}')
 
     def test_columns_that_are_not_printed_are_named(self):
         self.write(TINY)

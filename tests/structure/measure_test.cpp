@@ -48,6 +48,11 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
+/// Spheres far apart in a box without gravity, and one pair.
+Packing lone_pair() {
+  return {FullyPeriodicBox{4, 5, 6}, {{1, 1, 1}, {2.1, 1, 1}}};
+}
+
 /// Touching spheres on an fcc lattice that fills a fully periodic box of 4 cubic cells a side.
 Packing fcc() {
   const double a = std::numbers::sqrt2;
@@ -254,4 +259,15 @@ TEST_CASE("In a cylinder cells at the curved wall are left out and their excess 
   CHECK(sides.find("phi_radial") != nullptr);
   CHECK(sides.find("phi_x") == nullptr);
   CHECK(sides.find("lateral")->with_change);
+}
+
+TEST_CASE("Spheres without twelve others have no bond order, whatever images there are") {
+  StructureSettings settings;
+  settings.order.emplace();
+  const Measurement few = part(measure(lone_pair(), settings, points), "order");
+  CHECK(single(few, "disordered") == 1);
+  for (const char* name : {"q4", "q6", "w6"}) CHECK(std::isnan(single(few, name)));
+  // A crystal in a box narrower than four spheres still has its own.
+  const Measurement crystal = part(measure(fcc(), settings, points), "order");
+  CHECK(single(crystal, "q6") == Approx(0.57452426).epsilon(1e-7));
 }

@@ -81,6 +81,42 @@ TEST_CASE("A mean says of how many packings it is, where some may have no value"
   for (const Quantity& one : table.quantities) CHECK(one.name != "rattlers_packings");
 }
 
+TEST_CASE("Pairs of packings are pooled: a ratio of sums, with the jackknife over packings") {
+  // Found and expected pairs of a bin; one packing expects none.
+  const std::vector<std::pair<double, double>> pairs = {{3, 2}, {0, 0}, {40, 50}, {11, 8}};
+  EnsembleStructure structure{.taps = {0}, .packings = {{}}};
+  for (const auto& [found, expected] : pairs) {
+    Measurement one{.part = "pair_correlation"};
+    one.places = {{"r", std::vector<double>{0.5}, "diameter", "distance"}};
+    one.quantities = {
+        {.name = "g",
+         .places = "r",
+         .values = {found / expected},
+         .pooling = Pooling::weighted,
+         .weights = {expected},
+         .beyond = nan},
+        {.name = "centres", .values = {expected}, .pooling = Pooling::sum},
+        {.name = "packings", .values = {expected > 0 ? 1.0 : 0.0}, .pooling = Pooling::sum}};
+    structure.packings[0].push_back({one});
+  }
+  const Table table = structure_tables("", structure, {}).at(0);
+  CHECK(numbers(table, "g")[0] == Approx(54.0 / 60));
+  CHECK(numbers(table, "centres")[0] == 60);
+  CHECK(numbers(table, "packings")[0] == 3);
+  const double without[] = {51.0 / 58, 14.0 / 10, 43.0 / 52};
+  const double mean = (without[0] + without[1] + without[2]) / 3;
+  double squares = 0;
+  for (const double g : without) squares += (g - mean) * (g - mean);
+  CHECK(numbers(table, "g_error")[0] == Approx(std::sqrt(squares * 2 / 3)));
+  for (const Quantity& one : table.quantities) CHECK(one.name != "centres_error");
+  // 60 pairs are enough for a bin.
+  for (const auto& [name, text] : table.notes) CHECK(name != "few_pairs");
+  structure.packings[0].resize(2);
+  const Table few = structure_tables("", structure, {}).at(0);
+  REQUIRE(few.notes.size() == 1);
+  CHECK(few.notes[0].second.find("tap 0: 2 central spheres in 1 packings, about 2 pairs") == 0);
+}
+
 TEST_CASE("Averages over packings of unequal height, with the errors of realizations") {
   EnsembleStructure structure;
   structure.taps = {0, 10};

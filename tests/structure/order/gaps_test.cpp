@@ -6,6 +6,8 @@
 
 #include "close_packings.hpp"
 #include "structure/measure.hpp"
+#include "structure/order/accessible.hpp"
+#include "tests/structure/random_points.hpp"
 #include "tests/structure/reference_deposit.hpp"
 
 using namespace jostle;
@@ -179,4 +181,37 @@ TEST_CASE("The part gaps counts contacts against the gap, and the region alone")
     if (std::abs(gaps[k] - 0.1) < 1e-9)
       CHECK(parts[0].find("z_of_gap")->values[k] == Approx(neighbours / spheres));
   }
+}
+
+TEST_CASE("Gaps of an ideal gas have no exponent, also where sides cut the shells",
+          "[statistics]") {
+  // Shells between gaps of 0.01 and 0.5 around the centres nearest to floor and sides.
+  const auto container =
+      GENERATE(values<Container>({WalledBox{5, 5}, Cylinder{5}, WalledBox{9, 4}}));
+  constexpr int n_gases = 30;
+  const ShellPart part(container);
+  std::vector<double> exponents, unweighted;
+  for (std::uint64_t seed = 0; seed < n_gases; ++seed) {
+    const Packing gas = random_points(container, 12, 500, 900 + seed);
+    const NeighbourTable near = neighbours_within(gas, 1.5);
+    std::vector<double> gaps, weights;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      if (gas.centres[i].z > 9) continue;
+      for (const Neighbour& one : near.of(i)) {
+        const double distance = std::sqrt(one.distance_squared);
+        gaps.push_back(distance - 1);
+        weights.push_back(1 / part(gas.centres[i], distance));
+      }
+    }
+    exponents.push_back(gap_exponent(gaps, 0.01, 0.5, weights));
+    unweighted.push_back(gap_exponent(gaps, 0.01, 0.5));
+  }
+  double mean = 0, squares = 0, without = 0;
+  for (const double x : exponents) mean += x / n_gases;
+  for (const double x : exponents) squares += (x - mean) * (x - mean);
+  for (const double x : unweighted) without += x / n_gases;
+  const double error = std::sqrt(squares / (n_gases * (n_gases - 1.0)));
+  CAPTURE(mean, error, without);
+  CHECK(without > 5 * error);  // shells that grow out of the container
+  CHECK(std::abs(mean) < 3 * error);
 }

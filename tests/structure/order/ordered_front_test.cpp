@@ -60,6 +60,25 @@ TEST_CASE("The front of a perfect crystal is below its top layer") {
   CHECK(ordered_height(nothing, {}) == 0);
 }
 
+TEST_CASE("Between walls the spheres at them are left out: the crystal beside them has its front") {
+  // A crystal of 12 x 12 d that ends at walls: a third of its spheres lack neighbours.
+  Packing crystal = stacked_layers("ABABABAB");
+  double width = 0;
+  for (Vec3& r : crystal.centres) {
+    r.x += 0.5;
+    r.y += 0.5;
+    width = std::max({width, r.x + 0.5, r.y + 0.5});
+  }
+  for (const double part : {1.0, 0.55}) {
+    Packing walled{WalledBox{part * width, part * width}, {}};
+    for (const Vec3& r : crystal.centres) {
+      if (r.x <= part * width - 0.5 && r.y <= part * width - 0.5) walled.centres.push_back(r);
+    }
+    CAPTURE(width, walled.centres.size());
+    CHECK(ordered_height(walled, crystal_order(walled)) == Approx(0.5 + 6.5 * rise));
+  }
+}
+
 TEST_CASE("The front is where slices counted one by one have it") {
   for (const double amplitude : {0.0, 0.08, 0.12}) {
     const Packing packing = shaken(crystal_under_disorder(), amplitude);

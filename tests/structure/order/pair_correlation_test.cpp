@@ -2,10 +2,14 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <optional>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
+#include "structure/order/accessible.hpp"
 #include "tests/structure/order/close_packings.hpp"
 #include "tests/structure/random_points.hpp"
 #include "tests/structure/reference_deposit.hpp"
@@ -36,39 +40,221 @@ struct Gas {
   std::string name;
   Container container;
   double height;
-  std::optional<Region> region;
+  std::optional<HeightWindow> heights;
   double r_max;
 };
 
+/// Simple cubic lattice: along x and y `n` sites from `first` on, as far as they are clear of
+/// sides.
+Packing cubic_lattice(const Container& container, double spacing, double first, int n,
+                      int n_layers) {
+  Packing lattice{container, {}};
+  const Boundary boundary(container);
+  for (int k = 0; k < n_layers; ++k) {
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const Vec3 r{first + i * spacing, first + j * spacing, 0.5 + k * spacing};
+        if (clear_of_boundaries(boundary, r)) lattice.centres.push_back(r);
+      }
+    }
+  }
+  return lattice;
+}
+
+double neighbours_up_to(const PairCorrelation& pairs, double r) {
+  return pairs.running_neighbours().at(static_cast<std::size_t>(std::lround(r / pairs.bin_width)) -
+                                       1);
+}
+
+/// The number of neighbours between two distances that g stands for at a density.
+double neighbours_of_g(const PairCorrelation& pairs, double density, double low, double high) {
+  double sum = 0;
+  const std::vector<double> g = pairs.g();
+  for (std::size_t k = 0; k < g.size(); ++k) {
+    if (pairs.r[k] > low && pairs.r[k] < high) sum += g[k] * density * whole_shell(pairs, k);
+  }
+  return sum;
+}
+
 }  // namespace
 
-TEST_CASE("g(r) of an ideal gas is 1, also where floor and top cut the shells", "[statistics]") {
+TEST_CASE("g(r) of an ideal gas is 1 in every container, also where shells are cut",
+          "[statistics]") {
   const auto gas = GENERATE(values<Gas>({
       {"whole box", FullyPeriodicBox{9, 10, 8}, 8, std::nullopt, 4},
-      {"part of a box", FullyPeriodicBox{9, 10, 8}, 8, Region{1, 4.5}, 4},
+      {"part of a box", FullyPeriodicBox{9, 10, 8}, 8, HeightWindow{1, 4.5}, 4},
+      {"beyond half a period", FullyPeriodicBox{5, 6, 7}, 7, std::nullopt, 3.5},
       {"bulk of a bed", PeriodicBox{10, 9}, 14, std::nullopt, 3},
-      {"all of a bed", PeriodicBox{10, 9}, 10, Region{0, 11}, 4.5},
+      {"all of a bed", PeriodicBox{10, 9}, 10, HeightWindow{0, 11}, 4.5},
+      {"narrow bed", PeriodicBox{4, 3}, 20, std::nullopt, 4},
       {"between walls", WalledBox{11, 12}, 10, std::nullopt, 3},
-      {"tube", Cylinder{12}, 10, Region{0, 4, 3.5}, 3},
+      {"between near walls", WalledBox{4, 5}, 20, std::nullopt, 4},
+      {"thin window between walls", WalledBox{7, 7}, 12, HeightWindow{5, 5.4}, 4},
+      {"thin window on the floor", WalledBox{9, 8}, 12, HeightWindow{0.5, 1}, 3},
+      {"tube", Cylinder{12}, 10, HeightWindow{0, 4}, 3},
+      {"narrow tube", Cylinder{3}, 30, std::nullopt, 4},
   }));
   CAPTURE(gas.name);
   constexpr std::uint64_t n_gases = 40;
-  constexpr unsigned n_points = 1200;
+  constexpr unsigned n_points = 600;
   std::vector<std::vector<double>> g;  // [n_bins][n_gases]
   for (std::uint64_t seed = 0; seed < n_gases; ++seed) {
     const Packing points = random_points(gas.container, gas.height, n_points, seed);
     const std::vector<double> values =
-        pair_correlation(points, {.r_max = gas.r_max, .bin_width = 0.25, .region = gas.region}).g();
+        pair_correlation(points, {.r_max = gas.r_max, .bin_width = 0.5, .heights = gas.heights})
+            .g();
     g.resize(values.size());
     for (std::size_t k = 0; k < values.size(); ++k) g[k].push_back(values[k]);
   }
-  // A point is not its own neighbour.
-  const double ideal = has_gravity(gas.container) ? 1 : 1 - 1.0 / n_points;
   for (std::size_t k = 0; k < g.size(); ++k) {
     const Moments measured = moments(g[k]);
     CAPTURE(k, measured.mean, measured.error);
     // Within 4 standard errors, of about a hundred bins in all.
-    CHECK(std::abs(measured.mean - ideal) <= 4 * measured.error);
+    CHECK(std::abs(measured.mean - 1) <= 4 * measured.error);
+  }
+}
+
+TEST_CASE("Gases of 40 spheres, pooled, have g = 1 in every container", "[statistics]") {
+  const auto container = GENERATE(values<Container>(
+      {WalledBox{7, 7}, Cylinder{7}, PeriodicBox{7, 7}, FullyPeriodicBox{7, 7, 10}}));
+  constexpr std::uint64_t n_gases = 60;
+  std::vector<PairCorrelation> gases;
+  for (std::uint64_t seed = 0; seed < n_gases; ++seed) {
+    gases.push_back(pair_correlation(random_points(container, 10, 40, 100 + seed),
+                                     {.r_max = 3, .bin_width = 0.5}));
+  }
+  const auto pooled_without = [&](std::size_t left_out) {
+    PairCorrelation sum = gases[left_out == 0 ? 1 : 0];
+    for (std::size_t i = left_out == 0 ? 2 : 1; i < gases.size(); ++i) {
+      if (i != left_out) sum += gases[i];
+    }
+    return sum.g();
+  };
+  const std::vector<double> all = pooled_without(n_gases);
+  std::vector<std::vector<double>> left_out;
+  for (std::size_t i = 0; i < n_gases; ++i) left_out.push_back(pooled_without(i));
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    double sum = 0, squares = 0;
+    for (const auto& g : left_out) sum += g[k] / n_gases;
+    for (const auto& g : left_out) squares += (g[k] - sum) * (g[k] - sum);
+    const double error = std::sqrt(squares * (n_gases - 1) / n_gases);
+    CAPTURE(k, all[k], error);
+    CHECK(std::abs(all[k] - 1) <= 3 * error);
+  }
+}
+
+TEST_CASE("Lattices have the neighbours of their shells in every container") {
+  // 6 at a, 12 at 2^(1/2) a, 8 at 3^(1/2) a, 6 at 2 a.
+  struct Lattice {
+    Container container;
+    double spacing, first;
+    int n, n_layers;
+    double r_max;
+  };
+  const auto [container, spacing, first, n, n_layers, r_max] = GENERATE(values<Lattice>({
+      {WalledBox{7, 7}, 1.2, 1.1, 5, 10, 4},
+      {WalledBox{7, 7}, 1.2, 0.5, 6, 10, 2.6},  // at the walls themselves
+      {WalledBox{4.6, 4.6}, 1.2, 1.1, 3, 12, 2.6},
+      {WalledBox{16, 16}, 1.0, 0.5, 16, 16, 4},
+      {PeriodicBox{6, 6}, 1.2, 0.6, 5, 10, 3},
+      {PeriodicBox{4.8, 4.8}, 1.2, 0.6, 4, 10, 3},  // half a period is 2 a
+      {FullyPeriodicBox{6, 6, 12}, 1.2, 0.6, 5, 10, 3},
+      {FullyPeriodicBox{4.8, 4.8, 4.8}, 1.2, 0.6, 4, 4, 2.6},
+  }));
+  const Packing lattice = cubic_lattice(container, spacing, first, n, n_layers);
+  CAPTURE(lattice.centres.size(), first, n);
+  const PairCorrelation pairs = pair_correlation(lattice, {.r_max = r_max, .bin_width = 0.02});
+  const double beyond = 0.02;
+  const auto up_to = [&](double shell) {
+    return neighbours_up_to(pairs, std::round((spacing * shell + beyond) / 0.02) * 0.02);
+  };
+  CHECK(neighbours_up_to(pairs, std::floor((spacing - 0.01) / 0.02) * 0.02) == 0);
+  CHECK(up_to(1) == Approx(6).epsilon(0.002));
+  CHECK(up_to(std::numbers::sqrt2) == Approx(18).epsilon(0.002));
+  CHECK(up_to(std::numbers::sqrt3) == Approx(26).epsilon(0.002));
+  CHECK(up_to(2) == Approx(32).epsilon(0.005));  // the corners of narrow containers end there
+}
+
+TEST_CASE("A lattice in a tube has the neighbours of its shells") {
+  for (const double diameter : {6.0, 9.3, 14.0}) {
+    const double axis = 0.5 * diameter, first = axis - 1.2 * std::floor((axis - 0.5) / 1.2);
+    const Packing lattice = cubic_lattice(Cylinder{diameter}, 1.2, first, 20, 12);
+    const PairCorrelation pairs = pair_correlation(lattice, {.r_max = 3});
+    CAPTURE(diameter, lattice.centres.size());
+    CHECK(neighbours_up_to(pairs, 1.22) == Approx(6).epsilon(0.002));
+    CHECK(neighbours_up_to(pairs, 1.72) == Approx(18).epsilon(0.002));
+  }
+}
+
+TEST_CASE("The lattice between walls that had four neighbours has six") {
+  for (const char* name : {"gr_lattice_walls.xyz", "gr_lattice_periodic.xyz"}) {
+    std::ifstream file(std::string(TEST_DATA "/") + name);
+    std::string line;
+    std::getline(file, line);
+    std::getline(file, line);
+    const bool walls = line.find("pbc=\"F F F\"") != std::string::npos;
+    Packing lattice{walls ? Container{WalledBox{7, 7}} : Container{PeriodicBox{6, 6}}, {}};
+    char letter = 0;
+    for (Vec3 r; file >> letter >> r.x >> r.y >> r.z;) lattice.centres.push_back(r);
+    REQUIRE(lattice.centres.size() == 250);
+    for (const double r_max : {1.8, 3.0, 4.0}) {
+      CAPTURE(name, r_max);
+      const PairCorrelation pairs = pair_correlation(lattice, {.r_max = r_max});
+      const double density = 1 / (1.2 * 1.2 * 1.2);
+      CHECK(pairs.density == Approx(density).epsilon(0.01));
+      CHECK(neighbours_of_g(pairs, density, 1.15, 1.25) == Approx(6).epsilon(0.02));
+      CHECK(neighbours_of_g(pairs, density, 1.65, 1.75) == Approx(12).epsilon(0.02));
+      CHECK(neighbours_up_to(pairs, 1.22) == Approx(6).epsilon(1e-9));
+      CHECK(neighbours_up_to(pairs, 1.72) == Approx(18).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("The overlap of a footprint is that of random points", "[statistics]") {
+  const auto container =
+      GENERATE(values<Container>({WalledBox{5, 7}, WalledBox{1.6, 3}, Cylinder{6}, Cylinder{2}}));
+  constexpr unsigned n = 40'000;
+  const AccessibleFootprint footprint({container, {}});
+  const Packing points = random_points(container, 2, n);
+  const Boundary boundary(container);
+  for (const auto& [dx, dy] : {std::pair{0.3, 0.0}, {1.1, -0.4}, {0.5, 0.9}, {-2.0, 1.5}}) {
+    double inside = 0;
+    for (Vec3 r : points.centres) {
+      r.x += dx;
+      r.y += dy;
+      const bool within = r.x >= 0 && r.y >= 0 && r.x <= boundary.width_x &&
+                          r.y <= boundary.width_y && clear_of_boundaries(boundary, r);
+      inside += within ? 1 : 0;
+    }
+    const double share = footprint.overlap(dx, dy);
+    CAPTURE(dx, dy);
+    CHECK(std::abs(inside / n - share) <= 4 * std::sqrt(share * (1 - share) / n));
+  }
+}
+
+TEST_CASE("Beds poured between walls and in tubes have the g(r) of one without sides",
+          "[statistics]") {
+  const auto pooled = [](const Container& container, std::uint32_t n) {
+    std::optional<PairCorrelation> sum;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      RandomStream random(stream_key(1983, 0, seed, Purpose::start));
+      const Packing bed = make_start(SteepestDescentPour{}, container, n, random);
+      PairCorrelation pairs = pair_correlation(bed, {.r_max = 4, .bin_width = 0.5});
+      if (sum)
+        *sum += pairs;
+      else
+        sum = std::move(pairs);
+    }
+    return sum->g();
+  };
+  const std::vector<double> without = pooled(PeriodicBox{8, 8}, 700);
+  const std::vector<std::vector<double>> beside = {pooled(WalledBox{7, 7}, 500),
+                                                   pooled(Cylinder{9.3}, 800)};
+  for (std::size_t k = 2; k < without.size(); ++k) {
+    for (const std::vector<double>& g : beside) {
+      CAPTURE(k, without[k], g[k]);
+      CHECK(std::abs(g[k] - without[k]) < 0.03);
+    }
   }
 }
 
@@ -85,8 +271,10 @@ TEST_CASE("In a fully periodic box all shells are whole and the density is exact
   for (std::size_t k = 0; k < 21; ++k) {
     const std::uint64_t around = k == 10 ? 12 : k == 14 ? 6 : k == 17 ? 24 : k == 20 ? 12 : 0;
     CHECK(pairs.counts[k] == around * fcc.centres.size());
+    CHECK(pairs.found[k] == static_cast<double>(pairs.counts[k]));
+    // A sphere has all but itself around it.
     CHECK(pairs.expected[k] ==
-          Approx(static_cast<double>(pairs.n_centres) * density * whole_shell(pairs, k)));
+          Approx(static_cast<double>(pairs.n_centres - 1) * density * whole_shell(pairs, k)));
   }
 }
 
@@ -95,26 +283,6 @@ TEST_CASE("Touching spheres are in the bin that begins at 1, whatever rounding d
       pair_correlation(shaken(hcp_points(), 1e-12), {.r_max = 2, .bin_width = 0.02});
   CHECK(pairs.counts[49] == 0);
   CHECK(pairs.counts[50] == 12 * pairs.n_centres);
-}
-
-TEST_CASE("The share of shells between floor and top is that of random directions") {
-  // One sphere in the region, 0.7 above the floor's centres and 1.3 below the highest.
-  const Packing three{PeriodicBox{20, 20}, {{1, 1, 0.5}, {6, 6, 1.2}, {9, 9, 2.5}}};
-  const PairCorrelation pairs =
-      pair_correlation(three, {.r_max = 2, .bin_width = 0.5, .region = Region{1.1, 1.9}});
-  REQUIRE(pairs.n_centres == 1);
-  // The share of a sphere of radius r between two planes is (up + down) / (2 r): in the mean over
-  // a bin by its volume, sums over thin shells.
-  for (std::size_t k = 0; k < 4; ++k) {
-    double volume = 0;
-    constexpr int n = 20'000;
-    for (int s = 0; s < n; ++s) {
-      const double r = 0.5 * (static_cast<double>(k) + (s + 0.5) / n);
-      const double share = (std::min(0.7, r) + std::min(1.3, r)) / (2 * r);
-      volume += 4 * std::numbers::pi * r * r * share * 0.5 / n;
-    }
-    CHECK(pairs.expected[k] == Approx(pairs.density * volume).epsilon(1e-6));
-  }
 }
 
 TEST_CASE("g(r) of the reference deposit has its contacts, and 1 far away") {
@@ -134,7 +302,7 @@ TEST_CASE("The density of a crystal does not depend on where a region cuts its l
   const Packing layers = stacked_layers("ABABABABABAB");
   for (const double low : {1.5, 1.7, 1.9, 2.1}) {
     const PairCorrelation pairs =
-        pair_correlation(layers, {.r_max = 2, .region = Region{low, low + 6}});
+        pair_correlation(layers, {.r_max = 2, .heights = HeightWindow{low, low + 6}});
     // Six diameters are 7.35 layers: counting centres would be 5 % out. Close packing: sqrt 2.
     CHECK(pairs.density == Approx(std::numbers::sqrt2).epsilon(0.01));
   }
@@ -153,20 +321,31 @@ TEST_CASE("Pooled pair correlations are those of all counts") {
   for (std::size_t k = 0; k < sum.counts.size(); ++k) {
     CHECK(sum.g()[k] == Approx(static_cast<double>(one.counts[k] + two.counts[k]) /
                                (one.expected[k] + two.expected[k])));
+    CHECK(sum.shells[k] == Approx(one.shells[k] + two.shells[k]));
   }
 }
 
 TEST_CASE("What g(r) cannot be measured in is refused") {
   const Packing walled = random_points(WalledBox{8, 8}, 10, 500);
-  CHECK_THROWS_WITH(pair_correlation(walled, {.r_max = 4}), Catch::Contains("smaller r_max"));
-  CHECK_THROWS_WITH(pair_correlation(walled, {.r_max = 2, .region = Region{2, 8, 1}}),
-                    Catch::Contains("reach the walls"));
-  CHECK_THROWS_WITH(pair_correlation(walled, {.r_max = 2, .region = Region{20, 30, 3}}),
-                    Catch::Contains("heights of the bed"));
+  CHECK_THROWS_WITH(pair_correlation(walled, {.r_max = 2, .heights = HeightWindow{20, 30}}),
+                    Catch::Contains("too few layers"));
+  const Packing layer{WalledBox{8, 8}, {{1, 1, 0.5}, {3, 1, 0.5}}};
+  CHECK_THROWS_WITH(pair_correlation(layer), Catch::Contains("too few layers"));
+  const Packing column{WalledBox{1, 1}, {{0.5, 0.5, 0.5}, {0.5, 0.5, 1.5}, {0.5, 0.5, 2.5}}};
+  CHECK_THROWS_WITH(pair_correlation(column), Catch::Contains("no room"));
   const Packing periodic = random_points(FullyPeriodicBox{8, 8, 6}, 6, 500);
-  CHECK_THROWS_WITH(pair_correlation(periodic, {.r_max = 3.5}), Catch::Contains("half a period"));
-  CHECK_THROWS_WITH(pair_correlation(periodic, {.r_max = 2, .region = Region{2, 8}}),
+  CHECK_THROWS_WITH(pair_correlation(periodic, {.r_max = 2, .heights = HeightWindow{2, 8}}),
                     Catch::Contains("within the box"));
+}
+
+TEST_CASE("A sphere's own images are none of its neighbours") {
+  const Packing two{FullyPeriodicBox{3, 3, 3}, {{0, 0, 0}, {1.2, 0, 0}}};
+  const PairCorrelation pairs = pair_correlation(two, {.r_max = 4, .bin_width = 0.1});
+  std::uint64_t all = 0;
+  for (const std::uint64_t count : pairs.counts) all += count;
+  CHECK(all == 2);
+  // Beyond the corners of the box, at 1.5 x 3^(1/2), nothing is sampled.
+  CHECK(std::isnan(pairs.g().back()));
 }
 
 TEST_CASE("A cubic g is extrapolated to contact exactly") {
@@ -177,7 +356,7 @@ TEST_CASE("A cubic g is extrapolated to contact exactly") {
     pairs.r.push_back(r);
     pairs.expected.push_back(1e9 * r * r);
     const double g = r < 1 ? 0 : 3.5 - 20 * x + 70 * x * x - 100 * x * x * x;
-    pairs.counts.push_back(static_cast<std::uint64_t>(g * pairs.expected.back()));
+    pairs.found.push_back(g * pairs.expected.back());
   }
   CHECK(contact_value(pairs) == Approx(3.5).epsilon(1e-6));
   CHECK(contact_value(pairs, 0.3) == Approx(3.5).epsilon(1e-6));

@@ -150,6 +150,29 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
   CHECK(open[7] < 0.97);  // of 16 cells
 }
 
+TEST_CASE("Clusters are held against the cells that they are of") {
+  // Independent cells that vary more, the lower they are: clusters of many keep off the floor.
+  const Packing bed = reference_deposit();
+  VoronoiCells cells = voronoi_cells(bed);
+  RandomStream random(stream_key(41, 0, 0, Purpose::resampling));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double spread = bed.centres[i].z < 2.5 ? 1 : 0.2;
+    cells.volumes[i] = sphere_volume * (2 + spread * (random.uniform() - 0.5));
+  }
+  const ClusterVolumes found = cluster_volumes(bed, cells, 64, [&](std::uint32_t i) {
+    return bed.centres[i].z > 1 && bed.centres[i].z < 6;
+  });
+  for (std::size_t k = 0; k < found.cells.size(); ++k) {
+    const double n = found.cells[k];
+    const double relative = found.variance[k] / n / found.independent[k] / found.of_members[k];
+    CAPTURE(n, relative);
+    CHECK(std::abs(relative - 1) < 4 * std::sqrt(2 * n / static_cast<double>(found.clusters[k])));
+    if (n == 1) CHECK(relative == Approx(1).epsilon(1e-9));
+  }
+  // Against all single cells, clusters of 64 would seem to hold together.
+  CHECK(found.of_members.back() < 0.7 * found.variance.front());
+}
+
 TEST_CASE("Clusters stop at half of all spheres") {
   const Packing packing = poisson_points();
   const VoronoiCells cells = voronoi_cells(packing);

@@ -1,0 +1,159 @@
+#include "structure/order/accessible.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace jostle::inline structure {
+
+namespace {
+
+constexpr double rounding = 1e-9;
+
+/// Area that two equal discs share, their middles `apart`.
+double lens_area(double apart, double radius) {
+  if (apart >= 2 * radius) return 0;
+  const double half = 0.5 * apart;
+  return 2 * (radius * radius * std::acos(half / radius) -
+              half * std::sqrt(radius * radius - half * half));
+}
+
+bool within_period(double displacement, double period) {
+  return std::abs(displacement) <= 0.5 * period * (1 + rounding);
+}
+
+}  // namespace
+
+AccessibleFootprint::AccessibleFootprint(const Packing& packing) : boundary_(packing.container) {
+  const double margin = boundary_.side_margin();
+  low_x_ = low_y_ = margin;
+  high_x_ = boundary_.width_x - margin;
+  high_y_ = boundary_.width_y - margin;
+  area_ = (high_x_ - low_x_) * (high_y_ - low_y_);
+  if (boundary_.sides == Sides::walls) {
+    for (const Vec3& r : packing.centres) {
+      low_x_ = std::min(low_x_, r.x);
+      high_x_ = std::max(high_x_, r.x);
+      low_y_ = std::min(low_y_, r.y);
+      high_y_ = std::max(high_y_, r.y);
+    }
+    area_ = (high_x_ - low_x_) * (high_y_ - low_y_);
+  } else if (boundary_.sides == Sides::cylinder) {
+    const double axis = boundary_.axis();
+    radius_ = axis - margin;
+    for (const Vec3& r : packing.centres) {
+      radius_ = std::max(radius_, std::hypot(r.x - axis, r.y - axis));
+    }
+    area_ = std::numbers::pi * radius_ * radius_;
+  }
+}
+
+double AccessibleFootprint::overlap(double dx, double dy) const {
+  if (boundary_.sides == Sides::cylinder) {
+    return lens_area(std::sqrt(dx * dx + dy * dy), radius_) / area_;
+  }
+  if (boundary_.sides == Sides::walls) {
+    const double along_x = high_x_ - low_x_ - std::abs(dx);
+    const double along_y = high_y_ - low_y_ - std::abs(dy);
+    return along_x > 0 && along_y > 0 ? along_x * along_y / area_ : 0;
+  }
+  return within_period(dx, boundary_.width_x) && within_period(dy, boundary_.width_y) ? 1 : 0;
+}
+
+StepTable::StepTable(double reach)
+    : reach_(reach + step), values_(static_cast<std::size_t>(2 * reach_ / step) + 2, 0.0) {}
+
+StepTable shares_inside(const std::vector<double>& coordinates, double low, double high,
+                        double reach) {
+  StepTable shares(reach);
+  const auto n = static_cast<double>(coordinates.size());
+  // A lattice may end at the bounds: what lies within a step of them counts as inside.
+  std::size_t outside_low = coordinates.size(), inside_high = coordinates.size();
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const double least = low - StepTable::step - shares.middle(k);
+    const double most = high + StepTable::step - shares.middle(k);
+    while (outside_low > 0 && coordinates[outside_low - 1] >= least) --outside_low;
+    while (inside_high > 0 && coordinates[inside_high - 1] > most) --inside_high;
+    shares.value(k) =
+        inside_high > outside_low ? static_cast<double>(inside_high - outside_low) / n : 0;
+  }
+  return shares;
+}
+
+FootprintShares::FootprintShares(const AccessibleFootprint& footprint,
+                                 const std::vector<Vec3>& centres, double reach)
+    : sides_(footprint.boundary_.sides), reach_(reach) {
+  if (sides_ == Sides::cylinder) fill_disc(footprint, centres);
+  if (sides_ != Sides::walls) return;
+  std::vector<double> x, y;
+  for (const Vec3& r : centres) {
+    x.push_back(r.x);
+    y.push_back(r.y);
+  }
+  std::ranges::sort(x);
+  std::ranges::sort(y);
+  x_ = shares_inside(x, footprint.low_x_, footprint.high_x_, reach);
+  y_ = shares_inside(y, footprint.low_y_, footprint.high_y_, reach);
+}
+
+void FootprintShares::fill_disc(const AccessibleFootprint& footprint,
+                                const std::vector<Vec3>& centres) {
+  constexpr double finest = 0.05, most_looks = 5e7;  // wider steps where centres are many
+  const auto n = static_cast<double>(centres.size());
+  // A whole number of steps to either side: 0 is one of the places.
+  const double wanted = std::max(finest, 2 * reach_ * std::sqrt(n / most_looks));
+  const auto half = static_cast<std::size_t>(std::ceil(reach_ / wanted));
+  step_ = wanted;
+  reach_ = static_cast<double>(half) * step_;
+  n_steps_ = 2 * half + 2;
+  disc_.assign(n_steps_ * n_steps_, 0.0);
+  const double axis = footprint.boundary_.axis();
+  const double most = std::pow(footprint.radius_ + StepTable::step, 2);
+  for (const Vec3& r : centres) {
+    for (std::size_t i = 0; i < n_steps_; ++i) {
+      const double x = r.x - axis + static_cast<double>(i) * step_ - reach_;
+      double* const row = &disc_[i * n_steps_];
+      for (std::size_t j = 0; j < n_steps_; ++j) {
+        const double y = r.y - axis + static_cast<double>(j) * step_ - reach_;
+        row[j] += x * x + y * y <= most ? 1 : 0;
+      }
+    }
+  }
+  for (double& share : disc_) share /= n;
+}
+
+double FootprintShares::operator()(double dx, double dy, double overlap) const {
+  if (sides_ == Sides::none) return overlap;
+  if (sides_ == Sides::walls) return x_(dx) * y_(dy);
+  const double x = (dx + reach_) / step_, y = (dy + reach_) / step_;
+  const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+  const double u = x - static_cast<double>(i), v = y - static_cast<double>(j);
+  const double* const row = &disc_[i * n_steps_ + j];
+  const double* const next = row + n_steps_;
+  return (1 - u) * ((1 - v) * row[0] + v * row[1]) + u * ((1 - v) * next[0] + v * next[1]);
+}
+
+std::vector<Vec3> even_directions(int n) {
+  std::vector<Vec3> all;
+  for (int k = 0; k < n; ++k) {
+    const double z = (2 * k + 1.0) / n - 1, across = std::sqrt(1 - z * z);
+    const double turned = 2 * std::numbers::pi * std::numbers::phi * k;
+    all.push_back({across * std::cos(turned), across * std::sin(turned), z});
+  }
+  return all;
+}
+
+ShellPart::ShellPart(const Container& container)
+    : boundary_(container), directions_(even_directions(500)) {}
+
+double ShellPart::operator()(Vec3 centre, double radius) const {
+  // boundary_depth() is how deep a sphere reaches beyond floor or sides.
+  if (boundary_depth(boundary_, centre) <= -radius) return 1;
+  double inside = 0;
+  for (const Vec3& direction : directions_) {
+    inside += boundary_depth(boundary_, centre + radius * direction) <= 0 ? 1 : 0;
+  }
+  return std::max(inside, 1.0) / static_cast<double>(directions_.size());
+}
+
+}  // namespace jostle::inline structure

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/bed/boundary.hpp"
+#include "engine/bed/packing.hpp"
+#include "engine/bed/window.hpp"
+
+// Where centres may lie, and how much of it two centres a given displacement apart can use. Lengths
+// in diameters.
+namespace jostle::inline structure {
+
+/// The part of the footprint where centres may lie: at least 1/2 from walls (less where soft
+/// spheres press into them), all of it where sides are periodic.
+class AccessibleFootprint {
+ public:
+  explicit AccessibleFootprint(const Packing& packing);
+
+  double area() const { return area_; }
+  /// Area of the points from which the displacement leads to a point of the footprint, over the
+  /// whole area: in [0, 1]. A periodic direction admits displacements of up to half a period.
+  double overlap(double dx, double dy) const;
+
+ private:
+  friend class FootprintShares;
+
+  Boundary boundary_;
+  double low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
+  double radius_ = 0;  // of a cylinder's
+  double area_ = 0;
+};
+
+/// Values at even steps from -reach to reach, looked up in the step that a place falls in.
+class StepTable {
+ public:
+  static constexpr double step = 1e-3;
+
+  StepTable() = default;
+  explicit StepTable(double reach);
+  double& value(std::size_t k) { return values_[k]; }
+  double middle(std::size_t k) const { return (static_cast<double>(k) + 0.5) * step - reach_; }
+  std::size_t size() const { return values_.size(); }
+  double operator()(double place) const {
+    return values_[static_cast<std::size_t>((place + reach_) * (1 / step))];
+  }
+
+ private:
+  double reach_ = 0;
+  std::vector<double> values_;
+};
+
+/// Share of the ascending coordinates that a displacement takes to a place in [low, high].
+StepTable shares_inside(const std::vector<double>& coordinates, double low, double high,
+                        double reach);
+
+/// The overlap that centres have: the share of them that a displacement leaves in the accessible
+/// footprint. It differs from that of evenly spread points where centres crowd at the sides.
+class FootprintShares {
+ public:
+  /// Of displacements whose parts along x and y are at most `reach`.
+  FootprintShares(const AccessibleFootprint& footprint, const std::vector<Vec3>& centres,
+                  double reach);
+  /// `overlap`: the footprint's of that displacement, which is that of centres where sides are
+  /// periodic. Between walls the shares along x and y are taken for independent.
+  double operator()(double dx, double dy, double overlap) const;
+
+ private:
+  void fill_disc(const AccessibleFootprint& footprint, const std::vector<Vec3>& centres);
+
+  Sides sides_;
+  StepTable x_, y_;  // between walls
+  // In a cylinder, at even steps along x and y from -reach_ on.
+  double reach_ = 0, step_ = 0;
+  std::size_t n_steps_ = 0;
+  std::vector<double> disc_;
+};
+
+/// Unit vectors that are evenly spread over all directions, on a Fibonacci spiral.
+std::vector<Vec3> even_directions(int n);
+
+/// The part of spheres around a centre that lies where centres may be: at least 1/2 from floor and
+/// walls.
+class ShellPart {
+ public:
+  explicit ShellPart(const Container& container);
+  /// In (0, 1], by 500 directions; 1 of a sphere that no side cuts.
+  double operator()(Vec3 centre, double radius) const;
+
+ private:
+  Boundary boundary_;
+  std::vector<Vec3> directions_;
+};
+
+}  // namespace jostle::inline structure
