@@ -93,13 +93,10 @@ class Structure(Case):
                              together["coordination"]["quantities"][name]["values"], name)
 
     def test_a_part_that_is_not_there_says_so_and_the_rest_is_measured(self):
-        self.write(changed(TINY, spheres=4))
-        self.run_scene()
-        found = self.tables("tiny.h5", "--part", "sides,pair_correlation", "--sweep-point", 0, "--no-store")
-        self.assertIn("too few layers", found["point_0000/pair_correlation"]["notes"]["refused"])
-        self.assertNotIn("refused", found["point_0000/sides"]["notes"])
-        with h5py.File(self.folder / "tiny.h5") as file:
-            self.assertNotIn("structure", file)
+        self.write_frame("layer.xyz", [[1 + 1.1 * k, 1, 0.5] for k in range(5)])
+        found = self.tables("layer.xyz", "--part", "layers,pair_correlation")
+        self.assertIn("too few layers", found["pair_correlation"]["notes"]["refused"])
+        self.assertNotIn("refused", found["layers"]["notes"])
 
     def test_pairs_reach_four_diameters_or_half_a_period(self):
         for sides, reach in (("periodic", 2), ("walls", 4)):
@@ -108,18 +105,20 @@ class Structure(Case):
             found = self.tables("tiny.h5", "--part", "pair_correlation", "--no-store")
             r = found["point_0000/pair_correlation"]["axes"]["r"]["values"]
             self.assertAlmostEqual(r[-1], reach - 0.01)
+            with h5py.File(self.folder / "tiny.h5") as file:
+                self.assertNotIn("structure", file)
 
     def test_lattices_have_their_neighbours_and_few_pairs_are_said(self):
         data = pathlib.Path(__file__).parents[1] / "data"
         for name in ("gr_lattice_walls.xyz", "gr_lattice_periodic.xyz"):
             found = self.tables(str(data / name), "--part", "pair_correlation")["pair_correlation"]
             quantities = found["quantities"]
-            r, g = np.array(found["axes"]["r"]["values"]), np.array(quantities["g"]["values"])
+            r, g = np.array(found["axes"]["r"]["values"]), np.array(quantities["g"]["values"]).ravel()
             shell = 4 / 3 * np.pi * ((r + 0.01) ** 3 - (r - 0.01) ** 3) * g / 1.2 ** 3
             self.assertAlmostEqual(shell[(r > 1.15) & (r < 1.25)].sum(), 6, delta=0.12)
             self.assertAlmostEqual(shell[(r > 1.65) & (r < 1.75)].sum(), 12, delta=0.24)
             ends = np.array(found["axes"]["r_end"]["values"])
-            neighbours = np.array(quantities["neighbours"]["values"])
+            neighbours = np.array(quantities["neighbours"]["values"]).ravel()
             self.assertAlmostEqual(neighbours[np.argmin(abs(ends - 1.22))], 6, delta=1e-9)
             self.assertEqual(quantities["packings"]["values"], [1])
             self.assertGreater(quantities["centres"]["values"][0], 100)
@@ -136,7 +135,7 @@ class Structure(Case):
         self.write(TINY)
         self.run_scene()
         text = self.structure("tiny.h5", "--part", "profile,pair_correlation").stdout
-        self.assertRegex(text, r"\d+ rows of .*r +in --wide, --csv FILE and --json: g\n")
+        self.assertRegex(text, r"\d+ rows of .*r +in --wide, --csv FILE and --json: g, pairs\n")
         for block in text.strip().split("\n\npoint_")[1:]:
             self.assertRegex(block, r"rows of|\n +\w+ +[\d.-]")
 
