@@ -76,6 +76,7 @@ set(JOSTLE_PUBLIC_HEADERS
     fitting/fit.hpp
     fitting/intervals/diagnostics.hpp
     fitting/intervals/memory.hpp
+    fitting/models/limit.hpp
     fitting/models/model.hpp
     fitting/models/models.hpp
     fitting/report.hpp

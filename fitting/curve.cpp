@@ -10,6 +10,9 @@ namespace jostle::inline fitting {
 
 namespace {
 
+// Squares of residuals over squared errors stay far from the ends of double precision.
+constexpr double least_size = 1e-120, largest_size = 1e120, widest_ratio = 1e30;
+
 // "t is not finite at 2 points, the first being number 3 (nan)"
 template <typename Bad>
 void report(const std::vector<double>& values, const char* what, Bad bad,
@@ -115,6 +118,32 @@ std::vector<std::string> faults(const Curve& curve) {
   report(curve.x, "X is not finite", not_finite, found);
   report(curve.sigma, "sigma is not finite", not_finite, found);
   report(curve.values, "a realization is not finite", not_finite, found);
+  const auto extreme = [](double value) {
+    return std::isfinite(value) && value != 0 &&
+           !(std::abs(value) >= least_size && std::abs(value) <= largest_size);
+  };
+  report(
+      curve.sigma,
+      "sigma is beyond what squares can hold (allowed: 1e-120 to 1e120; choose a unit)",
+      [&](double value) { return value > 0 && extreme(value); }, found);
+  const auto size = [](double largest, double value) { return std::max(largest, std::abs(value)); };
+  const double largest = std::accumulate(curve.x.begin(), curve.x.end(), 0.0, size);
+  if (extreme(largest)) {
+    std::ostringstream text;
+    text << "X of at most " << largest
+         << " is beyond what squares can hold (allowed: 1e-120 to 1e120); choose a unit";
+    found.push_back(text.str());
+  }
+  const auto [least, most] = std::minmax_element(curve.sigma.begin(), curve.sigma.end());
+  if (found.empty() && !curve.sigma.empty() && *least > 0 && largest > 0 &&
+      (*most > widest_ratio * *least || largest > widest_ratio * *least ||
+       *most > widest_ratio * largest)) {
+    std::ostringstream text;
+    text << "sigma from " << *least << " to " << *most << " and X of at most " << largest
+         << " differ by more than a factor 1e30, and weigh nothing or everything: leave out the "
+            "points that are not known, and give the others their errors";
+    found.push_back(text.str());
+  }
   report(
       curve.sigma, "sigma is not positive", [](double value) { return value <= 0; }, found);
   return found;

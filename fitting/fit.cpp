@@ -11,6 +11,7 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
+#include "fitting/limit_fit.hpp"
 #include "fitting/refusal.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
@@ -27,7 +28,12 @@ class Fitter {
  public:
   Fitter(const Model& model, const Curve& curve, const FitOptions& options);
 
-  std::variant<Fit, Refusal> operator()();
+  /// False where the model has no finite value and slope at any start.
+  bool search() { return descend_from_all(); }
+  /// The sum of squares over all points at the minimum found.
+  double cost_of_all_points() const;
+  /// After search().
+  Fit finish();
   std::size_t n_free() const {
     return static_cast<std::size_t>(std::count(free_.begin(), free_.end(), true));
   }
@@ -210,7 +216,7 @@ bool Fitter::find_intervals(const Eigen::VectorXd& inflation, Fit& fit) {
       continue;
     }
     const ParameterProfile found = profile(problem, j, estimate.standard_error);
-    if (found.better) {
+    if (found.better && !options_.solver.budget->spent()) {
       const double before = best_.cost;
       descend(*found.better, best_start_);
       if (best_.cost < before) return false;
@@ -249,10 +255,12 @@ void Fitter::remark_on_order(Fit& fit) const {
   fit.remarks.push_back(text.str());
 }
 
-std::variant<Fit, Refusal> Fitter::operator()() {
-  if (!descend_from_all()) {
-    return Refusal{RefusalKind::no_start, "the model has no finite value and slope at any start"};
-  }
+double Fitter::cost_of_all_points() const {
+  if (searched_.t.size() == curve_.t.size()) return best_.cost;
+  return linear_problem(model_, curve_, refined(), free_).residuals.squaredNorm();
+}
+
+Fit Fitter::finish() {
   const bool any_fixed = n_free() < free_.size();
   for (int attempt = 0;; ++attempt) {
     const ParameterValues canonical = any_fixed ? values_ : model_.canonical(values_);
@@ -284,6 +292,17 @@ std::variant<Fit, Refusal> Fitter::operator()() {
   }
 }
 
+// Where intervals were not finished they are open.
+void remark_on_budget(Fit& fit) {
+  std::ostringstream text;
+  text << "The fit stopped after " << fit.total_evaluations
+       << " evaluations of the law over the curve, as many as allowed: "
+       << (is_minimum(fit.reason) ? "intervals that were not finished by then are open"
+                                  : "no minimum was reached")
+       << ". Fix parameters, or choose a law of fewer.";
+  fit.remarks.push_back(text.str());
+}
+
 }  // namespace
 
 ParameterValues Fit::values() const {
@@ -294,9 +313,35 @@ ParameterValues Fit::values() const {
 
 std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const FitOptions& options) {
   if (auto refusal = refuse_options(model, options)) return *refusal;
-  Fitter fitter(model, curve, options);
+  // A search that crawls towards infinity leaves enough for what is fitted there instead.
+  constexpr int share_of_search = 5;
+  const bool outermost = options.solver.budget == nullptr;
+  EvaluationBudget budget{options.max_evaluations / share_of_search};
+  FitOptions counted = options;
+  if (outermost) counted.solver.budget = &budget;
+  Fitter fitter(model, curve, counted);
   if (auto refusal = refuse_curve(model, curve, fitter.n_free())) return *refusal;
-  return fitter();
+  const bool limits =
+      options.profiles && options.limits && fitter.n_free() > 0 && curve.t.size() > fitter.n_free();
+  const auto candidates =
+      limits ? limit_candidates(model, curve, counted) : std::vector<LimitCandidate>();
+  const std::size_t dof = curve.t.size() - fitter.n_free();
+  const LimitCandidate* limit = reached(candidates, curve, std::nullopt, dof);
+  if (!limit) {
+    if (!fitter.search()) {
+      return Refusal{RefusalKind::no_start, "the model has no finite value and slope at any start"};
+    }
+    limit = reached(candidates, curve, fitter.cost_of_all_points(), dof);
+  }
+  if (outermost) budget.left = options.max_evaluations - budget.used;
+  std::variant<Fit, Refusal> outcome =
+      limit ? fit_at_limit(model, curve, counted, *limit) : fitter.finish();
+  if (auto* found = std::get_if<Fit>(&outcome)) {
+    found->total_evaluations = counted.solver.budget->used;
+    const bool stopped = budget.spent() || found->reason == EndReason::budget;
+    if (outermost && stopped) remark_on_budget(*found);
+  }
+  return outcome;
 }
 
 }  // namespace jostle::inline fitting

@@ -27,6 +27,12 @@ struct FitOptions {
   /// Whether a curve without realizations may have a memory, which is then found in its residuals.
   /// Not for points that are known to be independent.
   bool memory = true;
+  /// Whether the law's limits are fitted too, and one reported where the law has reached it. Needs
+  /// profiles.
+  bool limits = true;
+  /// Of the law over the curve, in all: searches and intervals. A derivative by one parameter is
+  /// one. A fit that reaches it is not settled, or has intervals left open, and says so.
+  long long max_evaluations = 200000;
   SolverOptions solver = {};
 };
 
@@ -57,12 +63,14 @@ const char* name_of(Identifiability identifiability);
 
 struct Estimate {
   Parameter parameter;
+  /// Infinite where a limit of the law that was fitted leaves none.
   double value = 0;
   /// Of a linear problem whose points are independent; infinite without degrees of freedom, 0 for a
   /// fixed parameter.
   double standard_error = 0;
   /// The same counting dependence: from the scatter of realizations, else from the memory of the
-  /// residuals. For Student's t of the fit's error_dof.
+  /// residuals. For Student's t of the fit's error_dof, which makes half the 68 % interval of it;
+  /// without intervals that of the linear problem.
   double error = 0;
   Interval intervals[2];  // profile likelihood at interval_levels; the value itself if fixed
   Identifiability identifiability = Identifiability::not_examined;
@@ -73,6 +81,14 @@ struct Estimate {
   bool has_value() const;
   /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
   double half_width() const;
+};
+
+/// The law that another becomes where some of its parameters are 0 or infinite, as it was fitted.
+struct LimitingFit {
+  std::string name, formula;
+  std::string statement;  // which limit, what the data determine, and what not
+  std::shared_ptr<const Model> law;
+  std::vector<Estimate> estimates;  // [n_parameters of that law]
 };
 
 /// The same fit in the parameters of a law that draws the same curves.
@@ -89,6 +105,9 @@ struct Fit {
   std::vector<Estimate> combinations;
   /// In the parameters of the equivalent law, where there is one and it has the curve.
   std::optional<RestatedFit> restated;
+  /// Where the least squares lie at a limit of the law: what was fitted. Statistics, fitted values
+  /// and errors are of this law, and parameters of the law that it does not have are without value.
+  std::optional<LimitingFit> limit;
   /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
   /// residual variance where no errors were given, absolute where they were.
   Eigen::MatrixXd covariance, correlation;
@@ -117,6 +136,7 @@ struct Fit {
   /// Of the descent that won; `fallback` as in Minimum; `start` which of the starts it came from.
   int iterations = 0, evaluations = 0, jacobian_evaluations = 0, fallback = 0, start = 0;
   int starts_tried = 0;
+  long long total_evaluations = 0;   // of the law over the curve, in all descents of the fit
   std::vector<std::string> remarks;  // whatever a reader must know, a sentence each
 
   ParameterValues values() const;

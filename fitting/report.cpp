@@ -92,6 +92,13 @@ std::string parameter_table(const std::vector<Estimate>& estimates) {
   return table(rows);
 }
 
+std::string limit_table(const Fit& fit) {
+  if (!fit.limit) return "";
+  return "  fitted as its limit, X = " + fit.limit->formula + ":\n" +
+         parameter_table(fit.limit->estimates) + "  and all of " + fit.model +
+         " that fits as well, which may leave the limit after the last t:\n";
+}
+
 std::string restated_table(const Fit& fit) {
   if (!fit.restated) return "";
   return "  the same curve as " + fit.restated->model + ", " + fit.restated->formula + "  [" +
@@ -183,9 +190,10 @@ std::string describe(const Fit& fit, ReportDetail detail) {
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
   text << '\n'
-       << parameter_table(shown_estimates(fit)) << restated_table(fit) << "  "
-       << basis_of_errors(fit) << "; reduced " << (fit.sigma_given ? "chi2 " : "residual sum ")
-       << number(fit.reduced_chi2, 3) << ", R2 " << number(fit.r2, 4) << '\n';
+       << limit_table(fit) << parameter_table(fit.limit ? fit.estimates : shown_estimates(fit))
+       << restated_table(fit) << "  " << basis_of_errors(fit) << "; reduced "
+       << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
+       << number(fit.r2, 4) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();

@@ -136,17 +136,25 @@ Json fit_json(const FitOutcome& outcome) {
                  {"settled", is_minimum(fit.reason)},
                  {"iterations", fit.iterations},
                  {"evaluations", fit.evaluations},
+                 {"total_evaluations", fit.total_evaluations},
                  {"starts_tried", fit.starts_tried},
                  {"remarks", fit.remarks}};
+  const auto parameters = [](const std::vector<Estimate>& estimates) {
+    Json all = Json::object();
+    for (const Estimate& found : estimates) all[found.parameter.name] = estimate_json(found);
+    return all;
+  };
   if (fit.restated) {
-    Json same = Json::object();
-    for (const Estimate& found : fit.restated->estimates) {
-      same[found.parameter.name] = estimate_json(found);
-    }
     object["restated"] = {{"model", fit.restated->model},
                           {"formula", fit.restated->formula},
                           {"source", fit.restated->source},
-                          {"parameters", same}};
+                          {"parameters", parameters(fit.restated->estimates)}};
+  }
+  if (fit.limit) {
+    object["limit"] = {{"model", fit.limit->name},
+                       {"formula", fit.limit->formula},
+                       {"statement", fit.limit->statement},
+                       {"parameters", parameters(fit.limit->estimates)}};
   }
   if (outcome.resampled) {
     object["resamples"] = outcome.resampled->resamples;

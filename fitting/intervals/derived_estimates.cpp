@@ -111,6 +111,7 @@ void add_combinations(const FittedCurveOf& fitted, Fit& fit) {
     Estimate estimate = estimate_in(other, combination.kept, fitted, fit);
     if (estimate.intervals[1].closed()) fit.combinations.push_back(std::move(estimate));
   }
+  take_errors_of_intervals(fit, fit.combinations);
   judge_estimates(fitted.curve, fit.combinations);
 }
 
@@ -132,6 +133,7 @@ void add_restated(const FittedCurveOf& fitted, Fit& fit) {
     restated.estimates.push_back(std::move(estimate));
   }
   open_absurd_intervals(fitted.curve, fit, restated.estimates);
+  take_errors_of_intervals(fit, restated.estimates);
   judge_estimates(fitted.curve, restated.estimates);
   fit.restated = std::move(restated);
 }

@@ -29,6 +29,9 @@ void count_effective_points(Fit& fit);
 void judge(const Curve& curve, Fit& fit);
 /// Opens the intervals of examined estimates at which a singular search ended by rounding alone.
 void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates);
+/// Takes the errors of examined estimates from their 68 % intervals, infinite where these are open:
+/// in an ill-conditioned problem those of the linear one mean nothing.
+void take_errors_of_intervals(const Fit& fit, std::vector<Estimate>& estimates);
 /// Judges estimates by their 95 % intervals and says so, without remarks.
 void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates);
 

@@ -227,6 +227,14 @@ void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estim
   }
 }
 
+void take_errors_of_intervals(const Fit& fit, std::vector<Estimate>& estimates) {
+  if (!(fit.error_dof > 0)) return;
+  for (Estimate& estimate : estimates) {
+    if (estimate.identifiability <= Identifiability::not_examined) continue;
+    estimate.error = estimate.half_width() / two_sided(interval_levels[0], fit.error_dof);
+  }
+}
+
 void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates) {
   for (Estimate& estimate : estimates) {
     const bool examined = estimate.identifiability > Identifiability::not_examined;
@@ -237,6 +245,7 @@ void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates) {
 
 void judge(const Curve& curve, Fit& fit) {
   open_absurd_intervals(curve, fit, fit.estimates);
+  take_errors_of_intervals(fit, fit.estimates);
   judge_estimates(curve, fit.estimates);
   remark_on_memory(fit);
   remark_on_loose(fit);

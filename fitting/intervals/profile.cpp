@@ -101,7 +101,8 @@ std::vector<HeldFit> Side::march(double step) {
   const double last_threshold = problem_.thresholds[1];
   std::vector<HeldFit> points = {{0, 0, true, problem_.minimum}};
   int retries = 0;
-  while (points.back().distance < end && !fits_.better()) {
+  const EvaluationBudget* const budget = problem_.solver.budget;
+  while (points.back().distance < end && !fits_.better() && !(budget && budget->spent())) {
     const HeldFit& last = points.back();
     HeldFit next = fits_.at(std::min(last.distance + step, end), last);
     const bool outside = next.z >= last_threshold;
@@ -142,13 +143,19 @@ void Side::find_ends(double step, double ends[2]) {
 
 }  // namespace
 
-ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error) {
+ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error, int only) {
   ParameterProfile result;
   const Coordinate coordinate(problem, index);
   const double slope = std::abs(coordinate.slope(coordinate.to_variable(problem.minimum[index])));
   const double step = std::clamp(error / slope, std::numeric_limits<double>::min(), 1e300);
   for (double direction : {-1.0, 1.0}) {
-    double ends[2] = {-infinite, infinite};
+    double ends[2] = {direction * infinite, direction * infinite};
+    if (only != 0 && direction * only < 0) {
+      for (Interval& interval : result.intervals) {
+        (direction < 0 ? interval.lower : interval.upper) = direction * infinite;
+      }
+      continue;
+    }
     // Below a bound from above, u and p run against each other.
     const bool reversed = coordinate.slope(0) < 0;
     Side side(problem, index, reversed ? -direction : direction);

@@ -25,7 +25,9 @@ struct ParameterProfile {
 };
 
 /// The profile of free parameter `index`, whose standard error is about `error` (any positive
-/// number).
-ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error);
+/// number). side: -1 or 1 for that below or above the minimum alone, the other end is infinite
+/// then.
+ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error,
+                         int side = 0);
 
 }  // namespace jostle::inline fitting

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/models/limit.hpp"
 #include "fitting/solver/grid.hpp"
 
 namespace jostle::inline fitting {
@@ -35,6 +36,10 @@ double Model::value_and_gradient(double t, const double* p, double* gradient) co
 
 std::string Model::refusal(const Curve&) const {
   return "";
+}
+
+std::vector<Limit> Model::limits() const {
+  return {};
 }
 
 std::vector<std::vector<double>> Model::candidates(const Curve& curve) const {

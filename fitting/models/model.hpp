@@ -39,6 +39,7 @@ enum class ResidualScale { linear, logarithmic };
 using ParameterValues = std::vector<double>;
 
 class Model;
+struct Limit;
 
 /// A law with other parameters that draws the same curves.
 struct Equivalent {
@@ -84,6 +85,9 @@ class Model {
                                               std::size_t n) const;
   /// Pairs of positive parameters that can diverge together, and what a curve then determines.
   virtual std::vector<Combination> combinations() const { return {}; }
+  /// What it becomes where some of its parameters are 0 or infinite, fewest parameters first
+  /// (fitting/models/limit.hpp).
+  virtual std::vector<Limit> limits() const;
   /// The law that draws the same curves with other parameters, if there is one.
   virtual std::optional<Equivalent> equivalent() const { return std::nullopt; }
   /// The same curve with its parameters in standard order (as tau1 <= tau2).

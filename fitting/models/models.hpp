@@ -46,6 +46,7 @@ class InverseLog final : public PublishedLaw {
                                       std::size_t n) const override;
   std::vector<Combination> combinations() const override;
   std::optional<Equivalent> equivalent() const override;
+  std::vector<Limit> limits() const override;
 };
 
 /// Z(t) = Z_inf (1 + B ln(1 + t/tau)) / (Z_inf/Z_0 + B ln(1 + t/tau)): the inverse log for 1/Z, so
@@ -61,6 +62,7 @@ class InverseLogHeight final : public PublishedLaw {
                                       std::size_t n) const override;
   std::vector<Combination> combinations() const override;
   std::optional<Equivalent> equivalent() const override;
+  std::vector<Limit> limits() const override;
 };
 
 /// Z(t) = Z_inf + a1 exp(-t/tau1) + a2 exp(-t/tau2), tau1 <= tau2. PB sec. IV.
@@ -72,6 +74,7 @@ class TwoExponentials final : public PublishedLaw {
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
   ParameterValues canonical(const ParameterValues& p) const override;
+  std::vector<Limit> limits() const override;
 };
 
 /// rho(n) = rho_inf - (rho_inf - rho_0) exp(-(n/tau)^beta), Kohlrausch-Williams-Watts; rho_0 is
@@ -84,6 +87,7 @@ class StretchedExponential final : public PublishedLaw {
   std::string refusal(const Curve& curve) const override;
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
+  std::vector<Limit> limits() const override;
 };
 
 /// A(t) = A_inf (1 - 1 / (1 + B ln(1 + t/tau))), t the lag. PB eq. 6.
@@ -96,6 +100,7 @@ class Ageing final : public PublishedLaw {
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
   std::vector<Combination> combinations() const override;
+  std::vector<Limit> limits() const override;
 };
 
 /// Phi(z) = (Phi_0 - alpha z) / (1 + exp(beta (z - z_star))), t = height z in R; beta > 0. PB

@@ -33,6 +33,10 @@ class Descent {
   bool try_step(TrustStep& steps);
   void take(const Eigen::VectorXd& x);
   void polish();
+  bool spent() const { return options_.budget && options_.budget->spent(); }
+  void spend(Eigen::Index n) {
+    if (options_.budget) options_.budget->spend(n);
+  }
   bool over(EndReason reason) {
     at_.reason = reason;
     return false;
@@ -51,12 +55,14 @@ bool Descent::evaluate_all(const Eigen::VectorXd& x) {
   residuals_.values_and_jacobian(x, at_.r, at_.jacobian);
   ++at_.evaluations;
   ++at_.jacobian_evaluations;
+  spend(1 + residuals_.n_variables());
   return at_.r.allFinite() && at_.jacobian.allFinite() && std::isfinite(at_.r.squaredNorm());
 }
 
 bool Descent::evaluate(const Eigen::VectorXd& x) {
   residuals_.values(x, trial_r_);
   ++at_.evaluations;
+  spend(1);
   return trial_r_.allFinite() && std::isfinite(trial_r_.squaredNorm());
 }
 
@@ -142,6 +148,7 @@ bool Descent::iterate() {
   TrustStep steps(at_.jacobian, at_.r, scale_);
   if (steps.gradient_cosine() <= options_.gradient_tolerance) return over(EndReason::gradient);
   do {
+    if (spent()) return over(EndReason::budget);
     if (!try_step(steps)) return false;
   } while (!stepped_);
   return true;
@@ -225,6 +232,8 @@ const char* describe(EndReason reason) {
       return "no progress: no step lowers the cost";
     case EndReason::iteration_limit:
       return "limit: as many iterations as allowed";
+    case EndReason::budget:
+      return "limit: as many evaluations as allowed";
     case EndReason::not_finite:
       return "not finite: the model has no value at the start";
   }
@@ -239,7 +248,11 @@ bool is_minimum(EndReason reason) {
 Minimum minimise(const Residuals& residuals, const Eigen::VectorXd& start,
                  const SolverOptions& options) {
   Minimum best = Descent(residuals, options).run(start);
-  if (!options.fallbacks || best.reason == EndReason::not_finite || settled(best)) return best;
+  const auto ended = [&] {
+    return best.reason == EndReason::not_finite || best.reason == EndReason::budget ||
+           settled(best);
+  };
+  if (!options.fallbacks || ended()) return best;
   // A descent that ran to infinity or got stuck: other step lengths lead elsewhere.
   SolverOptions others[] = {options, options, options};
   others[0].geodesic_acceleration = !options.geodesic_acceleration;
@@ -258,7 +271,7 @@ Minimum minimise(const Residuals& residuals, const Eigen::VectorXd& start,
     best.iterations = iterations;
     best.evaluations = evaluations;
     best.jacobian_evaluations = jacobians;
-    if (settled(best)) break;
+    if (settled(best) || (options.budget && options.budget->spent())) break;
   }
   return best;
 }

@@ -25,6 +25,17 @@ class Residuals {
 /// the start, or by those of now.
 enum class StepScaling { largest, first, current };
 
+/// What all descents of a fit may spend together: evaluations of the residuals, a Jacobian counted
+/// as one for every variable.
+struct EvaluationBudget {
+  long long left = 0, used = 0;
+  bool spent() const { return left <= 0; }
+  void spend(long long n) {
+    used += n;
+    left -= n;
+  }
+};
+
 struct SolverOptions {
   /// Cosine of the angle between r and the columns of the Jacobian.
   double gradient_tolerance = 1e-12;
@@ -37,6 +48,8 @@ struct SolverOptions {
   /// |data|, what the residuals are a difference of; 0 where there is no such scale.
   double data_norm = 0;
   int max_iterations = 1000;
+  /// Shared by all descents of a fit, on one thread; without one only max_iterations end them.
+  EvaluationBudget* budget = nullptr;
   StepScaling scaling = StepScaling::largest;
   /// First trust region, in units of the scaled length of x.
   double first_radius = 1;
@@ -58,6 +71,7 @@ enum class EndReason {
   exact,            // the residuals are rounding: the curve is met exactly
   no_progress,      // no step, however short, lowers the cost
   iteration_limit,  // max_iterations
+  budget,           // the evaluations of the whole fit are used up
   not_finite        // r or J is not finite at the start
 };
 const char* describe(EndReason reason);

@@ -36,6 +36,12 @@ class Fit:
     report: dict[str, Any]
 
     @property
+    def limit(self) -> Fit | None:
+        """The law of fewer parameters that was fitted, where the least squares lie at a limit of this law."""
+        one = self.report.get("limit")
+        return None if one is None else Fit(one["model"], one["formula"], _parameters(one), None, one)
+
+    @property
     def restated(self) -> Fit | None:
         """The same fit in the parameters of the law that draws the same curves (eq. 4 for eq. 3), if any."""
         one = self.report.get("restated")

@@ -12,6 +12,30 @@ namespace jostle::inline study {
 
 namespace {
 
+/// In the parameters of the law, whichever law was fitted.
+ResampledErrors resampled_errors(const Model& model, const RealizationCurves& behind,
+                                 const Fit& fit, const ResamplingOptions& options) {
+  if (!fit.limit) return resample(model, behind, fit, options);
+  Fit at_limit = fit;
+  at_limit.estimates = fit.limit->estimates;
+  const ResampledErrors found = resample(*fit.limit->law, behind, at_limit, options);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  ResampledErrors errors;
+  errors.resamples = found.resamples;
+  errors.failed = found.failed;
+  const std::vector<Parameter>& known = fit.limit->law->parameters();
+  for (const Estimate& estimate : fit.estimates) {
+    const auto place = std::ranges::find(known, estimate.parameter.name, &Parameter::name);
+    const auto k = static_cast<std::size_t>(place - known.begin());
+    const bool has = place != known.end();
+    errors.errors.push_back(has ? found.errors[k] : infinite);
+    if (found.central.empty()) continue;
+    errors.middle.push_back(has ? found.middle[k] : Interval{-infinite, infinite});
+    errors.central.push_back(has ? found.central[k] : Interval{-infinite, infinite});
+  }
+  return errors;
+}
+
 FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& manner) {
   FitOptions options;
   options.fixed = manner.fixed;
@@ -23,7 +47,7 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
   const Curve weighted = curve.present.empty() ? curve : with_pooled_errors(curve, logarithmic);
   const RealizationCurves behind{curve.t, weighted.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
-  outcome.resampled = resample(model, behind, *found, manner.resampling);
+  outcome.resampled = resampled_errors(model, behind, *found, manner.resampling);
   return outcome;
 }
 
@@ -89,7 +113,8 @@ void add_estimates(Table& table, const EstimateColumns& columns, const std::stri
       values(prefix + "value", one, columns.value,
              "least squares; not a number where the data set no limits"),
       values(prefix + "error", one, columns.error,
-             "standard error that counts realizations or memory, for Student's t of error_dof"),
+             "standard error that counts realizations or memory: half the 68 % interval over "
+             "Student's t of error_dof"),
       values(prefix + "standard_error", one, columns.linear,
              "of a linear problem with independent points"),
       {prefix + "units", one, columns.units, "", "units of the parameter", ""},
@@ -130,19 +155,28 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
   }
 }
 
-/// The same curve in the parameters of another law.
+/// Estimates of another law of the same curve, along an axis of their own.
+void add_other_law(Table& table, const std::vector<Estimate>& estimates, const std::string& prefix,
+                   const std::string& what) {
+  const EstimateColumns columns(estimates);
+  const std::string axis = prefix + "parameter";
+  table.axes.push_back({axis, {axis}, columns.names, "", what, ""});
+  add_estimates(table, columns, axis, prefix);
+}
+
 void add_restated(Table& table, const RestatedFit& restated) {
-  const EstimateColumns columns(restated.estimates);
   table.notes.emplace_back("restated_model", restated.model);
   table.notes.emplace_back("restated_law", restated.formula);
   table.notes.emplace_back("restated_source", restated.source);
-  table.axes.push_back({"restated_parameter",
-                        {"restated_parameter"},
-                        columns.names,
-                        "",
-                        "parameters of the law that draws the same curve",
-                        ""});
-  add_estimates(table, columns, "restated_parameter", "restated_");
+  add_other_law(table, restated.estimates, "restated_",
+                "parameters of the law that draws the same curve");
+}
+
+void add_limit(Table& table, const LimitingFit& limit) {
+  table.notes.emplace_back("limit_model", limit.name);
+  table.notes.emplace_back("limit_law", limit.formula);
+  table.notes.emplace_back("limit", limit.statement);
+  add_other_law(table, limit.estimates, "limit_", "parameters of the limit that was fitted");
 }
 
 void add_curve(Table& table, const Curve& source, const Fit& fit) {
@@ -254,6 +288,7 @@ std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner
     }
     add_parameters(table, outcome, fit);
     if (fit.restated) add_restated(table, *fit.restated);
+    if (fit.limit) add_limit(table, *fit.limit);
     add_curve(table, source.curve, fit);
     add_statistics(table, fit);
     tables.push_back(std::move(table));

@@ -19,13 +19,27 @@ function interval(table, j, level, prefix = "") {
   return `${number(low)} to ${number(high)}`;
 }
 
+/// A value with half of its 68 % interval, as jostle fit prints it; alone where the interval is lopsided.
+function estimate(table, j, prefix) {
+  const value = table.value(`${prefix}value`, j);
+  const low = table.row(`${prefix}interval_lower`, j)[0], high = table.row(`${prefix}interval_upper`, j)[0];
+  const half = (high - low) / 2;
+  if (!Number.isFinite(half) || half > 4 * Math.min(value - low, high - value)) return number(value);
+  return withError(value, half);
+}
+
 function parameters(table, prefix = "", law = lawName(table)) {
   const names = table.axis(`${prefix}parameter`);
   return dataTable(["parameter", "estimate", "95 % interval", "what the data say of it"], names.map((name, j) => {
     const value = table.value(`${prefix}value`, j);
-    return [name, Number.isFinite(value) ? withError(value, table.value(`${prefix}error`, j)) : "not determined",
+    return [name, Number.isFinite(value) ? estimate(table, j, prefix) : "not determined",
             interval(table, j, 1, prefix), table.value(`${prefix}statement`, j)];
   }), `Parameters of the ${law}`);
+}
+
+/// What was fitted where the least squares lie at a limit of the law.
+function limiting(table) {
+  return table.notes.limit ? [statement("Limit", table.notes.limit), parameters(table, "limit_", table.notes.limit_law)] : [];
 }
 
 /// The same curve in the parameters of the law that draws it too.
@@ -109,13 +123,13 @@ export function fitsSection(chapter) {
         goodness(laws),
         ...laws.map((table) => element("details", {class: "law", open: laws.length === 1},
           element("summary", {}, element("b", {}, lawName(table)), ` \u2013 ${identified(table)}`),
-          statement("", table.notes.law), parameters(table), ...restated(table), statement("Combinations", table.notes.combinations),
+          statement("", table.notes.law), ...limiting(table), parameters(table), ...restated(table), statement("Combinations", table.notes.combinations),
           statement("Remarks", table.notes.remarks))),
       ].filter(Boolean);
     });
   });
   return section(chapter, "fits", "Fitted laws",
-    "Estimates are given as value(standard error); \u201cno limit\u201d means that the data allow any value beyond.", made.length > 0 ? content : null,
+    "Estimates are given as value(half of the 68 % interval); \u201cno limit\u201d means that the data allow any value beyond.", made.length > 0 ? content : null,
     refusals(chapter, tables));
 }
 
