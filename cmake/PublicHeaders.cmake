@@ -71,6 +71,7 @@ set(JOSTLE_PUBLIC_HEADERS
     ensemble/statistics/trend.hpp
     ensemble/tap_rows.hpp
     ensemble/target_precision.hpp
+    fitting/comparison/held_out.hpp
     fitting/counts.hpp
     fitting/curve.hpp
     fitting/fit.hpp

@@ -121,14 +121,12 @@ struct Fit {
   double residual_sum = 0;         // of squares, weighted: chi2 where errors were given
   double reduced_chi2 = 0;         // residual_sum / dof; infinite without dof
   double r2 = 0;                   // 1 - residual_sum / weighted sum about the weighted mean
-  double aic = 0, bic = 0;         // -2 ln L + 2 k, + k ln n; k counts the variance if estimated
   double condition = 0;            // of J^T J for columns of J of unit length
   RunsTest runs;                   // of the residuals in order of t
   double weighted_size = 0;  // points of equal weight that would weigh as much: (sum w)^2 / sum w^2
   Memory memory;             // of the residuals; of realizations none is looked for
   double effective_size = 0;  // points that independent residuals would be worth
   double error_factor = 1;    // sqrt(n_points / effective_size): honest errors are longer
-  double aic_effective = 0, bic_effective = 0;  // with likelihoods to the power effective_size/n
 
   std::vector<double> fitted;     // [n_points], the model at t
   std::vector<double> residuals;  // [n_points], X - fitted (ln X - ln fitted), unweighted

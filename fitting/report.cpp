@@ -36,6 +36,11 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text.str();
 }
 
+// "p = 0.013", "p < 1e-06".
+std::string p_text(double p) {
+  return p < 1e-6 ? "p < 1e-06" : "p = " + number(p, 2);
+}
+
 std::string value_text(const Estimate& estimate) {
   if (estimate.identifiability == Identifiability::fixed) {
     return number(estimate.value, 6) + " fixed";
@@ -138,9 +143,7 @@ std::string statistics(const Fit& fit) {
   text << "  " << fit.n_free << " free parameters; ended by " << describe(fit.reason) << " ("
        << fit.iterations << " iterations)\n";
   text << "  " << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.residual_sum, 5)
-       << ", AIC " << number(fit.aic, 6) << ", BIC " << number(fit.bic, 6) << "; for "
-       << number(fit.effective_size, 4) << " independent points AIC "
-       << number(fit.aic_effective, 6) << ", BIC " << number(fit.bic_effective, 6) << "; by weight "
+       << ", worth " << number(fit.effective_size, 4) << " independent points, by weight "
        << number(fit.weighted_size, 4) << " points\n";
   text << "  condition " << number(fit.condition, 3) << ", " << fit.runs.runs << " runs ("
        << number(fit.runs.expected, 4) << " expected, p = " << number(fit.runs.p, 2) << ")\n";
@@ -170,17 +173,31 @@ std::string what_is_identified(const Fit& fit) {
 }
 
 // Laws that draw the same curves are one law: the first of them competes.
-std::vector<const Fit*> best_first(const std::vector<Fit>& fits) {
-  std::vector<const Fit*> order;
+std::vector<const Fit*> distinct(const std::vector<Fit>& fits) {
+  std::vector<const Fit*> found;
   for (const Fit& fit : fits) {
-    const bool known = std::ranges::any_of(order, [&](const Fit* earlier) {
+    const bool known = std::ranges::any_of(found, [&](const Fit* earlier) {
       return earlier->restated && earlier->restated->model == fit.model;
     });
-    if (!known) order.push_back(&fit);
+    if (!known) found.push_back(&fit);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const Fit* a, const Fit* b) { return a->aic < b->aic; });
-  return order;
+  return found;
+}
+
+// How a law compares with the leading one: "two_exponentials (difference 0.021(4), p = 0.0013)".
+std::string difference_text(const HeldOutLaw& law) {
+  if (law.same_curve) return law.model + " (same curve)";
+  return law.model + " (difference " + value_with_error(law.difference, law.error) + ", " +
+         p_text(law.p) + ")";
+}
+
+std::string listed(const std::vector<std::string>& texts) {
+  std::string all;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) all += i + 1 < texts.size() ? ", " : " and ";
+    all += texts[i];
+  }
+  return all;
 }
 
 }  // namespace
@@ -199,33 +216,58 @@ std::string describe(const Fit& fit, ReportDetail detail) {
   return text.str();
 }
 
-std::string compare(const std::vector<Fit>& fits) {
+std::string compare(const std::vector<Fit>& fits, const LawComparison& comparison) {
   if (fits.empty()) return "";
-  const std::vector<const Fit*> order = best_first(fits);
   std::vector<std::vector<std::string>> rows = {
-      {"model", "free", "chi2/dof", "AIC", "above best", "BIC", "runs p"}};
-  for (const Fit* fit : order) {
-    // Likelihoods of X and of ln X are not on one scale.
+      {"model", "free", "chi2/dof", "held-out", "difference", "p", "runs p"}};
+  for (const Fit* fit : distinct(fits)) {
+    const auto law = std::ranges::find(comparison.laws, fit->model, &HeldOutLaw::model);
+    const bool is_compared = law != comparison.laws.end();
+    const bool is_leading = is_compared && law->model == comparison.laws[comparison.leading].model;
     rows.push_back({fit->model + (fit->logarithmic ? " (ln X)" : ""), std::to_string(fit->n_free),
-                    number(fit->reduced_chi2, 4), number(fit->aic, 6),
-                    number(fit->aic - order.front()->aic, 3), number(fit->bic, 6),
-                    number(fit->runs.p, 2)});
+                    number(fit->reduced_chi2, 4), is_compared ? number(law->squared_error, 5) : "-",
+                    is_leading                       ? "least"
+                    : is_compared && law->same_curve ? "same curve"
+                    : is_compared                    ? value_with_error(law->difference, law->error)
+                                                     : "-",
+                    is_compared && !is_leading ? number(law->p, 2) : "-", number(fit->runs.p, 2)});
   }
-  return table(rows);
+  std::string text = table(rows);
+  if (!comparison.laws.empty()) {
+    text +=
+        "  held-out: mean squared error of the prediction of a realization that the fit has "
+        "not seen, in variances of one realization\n";
+  }
+  for (const std::string& sentence : comparison.left_out) text += "  ! " + sentence + '\n';
+  return text;
 }
 
-std::string verdict(const std::vector<Fit>& fits) {
-  if (fits.empty()) return "";
-  const std::vector<const Fit*> order = best_first(fits);
-  std::string text = order.front()->model;
-  if (order.size() > 1) {
-    text += " has the least AIC (" + order[1]->model + ": " +
-            number(order[1]->aic - order.front()->aic, 3) + " above)";
+std::string choice_text(const LawComparison& comparison) {
+  if (!comparison.cannot_decide.empty()) return "cannot decide: " + comparison.cannot_decide;
+  if (comparison.laws.empty()) return "";
+  std::vector<std::string> worse, open;
+  for (const HeldOutLaw& law : comparison.laws) {
+    if (law.model == comparison.laws[comparison.leading].model) continue;
+    (law.worse ? worse : open).push_back(difference_text(law));
   }
-  text += ": " + what_is_identified(*order.front());
-  for (const Fit* fit : order) {
-    if (fit != order.front() && all_identified(*fit))
-      text += "; " + fit->model + ": all identified";
+  const std::string& leading = comparison.laws[comparison.leading].model;
+  const std::string others = listed(worse);
+  if (open.empty()) return leading + " predicts held-out realizations better than " + others;
+  std::string text = "undecided: " + listed(open) + (open.size() > 1 ? " do" : " does") +
+                     " not predict held-out realizations measurably worse than " + leading;
+  if (!worse.empty()) text += "; " + others + (worse.size() > 1 ? " do" : " does");
+  return text;
+}
+
+std::string verdict(const std::vector<Fit>& fits, const LawComparison& comparison) {
+  if (fits.empty()) return "";
+  if (fits.size() == 1) return fits.front().model + ": " + what_is_identified(fits.front());
+  std::string text = choice_text(comparison);
+  for (const Fit* fit : distinct(fits)) {
+    const bool is_chosen =
+        comparison.is_decided() && fit->model == comparison.laws[comparison.leading].model;
+    if (!is_chosen && !all_identified(*fit)) continue;
+    text += (text.empty() ? "" : "; ") + fit->model + ": " + what_is_identified(*fit);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "fitting/comparison/held_out.hpp"
 #include "fitting/fit.hpp"
 
 namespace jostle::inline fitting {
@@ -18,12 +19,16 @@ enum class ReportDetail {
 /// holds the value; "-" where that interval is open.
 std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
 
-/// Fits of one curve by several models, best AIC first: reduced chi2 (chi2/dof), AIC and BIC
-/// with their distance from the best.
-std::string compare(const std::vector<Fit>& fits);
+/// Fits of one curve by several models: reduced chi2 (chi2/dof) and how they predict realizations
+/// that were held out.
+std::string compare(const std::vector<Fit>& fits, const LawComparison& comparison);
 
-/// One line without a newline: the law of the least AIC, where the next is, and which of its
-/// parameters the data identify. Nothing where there is no fit.
-std::string verdict(const std::vector<Fit>& fits);
+/// Which law is chosen and on what grounds, or that the data do not decide: one line without a
+/// newline. Empty where fewer than two laws were fitted.
+std::string choice_text(const LawComparison& comparison);
+
+/// The choice of a law, then which parameters of the chosen law the data identify, then the other
+/// laws of which all parameters are identified. One line without a newline; nothing without a fit.
+std::string verdict(const std::vector<Fit>& fits, const LawComparison& comparison);
 
 }  // namespace jostle::inline fitting

@@ -213,7 +213,7 @@ FitManner manner_of(const FitArguments& arguments) {
 }
 
 Json source_json(const FittedCurve& fitted) {
-  const auto& [source, outcomes] = fitted;
+  const auto& [source, outcomes, comparison] = fitted;
   Json object = {{"title", source.title}, {"fits", Json::array()}};
   if (!source.point) object["notes"] = source.notes;
   if (source.point) {
@@ -226,6 +226,7 @@ Json source_json(const FittedCurve& fitted) {
     object["range"] = Json::array({source.curve.t.front(), source.curve.t.back()});
   }
   for (const FitOutcome& outcome : outcomes) object["fits"].push_back(fit_json(outcome));
+  if (outcomes.size() > 1) object["comparison"] = comparison_json(comparison);
   return object;
 }
 
@@ -245,7 +246,7 @@ int run_fits(const FitArguments& arguments) {
   std::optional<FittedCurve> drawn;  // the measured curve
   Json curves = Json::array();
   for (const FitSource& source : sources) {
-    const FittedCurve fitted{source, fit_models(models, source.curve, manner)};
+    const FittedCurve fitted = fit_curve(models, source, manner);
     const std::string refusal = refusal_of_all(fitted);
     any = any || refusal.empty();
     if (!refusal.empty()) refusals += (refusals.empty() ? "" : "\n") + refusal;

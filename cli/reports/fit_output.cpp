@@ -122,16 +122,12 @@ Json fit_json(const FitOutcome& outcome) {
                  {"residual_sum", number(fit.residual_sum)},
                  {"reduced_chi2", number(fit.reduced_chi2)},
                  {"r2", number(fit.r2)},
-                 {"aic", number(fit.aic)},
-                 {"bic", number(fit.bic)},
                  {"condition", number(fit.condition)},
                  {"runs", fit.runs.runs},
                  {"runs_expected", number(fit.runs.expected)},
                  {"runs_p", number(fit.runs.p)},
                  {"effective_points", number(fit.effective_size)},
                  {"error_factor", number(fit.error_factor)},
-                 {"aic_effective", number(fit.aic_effective)},
-                 {"bic_effective", number(fit.bic_effective)},
                  {"ended", describe(fit.reason)},
                  {"settled", is_minimum(fit.reason)},
                  {"iterations", fit.iterations},
@@ -163,6 +159,28 @@ Json fit_json(const FitOutcome& outcome) {
   return object;
 }
 
+Json comparison_json(const LawComparison& comparison) {
+  Json laws = Json::object(), candidates = Json::array();
+  for (const HeldOutLaw& law : comparison.laws) {
+    if (!law.worse) candidates.push_back(law.model);
+    laws[law.model] = {{"held_out_error", number(law.squared_error)},
+                       {"difference", number(law.difference)},
+                       {"difference_error", number(law.error)},
+                       {"t", number(law.t)},
+                       {"p", number(law.p)},
+                       {"worse", law.worse}};
+  }
+  const bool decided = comparison.is_decided();
+  return {{"choice", choice_text(comparison)},
+          {"decided", decided},
+          {"leading",
+           comparison.laws.empty() ? Json() : Json(comparison.laws[comparison.leading].model)},
+          {"candidates", candidates},
+          {"realizations", comparison.n_realizations},
+          {"laws", laws},
+          {"left_out", comparison.left_out}};
+}
+
 std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
   std::vector<Fit> fits;
   for (const FitOutcome& outcome : fitted.outcomes) {
@@ -170,14 +188,14 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
   }
   std::string text = fitted.source.title + "\n";
   for (const std::string& note : fitted.source.notes) text += fmt::format("  note     {}\n", note);
-  if (!fits.empty()) text += fmt::format("  verdict  {}\n", verdict(fits));
+  if (!fits.empty()) text += fmt::format("  verdict  {}\n", verdict(fits, fitted.comparison));
   const ReportDetail detail =
       layout.columns == Columns::all ? ReportDetail::full : ReportDetail::brief;
   for (const FitOutcome& outcome : fitted.outcomes) {
     text += '\n';
     text += fit_text(outcome, detail);
   }
-  if (fits.size() > 1) text.append("\n").append(compare(fits));
+  if (fits.size() > 1) text.append("\n").append(compare(fits, fitted.comparison));
   if (!fits.empty()) text += legend;
   text += '\n';
   return wrapped(text, layout.width);

@@ -12,6 +12,9 @@ namespace jostle::inline cli {
 /// Everything of a fit but residuals and fitted values; numbers that do not exist are null.
 Json fit_json(const FitOutcome& outcome);
 
+/// How laws predict held-out realizations, and the choice between them.
+Json comparison_json(const LawComparison& comparison);
+
 /// The report of a curve and its fits, for people: what it is, what is identified, then every fit
 /// with its resampled errors or the refusal, and their comparison. With all columns also what
 /// ReportDetail::full has.

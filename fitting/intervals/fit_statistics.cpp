@@ -10,8 +10,6 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double two_pi = 6.283185307179586;
-
 std::vector<double> in_order_of_t(const Curve& curve, const Eigen::VectorXd& weighted) {
   std::vector<std::size_t> order(curve.t.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -44,19 +42,6 @@ double total_sum(const Curve& curve, bool logarithmic) {
   return sum;
 }
 
-// -2 ln L of independent normal residuals; where their variance is unknown it takes its most likely
-// value.
-double deviance(const Curve& curve, const Fit& fit, bool logarithmic) {
-  const auto n = static_cast<double>(fit.n_points);
-  if (!fit.sigma_given) return n * (std::log(two_pi * fit.residual_sum / n) + 1);
-  double sum = fit.residual_sum;
-  for (std::size_t i = 0; i < fit.n_points; ++i) {
-    const double sigma = logarithmic ? curve.sigma[i] / curve.x[i] : curve.sigma[i];
-    sum += std::log(two_pi) + 2 * std::log(sigma);
-  }
-  return sum;
-}
-
 // Weights are 1 over squared errors, of X or ln X. Points that have none weigh alike.
 double weighted_size(const Curve& curve, bool logarithmic) {
   if (curve.sigma.empty()) return static_cast<double>(curve.t.size());
@@ -72,11 +57,6 @@ double weighted_size(const Curve& curve, bool logarithmic) {
     squares += share * share;
   }
   return sum * sum / squares;
-}
-
-// Parameters, and the variance of a residual where it is estimated.
-std::size_t n_estimated(const Fit& fit) {
-  return fit.n_free + (fit.sigma_given ? 0 : 1);
 }
 
 }  // namespace
@@ -106,20 +86,11 @@ void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& f
   fit.runs = runs_test(sorted);
   fit.effective_size = effective_sample_size(sorted);
   fit.weighted_size = weighted_size(curve, logarithmic);
-  const double likelihood = deviance(curve, fit, logarithmic);
-  const auto k = static_cast<double>(n_estimated(fit));
-  fit.aic = likelihood + 2 * k;
-  fit.bic = likelihood + k * std::log(static_cast<double>(fit.n_points));
   count_effective_points(fit);
 }
 
 void count_effective_points(Fit& fit) {
-  const auto n = static_cast<double>(fit.n_points);
-  const auto k = static_cast<double>(n_estimated(fit));
-  fit.error_factor = std::sqrt(n / fit.effective_size);
-  const double effective = (fit.aic - 2 * k) * fit.effective_size / n;
-  fit.aic_effective = effective + 2 * k;
-  fit.bic_effective = effective + k * std::log(fit.effective_size);
+  fit.error_factor = std::sqrt(static_cast<double>(fit.n_points) / fit.effective_size);
 }
 
 }  // namespace jostle::inline fitting

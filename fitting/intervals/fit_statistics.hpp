@@ -15,12 +15,12 @@ struct InverseNormal {
 };
 InverseNormal inverse_normal(const Eigen::MatrixXd& jacobian);
 
-/// Fills what follows from residuals and counts: residual sum, reduced chi2, R2, AIC, BIC, runs,
-/// weighted and effective size. `weighted`: [n_points], the residuals over their errors; the fit's
+/// Fills what follows from residuals and counts: residual sum, reduced chi2, R2, runs, weighted
+/// and effective size. `weighted`: [n_points], the residuals over their errors; the fit's
 /// n_points, n_free, dof, sigma_given and residuals are set.
 void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& fit);
 
-/// Fills error_factor, aic_effective and bic_effective from effective_size.
+/// Fills error_factor from effective_size.
 void count_effective_points(Fit& fit);
 
 /// Judges every estimate by its 95 % interval and says so. Adds remarks on what the errors rest on,

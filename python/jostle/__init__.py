@@ -18,7 +18,7 @@ from .commands import analyse, cost, export, fit, report, run, structure
 from .contacts import Contacts
 from .errors import (BadArgument, Fault, JostleError, NoSuchPoint, NotThere, ProgramError, ProgramMissing,
                      RealizationsFailed, ResultsError, RunStopped, SceneError, UnfinishedRun, WrongType)
-from .fits import Fit, FittedCurve, Parameter
+from .fits import Choice, Fit, FittedCurve, HeldOut, Parameter
 from .point import Box, Point
 from .program import program_path
 from .results import Results, open
@@ -28,8 +28,8 @@ from .tables import Quantity, Table, Tables
 
 __version__ = "0.2.0"
 
-__all__ = ["BadArgument", "Box", "Checked", "Contacts", "Fault", "Fit", "FittedCurve", "JostleError", "NoSuchPoint",
-           "NotThere", "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity",
+__all__ = ["BadArgument", "Box", "Checked", "Choice", "Contacts", "Fault", "Fit", "FittedCurve", "HeldOut", "JostleError",
+           "NoSuchPoint", "NotThere", "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity",
            "RealizationsFailed", "Results", "ResultsError", "RunStopped", "SceneError", "Table",
            "Tables", "UnfinishedRun", "WrongType", "analyse", "check", "cost", "export", "fit",
            "half_width", "open", "plot", "program_path", "report", "run", "schema", "structure"]

@@ -27,7 +27,7 @@ class Parameter:
 @dataclasses.dataclass(frozen=True)
 class Fit:
     """A law fitted to a curve. refused: why there is none (parameters is empty then). report: all that
-    `jostle fit --json` has of it: reduced_chi2, r2, aic, covariance, remarks and more."""
+    `jostle fit --json` has of it: reduced_chi2, r2, covariance, remarks and more."""
 
     model: str
     formula: str
@@ -52,11 +52,38 @@ class Fit:
 
 
 @dataclasses.dataclass(frozen=True)
+class HeldOut:
+    """How a law predicts realizations that were held out. squared_error: mean over points, in variances of one
+    realization. difference: from the leading law, with its standard error. p: p-value of the hypothesis that the law is
+    as close to the mean curve as the leading law, corrected for the number of laws. worse: p < 0.05."""
+
+    squared_error: float
+    difference: float
+    error: float
+    p: float
+    worse: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """The choice of a law by held-out realizations. law: the chosen law, None where the data do not decide. candidates:
+    laws that are not worse than the leading law. verdict: in words. laws: law -> HeldOut; empty where nothing was
+    compared."""
+
+    law: str | None
+    candidates: tuple[str, ...]
+    verdict: str
+    laws: dict[str, HeldOut]
+
+
+@dataclasses.dataclass(frozen=True)
 class FittedCurve:
-    """title: which curve. fits: law -> fit; a law that was fitted under another name is found by either."""
+    """title: which curve. choice: of a law, None where one law was fitted. fits: law -> fit; a law that was fitted
+    under another name is found by either."""
 
     title: str
     fits: dict[str, Fit]
+    choice: Choice | None = None
 
     def __getitem__(self, model: str) -> Fit:
         if model not in self.fits:
@@ -83,6 +110,15 @@ def _fit(one: dict[str, Any]) -> Fit:
     return Fit(one["model"], one.get("formula", ""), _parameters(one), one.get("refused"), one)
 
 
+def _choice(one: dict[str, Any] | None) -> Choice | None:
+    if one is None:
+        return None
+    laws = {name: HeldOut(_number(law["held_out_error"]), _number(law["difference"]), _number(law["difference_error"]),
+                          _number(law["p"]), law["worse"]) for name, law in one["laws"].items()}
+    return Choice(one["leading"] if one["decided"] else None, tuple(one["candidates"]), one["choice"], laws)
+
+
 def fitted_curves(report: dict[str, Any]) -> list[FittedCurve]:
-    return [FittedCurve(curve["title"], {one["model"]: _fit(one) for one in curve["fits"]})
+    return [FittedCurve(curve["title"], {one["model"]: _fit(one) for one in curve["fits"]},
+                        _choice(curve.get("comparison")))
             for curve in report["curves"]]

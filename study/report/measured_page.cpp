@@ -99,7 +99,7 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
   }
   std::string text = fmt::format(head, html_text(fitted.source.title));
   text += listed(fitted.source.notes);
-  if (!fits.empty()) text += paragraph(verdict(fits));
+  if (!fits.empty()) text += paragraph(verdict(fits, fitted.comparison));
   for (const PageFigure& figure : figures) text += figure_html(figure);
   for (const Fit& fit : fits) text += law_html(fit);
   text += listed(refusals);

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
+#include <utility>
 
+#include "fitting/report.hpp"
 #include "results/file/layout.hpp"
 #include "study/results_input.hpp"
 
@@ -197,10 +200,6 @@ void add_statistics(Table& table, const Fit& fit) {
       {"residual_sum", fit.residual_sum},
       {"reduced_chi2", fit.reduced_chi2},
       {"r2", fit.r2},
-      {"aic", fit.aic},
-      {"bic", fit.bic},
-      {"aic_effective", fit.aic_effective},
-      {"bic_effective", fit.bic_effective},
       {"condition", fit.condition},
       {"effective_points", fit.effective_size},
       {"weighted_points", fit.weighted_size},
@@ -209,6 +208,27 @@ void add_statistics(Table& table, const Fit& fit) {
       {"runs_p", fit.runs.p}};
   for (const auto& [name, value] : numbers) {
     table.quantities.push_back(values(name, {}, {value}, ""));
+  }
+}
+
+// How the law predicts held-out realizations, and the choice among those fitted with it.
+void add_comparison(Table& table, const std::string& model, const LawComparison& comparison) {
+  const std::string choice = choice_text(comparison);
+  if (choice.empty()) return;
+  table.notes.emplace_back("choice", choice);
+  table.notes.emplace_back("left_out", lines(comparison.left_out));
+  const auto law = std::ranges::find(comparison.laws, model, &HeldOutLaw::model);
+  if (law == comparison.laws.end()) return;
+  const std::tuple<const char*, double, const char*> numbers[] = {
+      {"held_out_error", law->squared_error,
+       "mean squared error of prediction of held-out realizations, in variances of one"},
+      {"held_out_difference", law->difference, "held_out_error less that of the leading law"},
+      {"held_out_difference_error", law->error,
+       "standard error, for Student's t of the realizations less 1"},
+      {"held_out_p", law->p,
+       "p-value of the hypothesis that this law is as close to the mean as the leading law"}};
+  for (const auto& [name, value, meaning] : numbers) {
+    table.quantities.push_back(values(name, {}, {value}, meaning));
   }
 }
 
@@ -249,8 +269,22 @@ std::string refusal_of_all(const FittedCurve& fitted) {
   return text;
 }
 
+FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSource source,
+                      const FitManner& manner) {
+  FittedCurve fitted{std::move(source), {}};
+  fitted.outcomes = fit_models(models, fitted.source.curve, manner);
+  std::vector<FittedLaw> laws;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (const auto* found = std::get_if<Fit>(&fitted.outcomes[i].result)) {
+      laws.push_back({models[i].get(), found});
+    }
+  }
+  fitted.comparison = compare_laws(laws, fitted.source.curve);
+  return fitted;
+}
+
 std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner) {
-  const auto& [source, outcomes] = fitted;
+  const auto& [source, outcomes, comparison] = fitted;
   std::vector<Table> tables;
   for (const FitOutcome& outcome : outcomes) {
     Table table;
@@ -291,6 +325,7 @@ std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner
     if (fit.limit) add_limit(table, *fit.limit);
     add_curve(table, source.curve, fit);
     add_statistics(table, fit);
+    add_comparison(table, outcome.model, comparison);
     tables.push_back(std::move(table));
   }
   return tables;
@@ -306,8 +341,7 @@ std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const Fit
                                       : std::numeric_limits<double>::infinity()};
     for (FitSource& source :
          results_curves(file, chosen_points(file.study(), ""), request.observable, range)) {
-      std::vector<FitOutcome> outcomes = fit_models(models, source.curve, manner);
-      all.push_back({std::move(source), std::move(outcomes)});
+      all.push_back(fit_curve(models, std::move(source), manner));
       if (observer) observer(all.back());
     }
   }

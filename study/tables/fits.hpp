@@ -12,6 +12,7 @@
 #include "config/scene.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/statistics/resampled_fit.hpp"
+#include "fitting/comparison/held_out.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
 #include "study/tables/fit_source.hpp"
@@ -34,10 +35,11 @@ struct FitOutcome {
   std::optional<ResampledErrors> resampled;
 };
 
-/// A curve with its fits, one a model.
+/// A curve with its fits, one per model, and their comparison.
 struct FittedCurve {
   FitSource source;
   std::vector<FitOutcome> outcomes;
+  LawComparison comparison = {};
 };
 
 /// A model of docs/fitting.md, or for "all" every law of an approach to a final value. Empty where
@@ -50,6 +52,10 @@ std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& mo
 /// Why no law could be fitted to a curve, each reason with the laws that it concerns; empty where
 /// one was fitted.
 std::string refusal_of_all(const FittedCurve& fitted);
+
+/// Fits every model to a curve and compares the laws that could be fitted.
+FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSource source,
+                      const FitManner& manner);
 
 /// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `manner` says how
 /// resampled errors were made.

@@ -3,6 +3,7 @@
 import json
 import math
 import unittest
+from random import Random
 
 import h5py
 from support import BAD_INPUT, OK, SOURCE, TINY, UNFOLDED, Case, changed
@@ -62,17 +63,47 @@ class Measured(WithCurve):
                                    1, places=6)
         self.assertAlmostEqual(a["residual_sum"] / (b["residual_sum"] * 9e-10), 1, places=6)
 
-    def test_all_laws_are_compared_and_the_true_one_is_best(self):
-        self.write(self.table(), "data.csv")
-        fits = self.fit_json("data.csv")["curves"][0]["fits"]
-        self.assertEqual([fit["model"] for fit in fits],
-                         ["inverse_log", "two_exponentials", "kww"])
-        aic = {fit["model"]: fit["aic"] for fit in fits}
-        self.assertLess(aic["inverse_log"], aic["kww"])
-        self.assertLess(aic["inverse_log"], aic["two_exponentials"])
-        text = self.jostle("fit", "data.csv").stdout
-        self.assertIn("above best", text)
-        self.assertIn("X_inf - dX / (1 + B ln(1 + t/tau))", text)
+    def test_one_curve_does_not_choose_a_law(self):
+        for sigma in (None, 3e-5):
+            self.write(self.table(sigma=sigma, header="t,X,sigma\n" if sigma else "t,X\n"), "data.csv")
+            curve = self.fit_json("data.csv")["curves"][0]
+            self.assertEqual([fit["model"] for fit in curve["fits"]],
+                             ["inverse_log", "two_exponentials", "kww"])
+            self.assertFalse(curve["comparison"]["decided"])
+            self.assertEqual(curve["comparison"]["laws"], {})
+            text = self.jostle("fit", "data.csv").stdout
+            self.assertIn("cannot decide: the choice of a law requires 3 independent realizations",
+                          " ".join(text.split()))
+            self.assertIn("X_inf - dX / (1 + B ln(1 + t/tau))", text)
+            self.assertNotIn("AIC", text)
+
+    def realizations(self, count, noise):
+        """With levels of their own, of the inverse log."""
+        random = Random(1)
+        lines = ["t," + ",".join(f"r{m}" for m in range(count))]
+        levels = [random.gauss(0, 1e-3) for _ in range(count)]
+        for t, _ in self.rows:
+            values = [inverse_log(t) + level + random.gauss(0, noise) for level in levels]
+            lines.append(",".join(map(repr, [t, *values])))
+        return "\n".join(lines) + "\n"
+
+    def test_held_out_realizations_choose_the_true_law_or_none(self):
+        for noise, decided in ((3e-5, True), (3e-2, False)):
+            self.write(self.realizations(6, noise), "data.csv")
+            comparison = self.fit_json("data.csv", "--realizations")["curves"][0]["comparison"]
+            self.assertEqual(comparison["decided"], decided)
+            self.assertEqual(comparison["realizations"], 6)
+            laws = comparison["laws"]
+            self.assertEqual(set(laws), {"inverse_log", "two_exponentials", "kww"})
+            self.assertFalse(laws["inverse_log"]["worse"])
+            text = " ".join(self.jostle("fit", "data.csv", "--realizations").stdout.split())
+            if decided:
+                self.assertEqual(comparison["leading"], "inverse_log")
+                self.assertEqual(comparison["candidates"], ["inverse_log"])
+                self.assertTrue(laws["kww"]["worse"] and laws["kww"]["p"] < 0.05)
+                self.assertIn("verdict inverse_log predicts held-out realizations better than", text)
+            else:
+                self.assertIn("verdict undecided: ", text)
 
     def test_a_range_and_a_fixed_parameter_are_kept(self):
         self.write(self.table(), "data.csv")
@@ -391,6 +422,15 @@ class Kept(Case):
         self.assertEqual(self.tables(), ["fits/point_0000/mean_height/kww"] +
                          [f"fits/point_0001/mean_height/{law}" for law in laws])
         self.assertEqual(self.digest("tiny.h5"), digest)
+        with h5py.File(self.folder / "tiny.h5") as file:
+            choices = set()
+            for law in laws:
+                table = file[f"fits/point_0001/mean_height/{law}"]
+                choices.add(table.attrs["note_choice"])
+                self.assertGreaterEqual(table["held_out_difference"][()], 0)
+                self.assertTrue(0 <= table["held_out_p"][()] <= 1)
+                self.assertNotIn("aic", table)
+            self.assertEqual(len(choices), 1)
 
     def test_an_own_law_is_kept_with_its_formula(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))

@@ -23,10 +23,9 @@ Curve sampled(const Model& model, const ParameterValues& p, const std::vector<do
 }
 
 bool has_nan(const Fit& fit) {
-  std::vector<double> numbers = {
-      fit.residual_sum,   fit.reduced_chi2,  fit.r2,           fit.aic,    fit.bic,
-      fit.condition,      fit.runs.expected, fit.runs.z,       fit.runs.p, fit.error_factor,
-      fit.effective_size, fit.aic_effective, fit.bic_effective};
+  std::vector<double> numbers = {fit.residual_sum, fit.reduced_chi2,  fit.r2,
+                                 fit.condition,    fit.runs.expected, fit.runs.z,
+                                 fit.runs.p,       fit.error_factor,  fit.effective_size};
   for (const Estimate& e : fit.estimates) {
     numbers.insert(numbers.end(), {e.value, e.standard_error});
     for (const Interval& i : e.intervals) numbers.insert(numbers.end(), {i.lower, i.upper});

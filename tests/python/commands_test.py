@@ -202,6 +202,23 @@ class Derive(Case):
                                        if np.isfinite(one.interval_95[0])])
         self.assertEqual(table.notes["observable"], "mean_height")
         self.assertEqual(table.made["version"], jostle.__version__)
+        self.assertIsNone(curve.choice)
+
+    def test_a_law_is_chosen_by_realizations_alone(self):
+        taps = range(1, 60)
+        pathlib.Path("one.csv").write_text("t,X\n" + "".join(
+            f"{t},{0.6 - 0.05 * np.exp(-t / 9) + 1e-4 * np.sin(9 * t * t)}\n" for t in taps))
+        (curve,) = jostle.fit("one.csv")
+        self.assertIsNone(curve.choice.law)
+        self.assertTrue(curve.choice.verdict.startswith("cannot decide"))
+        random = np.random.default_rng(1)
+        law = lambda t: 0.64 - 0.06 / (1 + 0.5 * np.log1p(t / 8))
+        pathlib.Path("six.csv").write_text("t," + ",".join(f"r{m}" for m in range(6)) + "\n" + "".join(
+            f"{t}," + ",".join(map(repr, map(float, law(t) + 1e-5 * random.normal(size=6)))) + "\n" for t in taps))
+        (curve,) = jostle.fit("six.csv", realizations=True)
+        self.assertEqual((curve.choice.law, curve.choice.candidates), ("inverse_log", ("inverse_log",)))
+        self.assertTrue(curve.choice.laws["kww"].worse)
+        self.assertGreater(curve.choice.laws["kww"].difference, 0)
 
     def test_faults_and_warnings_are_whole(self):
         with self.assertRaises(jostle.SceneError) as raised:

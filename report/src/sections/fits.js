@@ -103,11 +103,21 @@ function residualFigure(chapter, tables, observable) {
 
 function goodness(tables) {
   if (tables.length < 2) return null;
-  const least = Math.min(...tables.map((table) => table.value("aic")).filter(Number.isFinite));
-  return dataTable(["law", "formula", "reduced \u03c7\u00b2", "R\u00b2", "AIC above the least", "points", "independent points"], tables.map((table) =>
-    [lawName(table), table.notes.law ?? "", number(table.value("reduced_chi2"), 3), number(table.value("r2"), 5),
-     number(table.value("aic") - least, 3), number(table.value("points"), 6), number(table.value("effective_points"), 3)]),
-  "The laws compared. AIC takes all fitted taps for independent: where the independent points are few, its differences say little");
+  return dataTable(["law", "formula", "reduced \u03c7\u00b2", "R\u00b2", "held-out error", "difference", "p", "points", "independent points"],
+    tables.map((table) => [lawName(table), table.notes.law ?? "", number(table.value("reduced_chi2"), 3), number(table.value("r2"), 5),
+      ...(table.has("held_out_error") ?
+        [number(table.value("held_out_error"), 5), withError(table.value("held_out_difference"), table.value("held_out_difference_error")),
+         number(table.value("held_out_p"), 2)] :
+        ["\u2013", "\u2013", "\u2013"]),
+      number(table.value("points"), 6), number(table.value("effective_points"), 3)]),
+    "The laws compared. Held-out error: mean squared error of the prediction of a realization that the fit has not seen, in variances " +
+    "of one realization; difference: from the leading law, with its standard error; p: of the hypothesis that the law is as close to " +
+    "the mean curve as the leading law");
+}
+
+/// Which law is chosen, for each set of laws that were fitted together.
+function choices(tables) {
+  return [...new Set(tables.map((table) => table.notes.choice).filter(Boolean))].map((text) => statement("Choice", text));
 }
 
 export function fitsSection(chapter) {
@@ -120,7 +130,7 @@ export function fitsSection(chapter) {
       const laws = distinct(here.filter((table) => table.path[0] === observable));
       return [
         pair(dataFigure(chapter, laws, observable), residualFigure(chapter, laws, observable)),
-        goodness(laws),
+        ...choices(laws), goodness(laws),
         ...laws.map((table) => element("details", {class: "law", open: laws.length === 1},
           element("summary", {}, element("b", {}, lawName(table)), ` \u2013 ${identified(table)}`),
           statement("", table.notes.law), ...limiting(table), parameters(table), ...restated(table), statement("Combinations", table.notes.combinations),

@@ -46,18 +46,23 @@ TEST_CASE("a report for people names what it gives") {
     curve.t.push_back(t);
     curve.x.push_back(InverseLog().value(t, truth.data()) + 3e-4 * ((curve.t.size() % 3) - 1.0));
   }
-  const Fit wide = std::get<Fit>(fit(InverseLog(), curve));
+  const InverseLog inverse_log;
+  const StretchedExponential kww;
+  const Fit wide = std::get<Fit>(fit(inverse_log, curve));
   const std::string report = describe(wide, ReportDetail::full);
-  for (const char* part : {"inverse_log: X = X_inf - dX", "eq. 3", "95 %", "tau", "30 points",
-                           "AIC", "condition", "runs", "not unique", "linear error"}) {
+  for (const char* part :
+       {"inverse_log: X = X_inf - dX", "eq. 3", "95 %", "tau", "30 points", "independent points",
+        "condition", "runs", "not unique", "linear error"}) {
     INFO(report);
     CHECK(contains(report, part));
   }
   CHECK_FALSE(contains(report, "nan"));
-  const Fit other = std::get<Fit>(fit(StretchedExponential(), curve));
-  const std::string table = compare({wide, other});
-  const bool first = wide.aic < other.aic;
-  CHECK((table.find("inverse_log") < table.find("kww")) == first);
+  const Fit other = std::get<Fit>(fit(kww, curve));
+  const LawComparison comparison = compare_laws({{&inverse_log, &wide}, {&kww, &other}}, curve);
+  CHECK(contains(compare({wide, other}, comparison), "kww"));
+  CHECK(verdict({wide, other}, comparison)
+            .starts_with(
+                "cannot decide: the choice of a law requires 3 independent realizations or more"));
 }
 
 TEST_CASE("a report gives a value the error that its interval bears out") {

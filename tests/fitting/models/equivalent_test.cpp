@@ -105,10 +105,16 @@ TEST_CASE("One law under two names is ranked once and reported under both") {
   const Curve curve = heights(2);
   const std::vector<Fit> fits = {fitted(InverseLog(), curve), fitted(InverseLogHeight(), curve),
                                  fitted(StretchedExponential(), curve)};
-  const std::string table = compare(fits);
+  const InverseLog eq_3;
+  const InverseLogHeight eq_4;
+  const StretchedExponential kww;
+  const LawComparison comparison =
+      compare_laws({{&eq_3, &fits[0]}, {&eq_4, &fits[1]}, {&kww, &fits[2]}}, curve);
+  const std::string table = compare(fits, comparison);
   CHECK(table.find("inverse_log ") != std::string::npos);
   CHECK(table.find("inverse_log_height") == std::string::npos);
-  CHECK(verdict(fits).find("inverse_log_height") == std::string::npos);
+  CHECK(comparison.laws.size() == 2);
+  CHECK(verdict(fits, comparison).find("inverse_log_height") == std::string::npos);
   const std::string report = describe(fits[0]);
   for (const char* name : {"X_inf", "dX", "inverse_log_height", "Z_inf", "Z_0", "eq. 4"}) {
     CAPTURE(name);
