@@ -93,9 +93,22 @@ struct Predictions {
   double squared_error = 0;  // sum over points
 };
 
-FitOptions refit_options(const Fit& fit) {
+// The law that was fitted: at a limit of a law, that of the limit.
+struct FittedModel {
+  explicit FittedModel(const FittedLaw& law)
+      : model(law.fit->limit ? *law.fit->limit->law : *law.model),
+        estimates(law.fit->limit ? law.fit->limit->estimates : law.fit->estimates) {
+    for (const Estimate& estimate : estimates) values.push_back(estimate.value);
+  }
+
+  const Model& model;
+  const std::vector<Estimate>& estimates;
+  ParameterValues values;
+};
+
+FitOptions refit_options(const FittedModel& law) {
   FitOptions options;
-  options.start = fit.values();
+  options.start = law.values;
   options.multi_start = false;
   options.profiles = false;
   options.memory = false;
@@ -104,7 +117,7 @@ FitOptions refit_options(const Fit& fit) {
   options.solver.max_iterations = 100;
   options.solver.fallbacks = false;
   options.solver.polish = false;
-  for (const Estimate& estimate : fit.estimates) {
+  for (const Estimate& estimate : law.estimates) {
     if (estimate.identifiability == Identifiability::fixed) {
       options.fixed[estimate.parameter.name] = estimate.value;
     }
@@ -117,16 +130,17 @@ Predictions predictions(const Ensemble& ensemble, const FittedLaw& law, std::str
   Predictions found;
   found.model = law.model->name();
   found.dof = std::min(law.fit->error_dof, static_cast<double>(ensemble.n_realizations() - 1));
-  found.fitted = weighted_curve(ensemble, *law.model, law.fit->values());
+  const FittedModel fitted(law);
+  found.fitted = weighted_curve(ensemble, fitted.model, fitted.values);
   found.held_out.resize(ensemble.n_points(), ensemble.n_realizations());
-  FitOptions options = refit_options(*law.fit);
+  FitOptions options = refit_options(fitted);
   for (Eigen::Index m = 0; m < ensemble.n_realizations(); ++m) {
     const Curve others = without(ensemble, m);
     options.multi_start = false;
-    auto result = fit(*law.model, others, options);
+    auto result = fit(fitted.model, others, options);
     if (std::holds_alternative<Refusal>(result)) {
       options.multi_start = true;
-      result = fit(*law.model, others, options);
+      result = fit(fitted.model, others, options);
     }
     if (const auto* refusal = std::get_if<Refusal>(&result)) {
       std::ostringstream text;
@@ -135,7 +149,7 @@ Predictions predictions(const Ensemble& ensemble, const FittedLaw& law, std::str
       fault = text.str();
       return found;
     }
-    found.held_out.col(m) = weighted_curve(ensemble, *law.model, std::get<Fit>(result).values());
+    found.held_out.col(m) = weighted_curve(ensemble, fitted.model, std::get<Fit>(result).values());
   }
   found.residual_sum = (ensemble.mean - found.fitted).square().sum();
   return found;

@@ -274,6 +274,34 @@ TEST_CASE("Laws that draw one curve are not told apart") {
   }
 }
 
+TEST_CASE("A law at its limit is compared as the law of that limit") {
+  // 1 / (1 + t/50): the inverse log of infinite B and tau.
+  const InverseLog inverse_log;
+  const StretchedExponential kww;
+  int limits = 0;
+  for (int number = 1; number <= 5; ++number) {
+    Noise noise(static_cast<std::uint64_t>(number));
+    const std::vector<double> t = geometric(1, 1000, 60);
+    std::vector<double> values;
+    for (const double tap : t) {
+      for (int m = 0; m < 6; ++m) values.push_back(1 - 1 / (1 + tap / 50) + 2e-3 * noise());
+    }
+    const Curve curve = mean_curve(t, std::move(values), 6);
+    const Fit one = std::get<Fit>(fit(inverse_log, curve)), other = std::get<Fit>(fit(kww, curve));
+    limits += one.limit.has_value();
+    const LawComparison found = compare_laws({{&inverse_log, &one}, {&kww, &other}}, curve);
+    REQUIRE(found.laws.size() == 2);
+    for (const HeldOutLaw& law : found.laws) {
+      CHECK(std::isfinite(law.squared_error));
+      CHECK(std::isfinite(law.difference));
+      CHECK(std::isfinite(law.error));
+    }
+    CHECK(found.laws[found.leading].model == "inverse_log");
+    CHECK(found.is_decided());
+  }
+  CHECK(limits > 0);
+}
+
 TEST_CASE("The law that made few realizations is found, the wrong one seldom", "[statistics]") {
   constexpr int ensembles = 20;
   for (const char* name : {"inverse_log", "kww", "one exponential"}) {
