@@ -64,6 +64,11 @@ double squared_norm(const Curve& curve) {
   return sum;
 }
 
+// What rounding leaves of the residuals of a law that meets the curve.
+double exact_cost(const Curve& curve) {
+  return rounding * rounding * squared_norm(curve);
+}
+
 // The law near its limit, with the limits that a curve sets to what has no value there.
 class NearLimit {
  public:
@@ -211,6 +216,8 @@ std::vector<LimitCandidate> limit_candidates(const Model& model, const Curve& cu
     const auto* found = std::get_if<Fit>(&outcome);
     if (!found || !std::isfinite(found->residual_sum)) continue;
     candidates.push_back({limit, *inner, found->residual_sum, found->dof});
+    // No law is lower, and those of more parameters would crawl towards this one.
+    if (found->residual_sum <= exact_cost(with_pooled_errors(curve))) break;
   }
   return candidates;
 }
@@ -219,8 +226,7 @@ const LimitCandidate* reached(const std::vector<LimitCandidate>& candidates, con
                               std::optional<double> cost, std::size_t dof) {
   if (candidates.empty()) return nullptr;
   const Curve curve = with_pooled_errors(source);
-  const double exact = rounding * rounding * squared_norm(curve);
-  double allowed = exact;
+  double allowed = exact_cost(curve);
   if (cost && dof > 0) {
     const double variance = curve.sigma.empty() ? *cost / static_cast<double>(dof) : 1;
     allowed = std::max(allowed, *cost + unnoticed * variance);

@@ -197,7 +197,7 @@ TEST_CASE("Curves without noise reach their limits in few evaluations") {
     CHECK(found.limit->name == "line_in_ln_t");
     CHECK(found.limit->estimates[0].value == Approx(0.5).epsilon(1e-12));
     CHECK(found.limit->estimates[1].value == Approx(0.01).epsilon(1e-10));
-    CHECK(found.total_evaluations < 30000);
+    CHECK(found.total_evaluations < 2000);
     for (const Estimate& estimate : found.estimates) CHECK_FALSE(estimate.has_value());
   }
 }
