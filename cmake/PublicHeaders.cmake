@@ -89,6 +89,7 @@ set(JOSTLE_PUBLIC_HEADERS
     results/export/particle_columns.hpp
     results/live_run.hpp
     results/merge.hpp
+    results/patience.hpp
     results/record.hpp
     results/results_file.hpp
     results/run_store.hpp

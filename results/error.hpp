@@ -23,4 +23,10 @@ class ResultsError : public std::runtime_error {
   Force force_;
 };
 
+/// Another process works on the file.
+class LockHeld : public ResultsError {
+ public:
+  using ResultsError::ResultsError;
+};
+
 }  // namespace jostle::inline results

@@ -104,9 +104,10 @@ ResultsFile live_results(const std::string& named, Content content) {
   return read_undisturbed(results_path, [&] { return joined_once(results_path, named, content); });
 }
 
-void write_copy(const std::string& named, const std::string& output, bool live) {
+void write_copy(const std::string& named, const std::string& output, bool live,
+                const Patience& patience) {
   const std::string results_path = end_of_links(named), replaced = output_path(output);
-  const RunLock lock(replaced, false);
+  const RunLock lock(replaced, false, LockUse::run, patience);
   if (parts_exist(replaced)) {
     throw ResultsError(parts_folder(replaced),
                        "holds parts of another run, which the copy would cut off from theirs; "

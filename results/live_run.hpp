@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "results/patience.hpp"
 #include "results/results_file.hpp"
 #include "results/slurm_job.hpp"
 
@@ -16,6 +17,7 @@ struct LockOwner {
   long pid = 0;
   std::uint64_t start_time = 0;  // field 22 of /proc/PID/stat
   std::optional<SlurmJob> job;   // where it is part of one
+  bool storing = false;          // it holds the lock for moments, to store tables
   bool alive = false;  // known on its own host, and where Slurm knows its job; else taken to be
 };
 /// Nothing where there is no lock. Throws ResultsError where it cannot be read.
@@ -52,6 +54,7 @@ ResultsFile live_results(const std::string& results_path, Content content = Cont
 
 /// The same as a results file of its own, under `output`, without derived tables. `live`: with the
 /// checkpoints. Throws ResultsError.
-void write_copy(const std::string& results_path, const std::string& output, bool live);
+void write_copy(const std::string& results_path, const std::string& output, bool live,
+                const Patience& patience = {});
 
 }  // namespace jostle::inline results

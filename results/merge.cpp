@@ -146,9 +146,10 @@ std::vector<Provenance> all_processes(const std::vector<ResultsFile>& files,
 }  // namespace
 
 void merge_files(std::span<const std::string> inputs, const std::string& named,
-                 const Provenance& provenance, bool force, const std::optional<Study>& whole) {
+                 const Provenance& provenance, bool force, const std::optional<Study>& whole,
+                 const Patience& patience) {
   const std::string output = output_path(named);
-  const RunLock lock(output, force);
+  const RunLock lock(output, force, LockUse::run, patience);
   require_replaceable_file(output);
   remove_stale_temporaries(output);
   struct stat status;

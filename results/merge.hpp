@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "results/patience.hpp"
 #include "results/study.hpp"
 
 namespace jostle::inline results {
@@ -15,6 +16,6 @@ namespace jostle::inline results {
 /// where `output` exists, unless `force`.
 void merge_files(std::span<const std::string> inputs, const std::string& output,
                  const Provenance& provenance, bool force = false,
-                 const std::optional<Study>& whole = std::nullopt);
+                 const std::optional<Study>& whole = std::nullopt, const Patience& patience = {});
 
 }  // namespace jostle::inline results

@@ -10,8 +10,8 @@
 
 #include "results/checkpoints/part.hpp"
 #include "results/checkpoints/publish.hpp"
-#include "results/checkpoints/seal.hpp"
 #include "results/file/axes.hpp"
+#include "results/file/intact_file.hpp"
 #include "results/file/layout.hpp"
 #include "results/file/motion_group.hpp"
 #include "results/file/results_file_impl.hpp"
@@ -36,7 +36,7 @@ const char* name_of(RunState state) {
 namespace {
 
 Hdf5Handle open_sealed(const std::string& path, const std::string& known_as, Verify verify) {
-  verify == Verify::whole_file ? verify_seal(path) : require_seal(path);
+  require_intact(path, known_as, verify);
   silence_hdf5();
   return naming_file(known_as, [&] { return open_to_read(path); });
 }

@@ -9,6 +9,7 @@
 #include "engine/bed/packing.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/motion/motion_records.hpp"
+#include "results/patience.hpp"
 #include "results/record.hpp"
 #include "results/stored_realization.hpp"
 #include "results/study.hpp"
@@ -136,6 +137,15 @@ class ResultsFile {
   class Stored;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What another program did to a file that it opened for writing and closed, where the contents are
+/// still the old ones and readers take it; empty where there is nothing to tell. Reads the ends of
+/// the file alone.
+std::string seal_warning(const std::string& path);
+
+/// Seals such a file again, and returns whether there was anything to do. Throws ResultsError where
+/// its contents are not the old ones, LockHeld as store_tables() does.
+bool reseal(const std::string& path, const Patience& patience = {});
 
 /// SHA-256, in hex, over every dataset and attribute outside /provenance, /timing and /h5md, in
 /// order of their paths: path, type, shape and values, whatever the chunks and compression. The

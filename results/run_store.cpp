@@ -11,6 +11,7 @@
 
 #include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/lock.hpp"
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/checkpoints/recorder.hpp"
@@ -60,8 +61,12 @@ bool same_points(const Study& stored, const Study& study) {
 
 class RunStore::Impl {
  public:
-  Impl(const std::string& results_path, const Shard& a_shard, bool force, Room a_room)
-      : path(output_path(results_path)), shard(a_shard), room(a_room), lock(path, force) {
+  Impl(const std::string& results_path, const Shard& a_shard, bool force, Room a_room,
+       const Patience& patience)
+      : path(output_path(results_path)),
+        shard(a_shard),
+        room(a_room),
+        lock(path, force, LockUse::run, patience) {
     require_replaceable_file(path);
     remove_stale_temporaries(path);
   }
@@ -189,7 +194,7 @@ void RunStore::Impl::fold(const StoringProgress& progress) {
   };
   const FileContent content{study, shard, processes, run_id, realization, progress};
   if (!still_ours()) {
-    const std::string elsewhere = fmt::format("{}.{}", path, run_id.substr(0, 8));
+    const std::string elsewhere = beside(path, "." + run_id.substr(0, 8));
     write_results(elsewhere, content);
     throw ResultsError(path, fmt::format("another file was put here while the run went on, and is "
                                          "kept; what was computed is in {}",
@@ -232,8 +237,8 @@ RunStore::~RunStore() = default;
 
 std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
-                                           bool force, Room room) {
-  auto impl = std::make_unique<Impl>(path, shard, force, room);
+                                           bool force, Room room, const Patience& patience) {
+  auto impl = std::make_unique<Impl>(path, shard, force, room, patience);
   impl->study = study;
   if (!force && file_exists(path))
     throw ResultsError(path, "exists already; resume it, choose another name, or replace it",
@@ -249,15 +254,17 @@ std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study&
 
 std::unique_ptr<RunStore> RunStore::resume(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
-                                           bool force) {
+                                           bool force, const Patience& patience) {
   return resume(
-      path, [&](const ResultsFile&) { return study; }, shard, provenance, force);
+      path, [&](const ResultsFile&) { return study; }, shard, provenance, force, Room::for_all,
+      patience);
 }
 
 std::unique_ptr<RunStore> RunStore::resume(
     const std::string& path, const std::function<Study(const ResultsFile&)>& study_for,
-    const Shard& shard, const Provenance& provenance, bool force, Room room) {
-  auto impl = std::make_unique<Impl>(path, shard, force, room);
+    const Shard& shard, const Provenance& provenance, bool force, Room room,
+    const Patience& patience) {
+  auto impl = std::make_unique<Impl>(path, shard, force, room, patience);
   impl->go_on(study_for, provenance);
   return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));
 }

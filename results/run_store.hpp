@@ -25,10 +25,11 @@ class RunStore : public Sink {
   enum class Room { for_all, for_a_part };
 
   /// Starts a file. An existing one is refused unless `force`, which discards it and its parts and
-  /// takes over the lock of another host.
+  /// takes over the lock of another host. Another process is waited for with `patience`.
   static std::unique_ptr<RunStore> create(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
-                                          bool force = false, Room room = Room::for_all);
+                                          bool force = false, Room room = Room::for_all,
+                                          const Patience& patience = {});
   /// Goes on with a file. `study` is the stored one, or it has more taps at the end, more
   /// realizations or more sweep points, in any order: the caller compares the scenes
   /// (ResultsFile::study) and refuses other changes. Points are known by their ids. A share of a
@@ -36,13 +37,14 @@ class RunStore : public Sink {
   /// The shard must be the stored one. `force` only takes over the lock of another host.
   static std::unique_ptr<RunStore> resume(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
-                                          bool force = false);
+                                          bool force = false, const Patience& patience = {});
   /// The same where the study depends on what the file holds: `study_for` is given the locked,
   /// verified file, and may refuse by throwing.
   static std::unique_ptr<RunStore> resume(const std::string& path,
                                           const std::function<Study(const ResultsFile&)>& study_for,
                                           const Shard& shard, const Provenance& provenance,
-                                          bool force = false, Room room = Room::for_all);
+                                          bool force = false, Room room = Room::for_all,
+                                          const Patience& patience = {});
   /// Gives the lock back; parts that were not folded stay for a resume.
   ~RunStore() override;
   /// Ends a store: gives the lock back, and its file as the last fold left it, open and verified.

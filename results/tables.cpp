@@ -12,6 +12,8 @@
 #include "results/checkpoints/seal.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/file/axes.hpp"
+#include "results/file/contents.hpp"
+#include "results/file/intact_file.hpp"
 #include "results/file/results_file_impl.hpp"
 #include "results/hdf5/axes.hpp"
 #include "results/hdf5/policy.hpp"
@@ -184,30 +186,33 @@ void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visi
 }  // namespace
 
 void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                  const Provenance& provenance) {
+                  const Provenance& provenance, const Patience& patience) {
   const TableGroup one{group, {tables.begin(), tables.end()}};
-  store_tables(path, std::span(&one, 1), provenance);
+  store_tables(path, std::span(&one, 1), provenance, patience);
 }
 
 void store_tables(const std::string& named, std::span<const TableGroup> groups,
-                  const Provenance& provenance) {
+                  const Provenance& provenance, const Patience& patience) {
+  std::vector<std::string> names;
   for (const TableGroup& group : groups) {
+    names.push_back(group.name);
     for (const Table& table : group.tables) {
       for (const Quantity& quantity : table.axes) shape_in(table, quantity);
       for (const Quantity& quantity : table.quantities) shape_in(table, quantity);
     }
   }
   const std::string path = output_path(named);
-  const RunLock lock(path, false);
+  const RunLock lock(path, false, LockUse::storing, patience);
   remove_stale_temporaries(path);
   TemporaryFile temporary(path);
-  verify_seal(path, [&](std::span<const std::byte> piece) { temporary.write(piece); });
+  copy_intact(path, temporary);
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name(), WritableHdf5File::Begin::as_it_is);
     for (const TableGroup& group : groups) {
       const Hdf5Handle parent = group_at(file, group.name);
       for (const Table& table : group.tables) write_table(parent, table, provenance);
     }
+    update_contents(file, names);
     file.close();
   });
   seal(temporary.name());

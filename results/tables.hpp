@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ensemble/analysis/table.hpp"
+#include "results/patience.hpp"
 #include "results/study.hpp"
 
 // What is derived from a run's data and kept in its file: the groups /fits, /analysis and
@@ -23,14 +24,15 @@ struct TableGroup {
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
 /// replaced, others stay. Every table tells who made it: attributes version, git_revision,
 /// command_line, made. The file is never written in place: a changed copy is published over it.
-/// Throws ResultsError, also where another process holds the file's lock, and
-/// std::invalid_argument for a quantity whose number of values its axes do not give.
+/// Throws ResultsError; LockHeld where another process holds the file's lock for longer than
+/// `patience` lasts; std::invalid_argument for a quantity whose number of values its axes do not
+/// give.
 void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                  const Provenance& provenance);
+                  const Provenance& provenance, const Patience& patience = {});
 
 /// The same for several groups, in one replacement of the file.
 void store_tables(const std::string& path, std::span<const TableGroup> groups,
-                  const Provenance& provenance);
+                  const Provenance& provenance, const Patience& patience = {});
 
 /// The tables of a group, in the order of their names; none where there is no such group. Throws
 /// ResultsError.

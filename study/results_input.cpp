@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <filesystem>
 
-#include "results/export/input_file.hpp"
+#include "results/checkpoints/seal.hpp"
 #include "results/live_run.hpp"
 
 namespace jostle::inline study {
@@ -47,9 +45,7 @@ std::string known(const Study& study) {
 bool is_results_file(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;  // and nothing is taken out of a pipe
-  std::array<std::byte, 8> signature{};
-  InputFile(path).read(signature);
-  return std::memcmp(signature.data(), "\x89HDF\r\n\x1a\n", signature.size()) == 0;
+  return is_hdf5_file(path);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

@@ -60,14 +60,14 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
     store_ = RunStore::create(output, study_, settings.shard, by,
                               settings.take_over || settings.existing == Existing::replace,
-                              settings.room);
+                              settings.room, settings.patience);
     return;
   }
   if (!resumes) throw OutputExists(output);
   retry_failed_ = settings.retry_failed;
   store_ = RunStore::resume(
       output, [this](const ResultsFile& file) { return study_for(file); }, settings.shard, by,
-      settings.take_over, settings.room);
+      settings.take_over, settings.room, settings.patience);
   auto pending = store_->pending(retry_failed_);
   std::ranges::sort(pending);
   for (const RealizationSummary& one : store_->realizations()) {

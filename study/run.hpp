@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ensemble/run.hpp"
+#include "results/patience.hpp"
 #include "results/run_store.hpp"
 #include "study/bad_input.hpp"
 #include "study/scenes/scene_file.hpp"
@@ -23,6 +24,7 @@ struct RunSettings {
   std::string output = {};  // the results file
   Existing existing = Existing::keep;
   bool take_over = false;     // the lock of another host
+  Patience patience = {};     // with another process that works on the file
   bool retry_failed = false;  // of a file that is resumed, once
   Shard shard = {};
   int threads = 1;

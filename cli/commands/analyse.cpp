@@ -91,7 +91,7 @@ int run_each(const AnalyseArguments& arguments, const TablesOf& tables_of) {
     }
     if (arguments.inputs.size() > 1) shown.heading(input);
     shown.show(tables, input);
-    if (arguments.output.stored()) keep_tables(input, "analysis", tables, by);
+    shown.keep(input, "analysis", tables, by);
   }
   return shown.end(by);
 }
@@ -128,8 +128,7 @@ int run_sweep(const AnalyseArguments& arguments) {
   }
   if (arguments.inputs.size() > 1) shown.heading(names);
   shown.show(tables, names);
-  if (arguments.output.stored() && arguments.inputs.size() == 1)
-    keep_tables(arguments.inputs.front(), "analysis", tables, by);
+  if (arguments.inputs.size() == 1) shown.keep(arguments.inputs.front(), "analysis", tables, by);
   return shown.end(by);
 }
 

@@ -7,6 +7,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/reports/cost_report.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/tables/table_output.hpp"
@@ -33,6 +34,7 @@ struct CostArguments {
   int threads = 0;
   bool resume = false, force = false, no_progress = false;
   Layout layout;
+  Patience patience;
 };
 
 /// Nothing that is written may replace what is read, nor one another.
@@ -45,7 +47,8 @@ void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
   require_text_output("--csv", arguments.csv, taken, arguments.force);
 }
 
-void write_reports(const CostArguments& arguments, const CostStudy& study, const Scene& scene,
+/// Returns whether the tables are stored.
+bool write_reports(const CostArguments& arguments, const CostStudy& study, const Scene& scene,
                    const std::string& output, const std::string& observable, const Provenance& by) {
   const auto cost = std::ranges::find_if(study.observables(), [&](const CostOfObservable& one) {
     return one.label.name == observable;
@@ -59,12 +62,13 @@ void write_reports(const CostArguments& arguments, const CostStudy& study, const
     for (const Table& table : tables) csv += table_csv(table);
     write_text(arguments.csv, csv);
   }
-  keep_tables(output, "analysis", tables, by);
+  return keep_tables(output, "analysis", tables, by, arguments.patience);
 }
 
 RunSettings settings_of(const CostArguments& arguments, const std::string& output, int threads,
                         const StopRequest& stop) {
-  RunSettings settings{.output = output, .threads = threads, .stop = &stop.flag()};
+  RunSettings settings{
+      .output = output, .patience = arguments.patience, .threads = threads, .stop = &stop.flag()};
   if (arguments.resume) {
     settings.existing = Existing::resume;
   } else if (arguments.force) {
@@ -95,8 +99,9 @@ int run_cost(const CostArguments& arguments) {
       return exit_stopped;
     }
     const CostStudy found = run.study();
-    write_reports(arguments, found, pilot.scene, output, observable,
-                  provenance_of_this_run(fmt::to_string(threads)));
+    if (!write_reports(arguments, found, pilot.scene, output, observable,
+                       provenance_of_this_run(fmt::to_string(threads))))
+      return exit_io_error;
     return found.failed().empty() ? exit_ok : exit_failed_realizations;
   } catch (const OtherScene& other) {
     throw BadInput(
@@ -151,6 +156,7 @@ void add_cost(Command& app, int& code) {
   command.add_flag("--force", a.force,
                    "Replace existing output files; with --resume, only that of --csv");
   command.add_option("--csv", a.csv, "Also write the tables to this file").file_to_write();
+  add_wait(command, a.patience);
   add_wide(command, a.layout);
   command.add_flag("--no-progress", a.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");

@@ -9,6 +9,7 @@
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -34,6 +35,7 @@ struct ExportArguments {
   std::uint32_t realization = 0;
   bool realization_given = false, force = false;
   Live live = Live::no;
+  Patience patience;  // with who works on the file that is written
 };
 
 KeptTaps tap_choice(const std::vector<std::string>& words) {
@@ -96,9 +98,7 @@ Writing writing(ExportFormat format, const std::string& output,
   Writing found;
   auto files = exported_files(format, output, frames);
   for (const ExportedFile& file : files) found.paths.push_back(file.path);
-  found.write = [files = std::move(files)] {
-    for (const ExportedFile& file : files) write_text(file.path, file.text);
-  };
+  found.write = [files = std::move(files)] { write_together(files); };
   return found;
 }
 
@@ -139,7 +139,8 @@ int export_results(const ExportArguments& arguments) {
   require_replaceable(arguments.output, "copy.h5");
   require_text_output("-o", arguments.output, std::span(&input, 1), arguments.force);
   if (arguments.force) require_results_or_empty(arguments.output);
-  write_copy(input, arguments.output, arguments.live == Live::yes);
+  write_copy(input, arguments.output, arguments.live == Live::yes, arguments.patience);
+  warn_of_lost_seals(std::span(&input, 1));
   print(fmt::format("{}: {} of {}\n", printable_name(arguments.output),
                     arguments.live == Live::yes ? "results and last checkpoints" : "results",
                     input));
@@ -175,6 +176,7 @@ void add_export(Command& app, int& code) {
                   "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
                   "commas, or all (default: the last)")
       .separated_by(',');
+  add_wait(command, a.patience);
   add_live(command, a.live);
   command.add_flag("--force", a.force, "Replace files that exist");
   command.footer(

@@ -9,6 +9,7 @@
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/options/values.hpp"
 #include "cli/reports/fit_output.hpp"
 #include "cli/reports/measured_output.hpp"
@@ -46,6 +47,7 @@ struct FitArguments {
   std::string gaps = "use-others";
   bool gaps_asked_for = false, independent = false;
   Live live = Live::no;
+  Patience patience;
   bool resampling_asked_for = false;
 };
 
@@ -273,12 +275,12 @@ int run_fits(const FitArguments& arguments) {
         write_measured(arguments.measured, *drawn, arguments.input, arguments.force, by);
     if (!arguments.json) print(written);
   }
-  if (!tables.empty() && !arguments.not_stored && arguments.live == Live::no) {
-    keep_tables(arguments.input, "fits", tables, by);
-  }
+  const bool to_store = !tables.empty() && !arguments.not_stored && arguments.live == Live::no;
+  const bool lost =
+      to_store && !keep_tables(arguments.input, "fits", tables, by, arguments.patience);
   if (!any) throw BadInput(refusals);
   if (!refusals.empty()) print_to_standard_error(fmt::format("jostle: {}\n", refusals));
-  return exit_ok;
+  return lost ? exit_io_error : exit_ok;
 }
 
 /// A law of one's own, and the options that have no sense without it.
@@ -355,6 +357,7 @@ void add_fit(Command& app, int& code) {
       .file_to_write();
   add_measured_output(command, a.measured);
   command.add_flag("--no-store", a.not_stored, "Leave the results file as it is");
+  add_wait(command, a.patience);
   add_live(command, a.live);
   command.add_flag("--force", a.force, "Replace files of --csv, --figures and --page that exist");
   command.footer(

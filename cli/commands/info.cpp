@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/reports/effects.hpp"
 #include "cli/reports/report.hpp"
 #include "cli/tables/wrapped.hpp"
@@ -161,16 +162,26 @@ void print_info(const ResultsFile& file, const RunStatus& status, const Layout& 
 
 struct InfoArguments {
   std::string file;
-  bool digest = false, json = false;
+  bool digest = false, json = false, reseal = false;
+  Patience patience;
   Layout layout;
 };
 
+void seal_again(const InfoArguments& arguments) {
+  const bool done = reseal(arguments.file, arguments.patience);
+  print(fmt::format("{}: {}\n", arguments.file,
+                    done ? "its contents are the old ones, and it is sealed again"
+                         : "is sealed: there is nothing to do"));
+}
+
 void info(const InfoArguments& arguments) {
-  const ResultsFile file(arguments.file);  // also refuses what is not as jostle writes it
+  if (arguments.reseal) return seal_again(arguments);
   if (arguments.digest) {
     print(fmt::format("{}\n", digest_of(arguments.file)));
-    return;
+    return warn_of_lost_seals(std::span(&arguments.file, 1));
   }
+  const ResultsFile file(arguments.file);
+  warn_of_lost_seals(std::span(&arguments.file, 1));
   const RunStatus status = run_status(arguments.file);
   try {
     if (arguments.json) {
@@ -195,11 +206,18 @@ void add_info(Command& app, int& code) {
       command.add_flag("--digest", arguments->digest,
                        "Print the SHA-256 of the data alone, the same for equal runs");
   command.add_flag("--json", arguments->json, "Print the summary as JSON").excludes(digest);
+  Option reseal = command.add_flag(
+      "--reseal", arguments->reseal,
+      "Write the checksum at the file's end again, which other programs cut off when they open the "
+      "file for writing; contents that were changed are refused");
+  reseal.excludes(digest);
+  add_wait(command, arguments->patience);
   add_wide(command, arguments->layout);
   command.footer(
       "Examples:\n"
       "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
-      "  jostle info quickstart.h5 --digest   the same for runs of the same numbers");
+      "  jostle info quickstart.h5 --digest   the same for runs of the same numbers\n"
+      "  jostle info quickstart.h5 --reseal   after h5py or HDFView had it open for writing");
   command.run([arguments, &code] {
     info(*arguments);
     code = exit_ok;

@@ -7,6 +7,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/tables/tables_display.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
@@ -27,6 +28,7 @@ struct MergeArguments {
   std::vector<std::string> inputs;
   std::string output;
   bool force = false;
+  Patience patience;
 };
 
 void require_output(const MergeArguments& arguments) {
@@ -60,6 +62,7 @@ void add_merge(Command& app, int& code) {
       .file_to_write()
       .offers_files({"h5"});
   command.add_flag("--force", arguments->force, "Replace the output file if it exists");
+  add_wait(command, arguments->patience);
   command.footer(
       "Examples:\n"
       "  jostle run scene.json --shard 1/2 -o a.h5\n"
@@ -74,11 +77,13 @@ void add_merge(Command& app, int& code) {
     arguments->inputs = results_files(arguments->named);
     require_output(*arguments);
     merge_files(arguments->inputs, arguments->output, provenance_of_this_run("1"), arguments->force,
-                joined_study(arguments->inputs));
+                joined_study(arguments->inputs), arguments->patience);
+    warn_of_lost_seals(arguments->inputs);
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
     TablesDisplay display(Quiet::no, {.width = screen().width});
-    store_scene_tables(ResultsFile(arguments->output), available_cpus(), display);
+    store_scene_tables(ResultsFile(arguments->output), available_cpus(), display,
+                       arguments->patience);
     code = exit_ok;
   });
 }

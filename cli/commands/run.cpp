@@ -10,6 +10,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/options/command_words.hpp"
 #include "cli/reports/durations.hpp"
 #include "cli/reports/next_commands.hpp"
@@ -25,6 +26,7 @@
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/output_path.hpp"
+#include "results/checkpoints/part.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/number_text.hpp"
@@ -43,6 +45,7 @@ struct RunArguments {
   std::optional<Seconds> time_limit;
   Seconds checkpoint_every{60};
   Shard shard;
+  Patience patience;
   bool quiet = false, no_progress = false;
   Layout layout;
 };
@@ -75,6 +78,7 @@ std::string results_path(const RunArguments& arguments, const LoadedScene& loade
 RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded, int threads) {
   RunSettings settings{.output = results_path(arguments, loaded),
                        .take_over = arguments.force,
+                       .patience = arguments.patience,
                        .retry_failed = arguments.retry_failed,
                        .shard = arguments.shard,
                        .threads = threads,
@@ -167,11 +171,11 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   }
   if (run.left_in_parts()) {
     print_to_standard_error(
-        fmt::format("jostle: what was computed is in {}.parts, not in {} itself: "
+        fmt::format("jostle: what was computed is in {}, not in {} itself: "
                     "to fold it in takes longer than a stop should, and is done "
                     "at the end of the run; jostle info shows it, and the "
                     "other commands read it with --live\n",
-                    settings.output, settings.output));
+                    parts_folder(settings.output), settings.output));
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);
@@ -184,7 +188,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
     TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout);
-    const auto stored = store_scene_tables(file, settings.threads, display);
+    const auto stored = store_scene_tables(file, settings.threads, display, settings.patience);
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
   say_which_tables_are_gone(before, tables, settings.output);
@@ -210,6 +214,9 @@ int run(const RunArguments& arguments) {
   if (const std::string lock = run.lock_warning(); !lock.empty()) warnings.push_back(lock);
   for (const std::string& warning : warnings) log_line(fmt::format("warning: {}", warning));
   try {
+    std::vector<std::string> read = loaded.files;
+    if (settings.existing == Existing::resume) read.push_back(settings.output);
+    warn_of_lost_seals(read);
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
     return run_to_end(arguments, run, settings, stop);
   } catch (const BadInput&) {
@@ -258,6 +265,7 @@ void add_options(Command& command, RunArguments& arguments) {
           "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
           "Run share i/n of the realizations; jostle merge joins the files")
       .environment("JOSTLE_SHARD");
+  add_wait(command, arguments.patience);
   add_wide(command, arguments.layout);
   command.add_flag("--quiet", arguments.quiet, "Print errors only").environment("JOSTLE_QUIET");
   command.add_flag("--no-progress", arguments.no_progress, "Print no progress")

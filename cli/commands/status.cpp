@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/options/command_words.hpp"
 #include "cli/reports/status_report.hpp"
 #include "cli/terminal/screen.hpp"
@@ -61,6 +62,7 @@ int show_status(const StatusArguments& arguments) {
     bad_files.push_back({{"file", file.path}, {"reason", file.reason}});
     print_to_standard_error(fmt::format("jostle: {}\n", file.reason));
   }
+  warn_of_lost_seals(results_files(arguments.files));
   if (arguments.json) print_json({{"studies", studies}, {"bad_files", bad_files}});
   return overview.bad_files.empty() ? exit_ok : exit_io_error;
 }
@@ -80,8 +82,11 @@ void add_status(Command& app, int& code) {
       "  jostle status scene.shards     done, running, dead and missing shards, core-hours left\n"
       "  jostle status low.h5 high.h5 --json\n"
       "\n"
-      "dead: its process was killed, and a resume goes on from its checkpoints. The last line\n"
-      "is the command that redoes what is missing, and nothing else.");
+      "dead: its process was killed, and a resume goes on from its checkpoints. unreadable: its "
+      "file\n"
+      "is damaged, and what is in it may be finished. The last line is the command that redoes "
+      "what\n"
+      "is missing, and nothing else.");
   command.run([arguments, &code] { code = show_status(*arguments); });
 }
 

@@ -105,8 +105,7 @@ int measure_structure(const StructureArguments& arguments) {
   }
   ShownTables shown(arguments.output);
   shown.show(tables, "");
-  if (results && arguments.output.stored())
-    keep_tables(arguments.inputs.front(), "structure", tables, by);
+  if (results) shown.keep(arguments.inputs.front(), "structure", tables, by);
   return shown.end(by);
 }
 

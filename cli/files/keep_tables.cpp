@@ -4,24 +4,31 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <memory>
+#include <vector>
 
 #include "cli/files/output_file.hpp"
+#include "cli/terminal/failure.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
+#include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
+#include "results/export/printable.hpp"
 #include "results/hdf5/descriptor.hpp"
 #include "results/tables.hpp"
 
 namespace jostle::inline cli {
 
-void keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                 const Provenance& by) {
+bool keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                 const Provenance& by, const Patience& patience) {
   try {
-    store_tables(path, group, tables, by);
+    store_tables(path, group, tables, by, patience);
+    return true;
   } catch (const ResultsError& error) {
-    print_to_standard_error(
-        fmt::format("jostle: the tables are not stored under /{}: {}\n", group, error.what()));
+    print_to_standard_error(fmt::format("jostle: the tables are not stored under /{}: {}\n", group,
+                                        printable(failure_text(error))));
+    return false;
   }
 }
 
@@ -32,6 +39,19 @@ void write_text(const std::string& path, const std::string& text) {
   const Descriptor stream(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY));
   if (!stream) fail_on_disk(path, "open", errno);
   write_all(path, stream.get(), bytes);
+}
+
+void write_together(std::span<const ExportedFile> files) {
+  std::vector<std::unique_ptr<TemporaryFile>> written;
+  for (const ExportedFile& file : files) {
+    if (is_stream(file.path)) continue;
+    written.push_back(std::make_unique<TemporaryFile>(output_path(file.path)));
+    written.back()->write(std::as_bytes(std::span(file.text)));
+    written.back()->finish();
+  }
+  publish_all(written);
+  for (const ExportedFile& file : files)
+    if (is_stream(file.path)) write_text(file.path, file.text);
 }
 
 Json provenance_json(const Provenance& by) {

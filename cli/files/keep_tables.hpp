@@ -5,17 +5,24 @@
 
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
+#include "results/export/export.hpp"
+#include "results/patience.hpp"
 #include "results/study.hpp"
 
 namespace jostle::inline cli {
 
-/// Stores the tables in `group` of a results file. A file that cannot be changed, as in an archive,
-/// still gives its tables: a word on stderr says that they are not stored.
-void keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                 const Provenance& by);
+/// Stores the tables in `group` of a results file. Returns whether they are stored: where they are
+/// not, standard error says why. For tables that were printed.
+[[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
+                               std::span<const Table> tables, const Provenance& by,
+                               const Patience& patience);
 
 /// Puts the text into a file, whole or not at all, or into a pipe or a device. Throws ResultsError.
 void write_text(const std::string& path, const std::string& text);
+
+/// Puts each of the texts into its file, or, where one cannot be, none: what was there stays. Pipes
+/// and devices are written last. Throws ResultsError.
+void write_together(std::span<const ExportedFile> files);
 
 /// Who made what is printed.
 Json provenance_json(const Provenance& by);

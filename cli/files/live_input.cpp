@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/files/waiting.hpp"
 #include "cli/terminal/standard_streams.hpp"
 
 namespace jostle::inline cli {
@@ -14,6 +15,7 @@ void add_live(Command& command, Live& live) {
 
 ResultsFile open_to_read(const std::string& path, Live live) {
   ResultsFile file = open_results(path, live);
+  warn_of_lost_seals(std::span(&path, 1));
   if (file.state() == RunState::interrupted) {
     print_to_standard_error(fmt::format(
         "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "

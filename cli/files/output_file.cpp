@@ -4,7 +4,9 @@
 
 #include <filesystem>
 
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/output_path.hpp"
+#include "results/checkpoints/part.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
 #include "study/bad_input.hpp"
@@ -23,6 +25,7 @@ bool is_descriptor(const fs::path& path) {
 }
 
 void require_folder(const std::string& output) {
+  require_name_fits(output);
   std::error_code ignored;
   const fs::path folder = fs::path(output).parent_path();
   if (folder.empty() || fs::is_directory(folder, ignored)) return;
@@ -70,7 +73,7 @@ void require_not_read(const std::string& option, const std::string& output,
   std::error_code ignored;
   for (const std::string& input : read) {
     const bool is_checkpoint =
-        fs::equivalent(fs::absolute(output).parent_path(), input + ".parts", ignored);
+        fs::equivalent(fs::absolute(output).parent_path(), parts_folder(input), ignored);
     if (!is_checkpoint && !is_same_file(output, input)) continue;
     throw BadInput(
         fmt::format("{} {}: this command works with that file and would destroy it. "

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr ShardState all_states[] = {ShardState::done, ShardState::running, ShardState::stopped,
-                                     ShardState::dead, ShardState::missing};
+                                     ShardState::dead, ShardState::missing, ShardState::unreadable};
 
 /// The folder of all files; nothing where they lie in several.
 std::optional<fs::path> common_folder(const ShardsStatus& study) {
@@ -50,8 +50,10 @@ std::optional<std::uint32_t> variable(const std::string& script, const std::stri
   return std::nullopt;
 }
 
-bool is_open(const ShardStatus& shard) {
-  return shard.state != ShardState::done && shard.state != ShardState::running;
+/// Whether a resume goes on with a shard. What a file holds that cannot be read may be finished.
+bool is_open(const ShardStatus& shard, const ShardsStatus& study) {
+  if (shard.state == ShardState::missing) return study.unread.empty();
+  return shard.state == ShardState::stopped || shard.state == ShardState::dead;
 }
 
 std::string who(const LockOwner& owner) {
@@ -69,7 +71,7 @@ std::string state_line(const ShardsStatus& study, ShardState state) {
   constexpr std::size_t most_remarks = 3;
   const std::vector<std::uint32_t> indices = study.indices(state);
   std::string text = fmt::format("  {:<13}{}", name_of(state), indices.size());
-  if (indices.empty()) return text + "\n";
+  if (indices.empty()) return state == ShardState::unreadable ? "" : text + "\n";
   text += fmt::format(": {}", ranges_text(indices));
   if (indices.size() <= most_remarks) {
     for (const std::uint32_t index : indices) {
@@ -124,7 +126,7 @@ std::vector<std::string> redo_commands(const ShardsStatus& study, const JobArray
       study.shards, [](const ShardStatus& shard) { return !shard.command.empty(); });
   const fs::path folder = common_folder(study).value_or("");
   for (const ShardStatus& shard : study.shards) {
-    if (!is_open(shard)) continue;
+    if (!is_open(shard, study)) continue;
     if (!array.script.empty()) {
       const std::uint32_t task = (shard.index - 1) / array.shards_a_task + 1;
       if (tasks.empty() || tasks.back() != task) tasks.push_back(task);
@@ -161,6 +163,12 @@ std::string status_text(const ShardsStatus& study) {
                                             : "what is left is not known before the first tap"));
   for (const std::string& path : study.twice)
     line("twice", path + " holds a shard that another file holds");
+  const std::string restore =
+      " cannot be read, and what it holds may be finished: restore it from a copy, or remove it to "
+      "compute it again";
+  for (const ShardStatus& shard : study.shards)
+    if (shard.state == ShardState::unreadable) line("unreadable", shard.path + restore);
+  for (const std::string& path : study.unread) line("unreadable", path + restore);
   return text;
 }
 
@@ -184,6 +192,8 @@ Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo
   }
   for (const std::string& command : redo) commands.push_back(command);
   for (const std::string& path : study.twice) twice.push_back(path);
+  Json unread = Json::array();
+  for (const std::string& path : study.unread) unread.push_back(path);
   Json counts = Json::object();
   for (const ShardState state : all_states)
     counts[name_of(state)] = static_cast<std::uint64_t>(study.indices(state).size());
@@ -195,7 +205,8 @@ Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo
             {"core_hours_used", hours(study.used)},
             {"shards", shards},
             {"redo", commands},
-            {"twice", twice}};
+            {"twice", twice},
+            {"unread", unread}};
   json["core_hours_left"] = study.left ? Json(hours(*study.left)) : Json(nullptr);
   return json;
 }

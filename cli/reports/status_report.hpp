@@ -17,8 +17,8 @@ struct JobArray {
 /// The batch script that jobs have put beside their results, if it is one for so many shards.
 JobArray job_array(const ShardsStatus& study);
 
-/// The commands that redo what is neither done nor running, and nothing else: one for a job array,
-/// else one a shard; or what to do with what is done. Empty where nothing is to be done.
+/// The commands that redo what is neither done, running nor unreadable, and nothing else: one for a
+/// job array, else one a shard; or what to do with what is done. Empty where nothing is to be done.
 std::vector<std::string> redo_commands(const ShardsStatus& study, const JobArray& array);
 
 /// One shard a line, with what it is at; ends in a newline.

@@ -66,6 +66,11 @@ std::string text_of(const OtherShard& error) {
                      error.stored().count);
 }
 
+std::string text_of(const LockHeld& error) {
+  return fmt::format("{}{} (--wait DURATION waits longer)", error.what(),
+                     error.force_helps() ? " (--force)" : "");
+}
+
 std::string text_of(const ResultsError& error) {
   // A name must not look like further lines of the message.
   const std::string reason = std::string(error.what()).substr(error.path().size());
@@ -86,7 +91,8 @@ std::string failure_text(const std::exception& error) {
   std::string text;
   if (tell<BadArgument>(error, text) || tell<NoTapsYet>(error, text) ||
       tell<OutputExists>(error, text) || tell<OtherScene>(error, text) ||
-      tell<OtherShard>(error, text) || tell<ResultsError>(error, text)) {
+      tell<OtherShard>(error, text) || tell<LockHeld>(error, text) ||
+      tell<ResultsError>(error, text)) {
     return text;
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {

@@ -6,6 +6,7 @@
 
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
+#include "cli/files/waiting.hpp"
 #include "cli/tables/table_output.hpp"
 #include "cli/tables/table_text.hpp"
 #include "cli/terminal/exit_codes.hpp"
@@ -21,6 +22,7 @@ void add_table_output(Command& command, TableOutput& output) {
   add_wide(command, output.layout);
   command.add_flag("--force", output.force, "Replace the file of --csv if it exists");
   command.add_flag("--no-store", output.not_stored, "Leave the results files as they are");
+  add_wait(command, output.patience);
   add_live(command, output.live);
 }
 
@@ -54,12 +56,19 @@ void ShownTables::show(std::span<const Table> tables, const std::string& input) 
   }
 }
 
+void ShownTables::keep(const std::string& path, const std::string& group,
+                       std::span<const Table> tables, const Provenance& by) {
+  if (output_.stored() && !keep_tables(path, group, tables, by, output_.patience))
+    all_stored_ = false;
+}
+
 int ShownTables::end(const Provenance& by) const {
   if (output_.json) {
     const Json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
     print_json(object);
   }
   if (!output_.csv.empty()) write_text(output_.csv, csv_);
+  if (!all_stored_) return exit_io_error;
   if (any_) return exit_ok;
   print_to_standard_error(fmt::format("jostle: no table could be made{}\n", refusals_));
   return exit_bad_input;

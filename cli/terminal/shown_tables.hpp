@@ -8,6 +8,7 @@
 #include "cli/tables/layout.hpp"
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
+#include "results/patience.hpp"
 #include "results/study.hpp"
 #include "study/results_input.hpp"
 
@@ -20,12 +21,13 @@ struct TableOutput {
   bool json = false, force = false, not_stored = false;
   Layout layout;
   Live live = Live::no;
+  Patience patience;
 
   /// A run that goes on would lose them.
   bool stored() const { return !not_stored && live == Live::no; }
 };
 
-/// --json, --csv, --wide, --force, --no-store, --live.
+/// --json, --csv, --wide, --force, --no-store, --wait, --live.
 void add_table_output(Command& command, TableOutput& output);
 
 /// Prints tables as they come, and at the end what comes as a whole. Where none could be made the
@@ -38,7 +40,10 @@ class ShownTables {
   void heading(const std::string& text);
   /// `input`: what they were made of, for programs; may be empty.
   void show(std::span<const Table> tables, const std::string& input);
-  /// Returns the exit code: bad input where no table was made.
+  /// Stores tables that were shown in the results file they were made of, where that is asked for.
+  void keep(const std::string& path, const std::string& group, std::span<const Table> tables,
+            const Provenance& by);
+  /// Returns the exit code: bad input where no table was made, broken where some are not stored.
   int end(const Provenance& by) const;
 
  private:
@@ -49,7 +54,7 @@ class ShownTables {
   std::string refusals_;  // why tables could not be made, a line each
   Json listed_ = Json::array();
   std::string csv_;
-  bool any_ = false;
+  bool any_ = false, all_stored_ = true;
 };
 
 }  // namespace jostle::inline cli

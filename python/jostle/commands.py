@@ -10,6 +10,7 @@ import os
 import re
 import reprlib
 import tempfile
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -17,7 +18,7 @@ from . import results as results_files
 from .errors import BadArgument, RealizationsFailed, RunStopped, WrongType
 from .fits import FittedCurve, fitted_curves
 from .guards import path_text, takes_arguments
-from .program import FAILED, OK, STOPPED, Path, answer, call, refusal
+from .program import BROKEN, FAILED, OK, STOPPED, Path, answer, call, refusal
 from .results import Results
 from .tables import Table, table_from_json
 
@@ -151,6 +152,15 @@ def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | N
     return _opened(done, path, program), done.stdout
 
 
+def _report(done: Any) -> Any:
+    """The JSON of a command that also stores its tables: where it could not, there is a warning."""
+    if done.returncode == BROKEN:
+        if not done.stdout.strip():
+            raise refusal(done)
+        warnings.warn(done.stderr.strip(), stacklevel=4)
+    return answer(done)
+
+
 def _paths(results: Results | Path | Sequence[Path]) -> list[str]:
     if isinstance(results, Results):
         return [results.path]
@@ -198,8 +208,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
                            sweep_point=sweep_point, range=range, realizations=realizations,
                            gaps=gaps, independent=independent, figures=figures, page=page, resample=resample,
                            resamples=resamples, seed=seed, no_store=not store,
-                           live=_live(results, live))], _paths(results), program=program)
-    return fitted_curves(answer(done))
+                           live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
+    return fitted_curves(_report(done))
 
 
 @takes_arguments
@@ -217,14 +227,14 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
     Kept in the files under /analysis unless store=False.
     """
     names = [observable] if isinstance(observable, str) else list(observable or [])
-    done = call(["analyse"], _paths(results), program=program, behind=[
+    done = call(["analyse"], _paths(results), program=program, accept=(OK, BROKEN), behind=[
         str(what), "--json", *(word for name in names for word in _option("observable", name)),
         *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
                   quantity=quantity, against=against, reference=reference, spheres=spheres,
                   segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
                   hold=hold, equilibrium=equilibrium, threads=threads,
                   no_store=not store, live=_live(results, live))])
-    return [table_from_json(one) for one in answer(done)["tables"]]
+    return [table_from_json(one) for one in _report(done)["tables"]]
 
 
 @takes_arguments
@@ -239,8 +249,8 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
     done = call(["structure", "--json",
                  *_options(part=part, settings=None if settings is None else _json_text(settings, "settings"),
                            tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store,
-                           live=_live(results, live))], _paths(results), program=program)
-    return [table_from_json(one) for one in answer(done)["tables"]]
+                           live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
+    return [table_from_json(one) for one in _report(done)["tables"]]
 
 
 @takes_arguments

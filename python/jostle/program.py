@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import pathlib
@@ -155,6 +156,20 @@ def _signal_name(number: int) -> str:
         return signal.Signals(number).name
     except ValueError:  # a real-time signal
         return f"signal {number}"
+
+
+def beside(path: str, ending: str) -> str:
+    """The path with an ending, as the program names what it puts beside a results file: where the name would
+    be too long for its folder, its first bytes and 16 digits of its SHA-256 stand for it."""
+    folder, name = os.path.split(os.fsencode(path))
+    longest = os.pathconf(folder or b".", "PC_NAME_MAX")
+    if len(name) + len(ending) <= longest:
+        return path + ending
+    kept = longest - len(ending) - 17
+    while kept > 0 and name[kept] & 0xC0 == 0x80:  # inside a character
+        kept -= 1
+    short = name[:kept] + b"~" + hashlib.sha256(name).hexdigest()[:16].encode() + ending.encode()
+    return os.fsdecode(os.path.join(folder, short))
 
 
 def digest_of(path: Path, program: Path | None = None) -> str:

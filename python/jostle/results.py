@@ -14,11 +14,11 @@ import h5py
 import numpy as np
 
 from .contacts import Contacts
-from .errors import NoSuchPoint, ResultsError, WrongType
+from .errors import NoSuchPoint, ProgramError, ProgramMissing, ResultsError, WrongType
 from .guards import closed, path_text, reading, reads_file, whole_number
 from .point import Box, Point
-from .program import digest_of, joined_with_parts
-from .seal import require_seal
+from .program import beside, digest_of, joined_with_parts
+from .seal import has_seal
 from .sweep import Sweep, read_sweep, swept_pointers
 from .tables import Tables, stored_tables
 from .text import text, texts
@@ -38,11 +38,13 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
     verify: check the SHA-256 of the whole file too; its last line must be there in any case.
     live: of a run that goes on or was killed, join its checkpoints to what the file has (a copy, made by
     the program in a temporary folder; nothing beside the file is touched).
-    Raises ResultsError for what is no results file, or one of another layout.
+    Raises ResultsError for what is no results file, or one of another layout. A file that another program
+    opened for writing and did not change is verified by the program jostle, with a warning.
     """
     name = path_text(path)
-    require_seal(name, whole=verify)
-    parts = pathlib.Path(os.path.realpath(name) + ".parts")
+    if not has_seal(name, whole=verify):
+        _verify_contents(name, program)
+    parts = pathlib.Path(beside(os.path.realpath(name), ".parts"))
     if live and parts.is_dir():
         with reading(name), joined_with_parts(name, program) as joined, _opened(name, name) as stored:
             state = text(stored["provenance"].attrs["state"])
@@ -52,6 +54,19 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
         warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
                       "live=True reads them too", stacklevel=2)
     return results
+
+
+def _verify_contents(path: str, program: str | os.PathLike[str] | None) -> None:
+    """Of a file that has lost its last line."""
+    lost = f"{path}: another program opened it for writing and cut off its last line, the checksum"
+    try:
+        digest_of(path, program)
+    except ProgramMissing as error:
+        raise ResultsError(f"{lost}; only the program can verify its contents: {error}") from error
+    except ProgramError as error:
+        raise ResultsError(str(error)) from error
+    warnings.warn(f"{lost}; its contents are the old ones. Seal the file again with jostle info --reseal",
+                  stacklevel=3)
 
 
 def _opened(path: str, known_as: str) -> h5py.File:
@@ -267,4 +282,5 @@ class Results:
 
     def verify(self) -> None:
         """Raises ResultsError unless the file's checksum is right."""
-        require_seal(self.path, whole=True)
+        if not has_seal(self.path, whole=True):
+            _verify_contents(self.path, self._program)

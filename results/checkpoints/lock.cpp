@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
@@ -23,9 +24,10 @@ namespace jostle::inline results {
 namespace {
 
 constexpr std::size_t most_bytes = 512;  // that a lock holds
+constexpr std::string_view storing_word = "storing";
 
 std::string lock_path(const std::string& results_path) {
-  return results_path + ".lock";
+  return beside(results_path, ".lock");
 }
 
 std::string this_host() {
@@ -49,7 +51,8 @@ std::uint64_t start_time_of(long pid) {
   return rest ? std::stoull(word) : 0;
 }
 
-/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", in one line.
+/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", and "storing" where
+/// it is held for moments, in one line.
 /// Whether it is alive is not in it.
 std::optional<LockOwner> parse_owner(const std::string& text) {
   const std::size_t end = text.find('\n');
@@ -59,16 +62,20 @@ std::optional<LockOwner> parse_owner(const std::string& text) {
   if (!(words >> owner.host >> owner.pid >> owner.start_time)) return std::nullopt;
   std::string kind;
   SlurmJob job;
-  const bool is_job =
-      words >> kind >> job.cluster >> job.id >> job.restarts >> job.name && kind == "slurm";
-  if (is_job) owner.job = job;
+  words >> kind;
+  if (kind == "slurm" && words >> job.cluster >> job.id >> job.restarts >> job.name) {
+    owner.job = job;
+    words >> kind;
+  }
+  owner.storing = kind == storing_word;
   return owner;
 }
 
-std::string text_of_this_process() {
+std::string text_of_this_process(LockUse use) {
   std::string text = fmt::format("{} {} {}", this_host(), ::getpid(), start_time_of(::getpid()));
   if (const auto job = this_slurm_job())
     text += fmt::format(" slurm {} {} {} {}", job->cluster, job->id, job->restarts, job->name);
+  if (use == LockUse::storing) text.append(" ").append(storing_word);
   return text + "\n";
 }
 
@@ -106,21 +113,66 @@ bool is_still_at(const std::string& path, int descriptor) {
          held.st_ino == named.st_ino && held.st_dev == named.st_dev;
 }
 
-void refuse_living_owner(const std::string& path, const LockOwner& owner, bool force) {
-  if (!owner.alive) return;
-  if (owner.host != this_host()) {
-    if (force) return;
-    throw ResultsError(path,
-                       fmt::format("{} may still be working on this file; if it is not, take the "
-                                   "file over",
-                                   who(owner)),
-                       ResultsError::Force::helps);
+/// A living process has the lock. Thrown within this file: it becomes a LockHeld where nobody
+/// waits.
+struct Held {
+  std::string process;
+  bool storing = false, on_other_host = false;
+
+  LockHeld error(const std::string& path, Patience::Duration waited) const {
+    const std::string still =
+        waited.count() > 0 ? fmt::format(", still after {:.3g} s", waited.count()) : "";
+    if (on_other_host)
+      return {path,
+              fmt::format("{} may still be working on this file{}; if it is not, take the file "
+                          "over",
+                          process, still),
+              ResultsError::Force::helps};
+    return {path, fmt::format("{} is {} this file{}; wait for it, or stop it", process,
+                              storing ? "storing tables in" : "working on", still)};
   }
-  if (owner.pid == ::getpid()) return;
-  throw ResultsError(path, fmt::format("process {} on this host is working on this file; wait "
-                                       "for it, or stop it",
-                                       owner.pid));
+};
+
+void refuse_living_owner(const LockOwner& owner, bool force) {
+  if (!owner.alive) return;
+  const bool on_other_host = owner.host != this_host();
+  if (on_other_host ? force : owner.pid == ::getpid()) return;
+  const std::string process =
+      on_other_host ? who(owner) : fmt::format("process {} on this host", owner.pid);
+  throw Held{process, owner.storing, on_other_host};
 }
+
+/// The time that a process waits for others.
+class Wait {
+ public:
+  Wait(const std::string& path, const Patience& patience) : path_(path), patience_(patience) {}
+
+  /// Sleeps for a moment, or throws LockHeld where there is no patience left.
+  void go_on(const Held& held) {
+    using namespace std::chrono_literals;
+    const Patience::Duration waited = Clock::now() - began_,
+                             limit = held.storing ? patience_.for_storing : patience_.for_runs;
+    if (waited >= limit) throw held.error(path_, limit);
+    if (!held.storing && !told_ && patience_.tell) {
+      patience_.tell(fmt::format("{}: {} is working on this file; waiting up to {:.3g} s", path_,
+                                 held.process, limit.count()));
+      told_ = true;
+    }
+    // Slurm is asked about other hosts; processes of one host do not look all at once.
+    const Patience::Duration pause = held.on_other_host
+                                         ? Patience::Duration(2s)
+                                         : Patience::Duration(10ms + ::getpid() % 11 * 1ms);
+    std::this_thread::sleep_for(std::min(pause, limit - waited));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const std::string& path_;
+  const Patience& patience_;
+  Clock::time_point began_ = Clock::now();
+  bool told_ = false;
+};
 
 /// Empty, or cut short, as a process of this host leaves it that was killed while it wrote.
 bool is_half_written(const std::string& text) {
@@ -169,7 +221,7 @@ void refuse_if_held(const std::string& path, const Descriptor& file, bool force)
   if (!owner) return;
   SlurmQueue queue;
   owner->alive = is_alive(*owner, user_of(path, file.get()), queue);
-  refuse_living_owner(path, *owner, force);
+  refuse_living_owner(*owner, force);
 }
 
 /// A lock file, and what this process knows of it.
@@ -195,8 +247,11 @@ OpenedLock try_open(const std::string& path) {
   } while (result != 0 && errno == EINTR);
   if (result != 0 && errno == EWOULDBLOCK) {
     const auto owner = parse_owner(read_lock(path, lock.file.get()));
-    throw ResultsError(path, fmt::format("{} is working on this file; wait for it, or stop it",
-                                         owner ? who(*owner) : "process unknown"));
+    if (!owner) throw Held{"a process", true};
+    const bool on_this_host = owner->host == this_host();
+    // Who has only just taken it from a dead process has not written its name yet.
+    const bool is_new = on_this_host && start_time_of(owner->pid) != owner->start_time;
+    throw Held{who(*owner), owner->storing || is_new};
   }
   if (result != 0) lock.flock_error = errno;
   return is_still_at(path, lock.file.get()) ? std::move(lock) : OpenedLock{};
@@ -215,7 +270,7 @@ void await_text(const std::string& path, const Descriptor& file) {
 /// Takes a dead process's lock away, `seen` in it, so that this one can make its own. Between the
 /// look and the move another may have done the same: its lock is put back.
 void take_away(const std::string& path, const std::string& seen) {
-  const std::string aside = fmt::format("{}.{}", path, random_identity().substr(0, 8));
+  const std::string aside = beside(path, "." + random_identity().substr(0, 8));
   if (::rename(path.c_str(), aside.c_str()) != 0) {
     if (errno == ENOENT) return;
     fail_on_disk(path, "rename", errno);
@@ -227,8 +282,19 @@ void take_away(const std::string& path, const std::string& seen) {
 
 }  // namespace
 
-RunLock::RunLock(const std::string& results_path, bool force)
+RunLock::RunLock(const std::string& results_path, bool force, LockUse use, const Patience& patience)
     : path_(lock_path(output_path(results_path))) {
+  for (Wait wait(path_, patience);;) {
+    try {
+      acquire(force, use);
+      return;
+    } catch (const Held& held) {
+      wait.go_on(held);
+    }
+  }
+}
+
+void RunLock::acquire(bool force, LockUse use) {
   OpenedLock lock;
   for (;;) {
     lock = try_open(path_);
@@ -241,7 +307,7 @@ RunLock::RunLock(const std::string& results_path, bool force)
   }
   file_ = std::move(lock.file);
   flock_error_ = lock.flock_error;
-  const std::string text = text_of_this_process();
+  const std::string text = text_of_this_process(use);
   if (::ftruncate(file_.get(), 0) != 0 ||
       ::pwrite(file_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
     const int error = errno;

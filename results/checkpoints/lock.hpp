@@ -4,17 +4,23 @@
 
 #include "results/hdf5/descriptor.hpp"
 #include "results/live_run.hpp"
+#include "results/patience.hpp"
 
 namespace jostle::inline results {
+
+/// What a lock is held for; it is written in the lock.
+enum class LockUse { run, storing };
 
 /// NAME.lock: one process at a time works on NAME. Held by flock, so that two processes never both
 /// take over from a dead one, and by what is written in it (host, pid, start time of the process,
 /// and its Slurm job), for file systems and hosts that flock does not reach.
 class RunLock {
  public:
-  /// Throws ResultsError naming the owner where a living process holds it, or where a process of
-  /// another host does that Slurm does not know to have ended, and `force` is not set.
-  RunLock(const std::string& results_path, bool force);
+  /// Waits with `patience`. Throws LockHeld naming the owner where a living process holds it still,
+  /// or where a process of another host does that Slurm does not know to have ended, and `force` is
+  /// not set.
+  RunLock(const std::string& results_path, bool force, LockUse use = LockUse::run,
+          const Patience& patience = {});
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
   /// Removes the lock file.
@@ -24,6 +30,8 @@ class RunLock {
   std::string warning() const;
 
  private:
+  void acquire(bool force, LockUse use);
+
   std::string path_;
   Descriptor file_;
   int flock_error_ = 0;

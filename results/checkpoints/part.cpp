@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/part_content.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
@@ -81,7 +82,7 @@ Content read_part(InputFile& file, const std::string& path, const PartIdentity& 
 }  // namespace
 
 std::string parts_folder(const std::string& results_path) {
-  return results_path + ".parts";
+  return beside(results_path, ".parts");
 }
 
 std::string state_path(const std::string& results_path, RealizationId id) {

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "ensemble/statistics/finite_text.hpp"
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/temporary_file.hpp"
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
@@ -21,12 +22,27 @@
 namespace jostle::inline results {
 namespace {
 
-const char* way_out(std::string_view what, int error) {
+/// Whether the file system below a path has run out of files, not of bytes.
+bool has_no_more_files(const std::string& path) {
+  struct statvfs disk;
+  return ::statvfs(folder_of(path).c_str(), &disk) == 0 && disk.f_files > 0 && disk.f_favail == 0;
+}
+
+/// What to do about a failed call.
+std::string way_out(const std::string& path, std::string_view what, int error) {
   if (what == "open" || what == "read") return "";
   switch (error) {
     case ENOSPC:
+      return has_no_more_files(path) ? "; its file system holds as many files as it can: remove "
+                                       "some, or write elsewhere"
+                                     : "; free some space, or write elsewhere";
     case EDQUOT:
-      return "; free some space, or write elsewhere";
+      return "; your quota there is used up: remove files of yours, or write elsewhere";
+    case ENAMETOOLONG:
+      return fmt::format("; names in its folder have up to {} bytes: choose a shorter one",
+                         longest_name_beside(path));
+    case EIO:
+      return "; the disk or its server failed: write elsewhere";
     case EFBIG:
       return "; raise the limit on file sizes (ulimit -f)";
     case ENOMEM:
@@ -34,6 +50,7 @@ const char* way_out(std::string_view what, int error) {
     case ELOOP:
       return "; it is a symbolic link, or one of a ring: remove it";
     case EROFS:
+      return "; write to another disk";
     case EACCES:
     case EPERM:
       return "; make the folder writable, or write to a file in another one";
@@ -44,11 +61,32 @@ const char* way_out(std::string_view what, int error) {
   }
 }
 
+/// Why a file may not be written to (`error`), and what helps.
+std::string protection_of(const struct stat& status, int error) {
+  if (error == EROFS) return "is on a read-only file system, and kept; write to another disk";
+  if (error == EPERM)
+    return "is marked as unchangeable (chattr), and kept; write elsewhere, or take the mark away";
+  if (error != EACCES)
+    return fmt::format("cannot be written to ({}), and is kept; write elsewhere",
+                       std::strerror(error));
+  const auto mode = status.st_mode & 0777u;
+  const auto user = ::geteuid();
+  if (user != 0 && status.st_uid != user)
+    return fmt::format(
+        "belongs to user {}, who has write-protected it (mode {:03o}), and is kept; "
+        "write elsewhere",
+        status.st_uid, mode);
+  return fmt::format(
+      "is write-protected (mode {:03o}), and kept; write elsewhere, or allow it "
+      "with chmod u+w",
+      mode);
+}
+
 }  // namespace
 
 void fail_on_disk(const std::string& path, const char* what, int error) {
   throw ResultsError(
-      path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(what, error)));
+      path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(path, what, error)));
 }
 
 void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes) {
@@ -81,16 +119,15 @@ std::string end_of_links(const std::string& path) {
 }
 
 void require_replaceable_file(const std::string& path) {
+  require_name_fits(path);
   struct stat status;
   if (::stat(path.c_str(), &status) != 0) return;
   if (!S_ISREG(status.st_mode))
     throw ResultsError(path, "is a folder, a pipe or a device, and not replaced by a file");
   constexpr mode_t anybody = S_IWUSR | S_IWGRP | S_IWOTH;  // root may write to all: ask the mode
-  if ((status.st_mode & anybody) != 0 && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0)
-    return;
-  throw ResultsError(path, fmt::format("is write-protected (mode {:03o}), and kept; write "
-                                       "elsewhere, or allow it with chmod u+w",
-                                       status.st_mode & 0777u));
+  const bool writable = ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0;
+  if (writable && (status.st_mode & anybody) != 0) return;
+  throw ResultsError(path, protection_of(status, writable ? EACCES : errno));
 }
 
 std::string folder_of(const std::string& path) {

@@ -1,11 +1,16 @@
 #include "results/checkpoints/seal.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
-#include <vector>
+#include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/publish.hpp"
@@ -62,22 +67,58 @@ std::string line_for(const std::string& path, const Descriptor& file, std::uint6
   return std::string(line_start) + hex(sum.finish()) + "\n";
 }
 
-/// The last line of a results file, its checksum.
-std::string read_seal(const std::string& path, const Descriptor& file) {
+/// Where the signature stands: at the start, or behind a user block of 512 bytes, 1024, 2048, ...;
+/// nothing where there is none. https://docs.hdfgroup.org/hdf5/develop/_f_m_t3.html
+std::optional<std::uint64_t> signature_place(const std::string& path, const Descriptor& file) {
+  const std::uint64_t size = size_of(path, file);
+  for (std::uint64_t at = 0; at + hdf5_signature.size() <= size; at = at == 0 ? 512 : 2 * at)
+    if (read_at(path, file, at, hdf5_signature.size()) == hdf5_signature) return at;
+  return std::nullopt;
+}
+
+/// Where HDF5 says that the file ends, by its superblock; 0 for one of a layout that is not known.
+std::uint64_t hdf5_end(const std::string& path, const Descriptor& file) {
+  constexpr std::size_t longest = 64;
+  const std::string block = read_at(path, file, 0, longest);
+  if (block.size() < longest) return 0;
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(block[at]); };
+  const unsigned version = byte(8);
+  constexpr unsigned bytes_an_offset = 8;
+  if (version > 3 || byte(version < 2 ? 13 : 9) != bytes_an_offset) return 0;
+  constexpr std::array<std::size_t, 4> end_at{40, 44, 28, 28};  // by the version
+  std::uint64_t end = 0;
+  for (std::size_t i = bytes_an_offset; i-- > 0;) end = end << 8 | byte(end_at[version] + i);
+  return end;
+}
+
+void require_results(const std::string& path, const Descriptor& file) {
   struct stat status;
   if (::fstat(file.get(), &status) != 0) fail_on_disk(path, "read", errno);
   if (!S_ISREG(status.st_mode))
     throw ResultsError(path, "not a file: results cannot be read from a folder, pipe or device");
-  if (read_at(path, file, 0, hdf5_signature.size()) != hdf5_signature)
-    throw ResultsError(path, "not an HDF5 file");
+  const auto place = signature_place(path, file);
+  if (!place) throw ResultsError(path, "not an HDF5 file");
+  if (*place > 0)
+    throw ResultsError(path, fmt::format("has {} bytes in front of HDF5's signature, a user block, "
+                                         "which another program put there; take it away (h5unjam)",
+                                         *place));
+}
+
+/// The last line of a results file, its checksum; empty where it is lost.
+std::string read_seal(const std::string& path, const Descriptor& file) {
+  require_results(path, file);
   const std::uint64_t size = size_of(path, file);
   if (size < line_size) throw ResultsError(path, "truncated");
   std::string line = read_at(path, file, size - line_size, line_size);
-  if (!line.starts_with(line_start))
-    throw ResultsError(path,
-                       "truncated, changed by another program, or not written by jostle (it does "
-                       "not end with its checksum); restore it from a copy");
-  return line;
+  if (line.starts_with(line_start)) return line;
+  if (size == hdf5_end(path, file)) return "";
+  throw ResultsError(path,
+                     "truncated, changed by another program, or not written by jostle (it does "
+                     "not end with its checksum); restore it from a copy");
+}
+
+Descriptor open_to_verify(const std::string& path) {
+  return open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
 }
 
 }  // namespace
@@ -88,18 +129,26 @@ void seal(const std::string& path) {
   write_all(path, file.get(), std::as_bytes(std::span(line)));
 }
 
-void require_seal(const std::string& path) {
-  read_seal(path, open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY));
+SealState seal_state(const std::string& path) {
+  return read_seal(path, open_to_verify(path)).empty() ? SealState::lost : SealState::whole;
 }
 
-void verify_seal(const std::string& path, const Take& take) {
-  const Descriptor file = open_or_fail(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+SealState verify_seal(const std::string& path, const Take& take) {
+  const Descriptor file = open_to_verify(path);
   const std::string line = read_seal(path, file);
-  if (line != line_for(path, file, size_of(path, file) - line_size, take))
+  if (line.empty() && !take) return SealState::lost;
+  const std::string found = line_for(path, file, size_of(path, file) - line.size(), take);
+  if (line.empty()) return SealState::lost;
+  if (line != found)
     throw ResultsError(path,
                        "damaged, or changed by another program (its checksum is wrong); restore it "
                        "from a copy");
   if (take) take(std::as_bytes(std::span(line)));
+  return SealState::whole;
+}
+
+bool is_hdf5_file(const std::string& path) {
+  return signature_place(path, open_to_verify(path)).has_value();
 }
 
 }  // namespace jostle::inline results

@@ -12,13 +12,23 @@ namespace jostle::inline results {
 /// Appends the line to a file. Throws ResultsError.
 void seal(const std::string& path);
 
-/// Throws ResultsError where the file does not end as one that is whole. Reads its ends alone.
-void require_seal(const std::string& path);
+/// `lost`: the line is gone, and the file ends where HDF5 says it does. HDF5 leaves every file so
+/// that was opened for writing, changed or not; only the contents can show that they are the old
+/// ones (file/contents.hpp).
+enum class SealState { whole, lost };
 
-/// Throws ResultsError saying what is wrong with the file: missing, not HDF5, truncated, changed.
-/// `take` is given the whole file, piece by piece, before that is known: one reading is enough to
-/// verify and to copy.
-void verify_seal(const std::string& path,
-                 const std::function<void(std::span<const std::byte>)>& take = {});
+/// Reads the ends of the file alone. Throws ResultsError where it is no HDF5 file, or where it ends
+/// neither with the line nor where HDF5 says.
+SealState seal_state(const std::string& path);
+
+/// Verifies the checksum, where there is one. Throws ResultsError saying what is wrong with the
+/// file: missing, not HDF5, truncated, changed. `take` is given the whole file, piece by piece,
+/// before that is known: one reading is enough to verify and to copy.
+[[nodiscard]] SealState verify_seal(
+    const std::string& path, const std::function<void(std::span<const std::byte>)>& take = {});
+
+/// Whether a file has HDF5's signature, behind a user block too. Throws ResultsError where it
+/// cannot be read.
+bool is_hdf5_file(const std::string& path);
 
 }  // namespace jostle::inline results

@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "results/checkpoints/checksum.hpp"
+#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
@@ -48,22 +50,28 @@ void take_over(const std::string& path, int file, const struct stat& old) {
   if (::fchmod(file, mode) != 0) fail_on_disk(path, "create", errno);
 }
 
-/// Whether a file's name is one that a TemporaryFile gives to what goes to `target`.
-bool is_temporary(const std::string& name, const std::string& target) {
-  if (name.size() != target.size() + 1 + random_digits + ending.size()) return false;
-  if (!name.starts_with(target + ".") || !name.ends_with(ending)) return false;
-  const std::string digits = name.substr(target.size() + 1, random_digits);
-  return digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+std::string name_on_the_way(const std::string& target, const std::string& digits) {
+  return beside(target, fmt::format(".{}{}", digits, ending));
+}
+
+/// Whether a file is one that a TemporaryFile makes of what goes to `target`.
+bool is_temporary(const std::string& path, const std::string& target) {
+  if (path.size() < random_digits + ending.size()) return false;
+  const std::string digits =
+      path.substr(path.size() - random_digits - ending.size(), random_digits);
+  return digits.find_first_not_of("0123456789abcdef") == std::string::npos &&
+         path == name_on_the_way(target, digits);
 }
 
 }  // namespace
 
 TemporaryFile::TemporaryFile(const std::string& path) : target_(path) {
+  require_name_fits(target_);
   output_path(target_);  // refuses links of others on the way
   const auto old = replaced_file(target_);
   const mode_t mode = old ? 0600 : 0666;
   do {
-    name_ = fmt::format("{}.{}{}", target_, random_identity().substr(0, random_digits), ending);
+    name_ = name_on_the_way(target_, random_identity().substr(0, random_digits));
     file_ =
         Descriptor(::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   } while (!file_ && errno == EEXIST);
@@ -84,21 +92,42 @@ void TemporaryFile::write(std::span<const std::byte> bytes) {
   write_all(name_, file_.get(), bytes);
 }
 
+void TemporaryFile::finish() {
+  if (file_ && ::fsync(file_.get()) != 0) fail_on_disk(name_, "fsync", errno);
+  file_ = Descriptor();
+}
+
 void TemporaryFile::publish(const std::function<void()>& before) {
-  if (::fsync(file_.get()) != 0) fail_on_disk(name_, "fsync", errno);
+  finish();
   if (before) before();
   if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
   published_ = true;
   sync_folder_of(target_);
 }
 
+void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files) {
+  std::vector<std::string> added;
+  try {
+    for (const auto& file : files) {
+      struct stat status;
+      const bool is_new = ::lstat(file->target().c_str(), &status) != 0;
+      if (is_new) added.push_back(file->target());
+      file->publish();
+    }
+  } catch (const ResultsError&) {
+    for (const std::string& path : added) ::unlink(path.c_str());
+    throw;
+  }
+}
+
 void remove_stale_temporaries(const std::string& path) {
-  const std::string target = std::filesystem::path(path).filename();
+  const std::string target =
+      std::filesystem::path(folder_of(path)) / std::filesystem::path(path).filename();
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder_of(path), error), end;
        !error && entry != end; entry.increment(error)) {
     struct stat status;
-    if (!is_temporary(entry->path().filename(), target)) continue;
+    if (!is_temporary(entry->path(), target)) continue;
     if (::lstat(entry->path().c_str(), &status) == 0 && S_ISREG(status.st_mode))
       remove_file(entry->path());
   }

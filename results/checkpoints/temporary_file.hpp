@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -28,12 +29,18 @@ class TemporaryFile {
   /// On disk first, then under its name, then the name on disk. `before` is called once it is on
   /// disk: what must go when the new file comes, and must stay if it does not.
   void publish(const std::function<void()>& before = {});
+  /// On disk, not yet under its name, and closed: nothing more is written to it.
+  void finish();
 
  private:
   std::string target_, name_;
   Descriptor file_;
   bool published_ = false;
 };
+
+/// Publishes several finished files that belong together.
+/// Where one cannot be given its name, those before it that replaced nothing are taken away again.
+void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files);
 
 /// Removes what killed processes left on the way to `path`. For the owner of its lock.
 void remove_stale_temporaries(const std::string& path);

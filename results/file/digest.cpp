@@ -1,235 +1,52 @@
-#include <fmt/format.h>
+#include "results/file/digest.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <unordered_map>
+#include <array>
 
 #include "results/checkpoints/checksum.hpp"
-#include "results/checkpoints/seal.hpp"
-#include "results/hdf5/axes.hpp"
-#include "results/hdf5/policy.hpp"
+#include "results/file/content_walk.hpp"
+#include "results/hdf5/child_process.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/results_file.hpp"
 #include "results/tables.hpp"
 
-// The digest is a SHA-256 over a canonical text and byte stream: for every object in the order of
-// its path a line "path kind type shape", its values, then its attributes in the order of their
-// names. Chunks, compression, byte order and where in the file things lie do not enter.
 namespace jostle::inline results {
 namespace {
 
-class Digest {
+/// A SHA-256 over the bytes of all items.
+class Digest : public ContentSink {
  public:
-  std::string of(hid_t file) {
-    add_attributes(file, "/");
-    add_members(file, "");
-    return hex(sum_.finish());
-  }
+  void begin(const std::string&, const std::string&) override {}
+  void names(const std::string&, const char*, const std::vector<std::string>&) override {}
+  void add(std::span<const std::byte> bytes) override { sum_.add(bytes); }
+  std::string text() { return hex(sum_.finish()); }
 
  private:
-  void add_members(hid_t group, const std::string& path);
-  using Paths = std::unordered_map<haddr_t, std::string>;  // of a group's members, by address
-
-  void add_object(hid_t parent, const Member& member, const std::string& path, const Paths& paths);
-  void add_dataset(hid_t dataset, const std::string& path);
-  void add_attributes(hid_t object, const std::string& path);
-  void add_attribute(hid_t object, const std::string& name, const std::string& path);
-  void add_axes(hid_t dataset, const std::string& path, const Paths& paths);
-  template <class Read, class Texts>
-  void add_values(const std::string& what, hid_t type, hid_t space, Read&& read, Texts&& texts);
-  template <class Number, class Read>
-  void add_numbers(hid_t memory_type, const Shape& shape, Read&& read);
-  void add_texts(std::span<const std::string> texts);
-
   Sha256 sum_;
-  Walk walk_;
 };
 
-/// Rows of a dataset, from `first` of its first dimension on; without a shape all of it.
-struct Piece {
-  hsize_t first = 0;
-  Shape shape = {};
-};
-
-/// Whole chunks of results files (chunk_along_first), and no more than a few of them.
-hsize_t rows_a_piece(const Shape& shape) {
-  constexpr hsize_t numbers_a_chunk = 65536, chunks_a_piece = 32;
-  const hsize_t a_row = std::max<hsize_t>(n_elements(shape) / std::max<hsize_t>(shape[0], 1), 1);
-  const hsize_t a_chunk = std::max<hsize_t>(numbers_a_chunk / a_row, 1);
-  return std::max<hsize_t>(numbers_a_chunk * chunks_a_piece / a_row / a_chunk, 1) * a_chunk;
-}
-
-using Names = std::vector<std::string>;
-
-Names attribute_names(hid_t object) {
-  Names names;
-  require_few_attributes(object);
-  const auto keep = [](hid_t, const char* name, const H5A_info_t*, void* all) -> herr_t {
-    static_cast<Names*>(all)->push_back(name);
-    return 0;
-  };
-  checked(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names));
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string shape_text(hid_t space) {
-  std::string text;
-  for (const hsize_t extent : shape_of_space(space)) text += fmt::format(" {}", extent);
-  return text;
-}
-
-bool is_derived(const std::string& path) {
-  return std::ranges::any_of(derived_groups,
+/// What depends on who made the numbers, or can be made of them again.
+bool is_beside_the_data(const std::string& path) {
+  constexpr std::array beside{"/provenance", "/timing", "/h5md"};
+  return std::ranges::find(beside, path) != beside.end() ||
+         std::ranges::any_of(derived_groups,
                              [&](const char* name) { return path == std::string("/") + name; });
-}
-
-void Digest::add_members(hid_t group, const std::string& path) {
-  const std::vector<Member> members = members_of(group);
-  Paths paths;
-  for (const Member& member : members) paths[member.address] = path + "/" + member.name;
-  for (const Member& member : members) {
-    const std::string& member_path = path + "/" + member.name;
-    if (member_path == "/provenance" || member_path == "/timing" || member_path == "/h5md" ||
-        is_derived(member_path))
-      continue;
-    add_object(group, member, member_path, paths);
-  }
-}
-
-void Digest::add_object(hid_t parent, const Member& member, const std::string& path,
-                        const Paths& paths) {
-  const Hdf5Handle object(H5Oopen(parent, member.name.c_str(), H5P_DEFAULT), H5Oclose);
-  switch (H5Iget_type(object)) {
-    case H5I_GROUP:
-      walk_.enter(member, path);
-      sum_.add(path + " group\n");
-      add_attributes(object, path);
-      return add_members(object, path);
-    case H5I_DATASET:
-      require_plain_dataset(object, path);
-      add_dataset(object, path);
-      add_attributes(object, path);
-      return add_axes(object, path, paths);
-    default:
-      throw Hdf5Error(path + " is neither a group nor a dataset: not written by jostle");
-  }
-}
-
-void Digest::add_dataset(hid_t dataset, const std::string& path) {
-  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  const auto read = [&](hid_t memory_type, void* values, const Piece& piece) {
-    if (piece.shape.empty())
-      return H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, transfer_properties(), values);
-    read_rows(dataset, memory_type, piece.shape, piece.first, values);
-    return herr_t{0};
-  };
-  add_values(path + " dataset", type, space, read, [&] { return texts_of_dataset(dataset, path); });
-}
-
-void Digest::add_attributes(hid_t object, const std::string& path) {
-  for (const std::string& name : attribute_names(object)) {
-    // References to where a dataset lies in the file; add_axes names them instead.
-    if (name == "DIMENSION_LIST" || name == "REFERENCE_LIST") continue;
-    add_attribute(object, name, path);
-  }
-}
-
-void Digest::add_attribute(hid_t object, const std::string& name, const std::string& path) {
-  const Hdf5Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
-  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  add_values(
-      path + " attribute " + name, type, space,
-      [&](hid_t memory_type, void* values, const Piece& piece) {
-        if (!piece.shape.empty())
-          throw Hdf5Error("an attribute of millions of numbers: not written by jostle");
-        return H5Aread(attribute, memory_type, values);
-      },
-      [&] { return texts_of_attribute(attribute, name); });
-}
-
-/// Axes lie in the group of what stands along them, and a reference to one is its address there:
-/// to ask HDF5 for its name would search the whole file.
-void Digest::add_axes(hid_t dataset, const std::string& path, const Paths& paths) {
-  const auto axes = axes_of(dataset);
-  for (std::size_t dimension = 0; dimension < axes.size(); ++dimension) {
-    for (const haddr_t address : axes[dimension]) {
-      const auto axis = paths.find(address);
-      if (axis == paths.end())
-        throw Hdf5Error(path + " has an axis in another group: not written by jostle");
-      sum_.add(path + " axis " + std::to_string(dimension) + " " + axis->second + "\n");
-    }
-  }
-}
-
-template <class Read, class Texts>
-void Digest::add_values(const std::string& what, hid_t type, hid_t space, Read&& read,
-                        Texts&& texts) {
-  const Shape shape = shape_of_space(space);
-  const std::size_t n = n_elements(shape);
-  const std::size_t size = H5Tget_size(type);
-  const bool is_signed = H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
-  switch (H5Tget_class(type)) {
-    case H5T_FLOAT:
-      sum_.add(what + " float" + std::to_string(8 * size) + shape_text(space) + "\n");
-      return add_numbers<double>(H5T_NATIVE_DOUBLE, shape, read);
-    case H5T_INTEGER:
-      sum_.add(what + (is_signed ? " int" : " uint") + std::to_string(8 * size) +
-               shape_text(space) + "\n");
-      return add_numbers<std::uint64_t>(is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, shape,
-                                        read);
-    case H5T_STRING:
-      sum_.add(what + " text" + shape_text(space) + "\n");
-      if (H5Tis_variable_str(type) > 0) return add_texts(texts());
-      {
-        std::vector<std::byte> raw(n * size);
-        checked(read(type, raw.data(), Piece{}));
-        return sum_.add(std::span<const std::byte>(raw));
-      }
-    default:
-      throw Hdf5Error(what + " is neither a number nor text: not written by jostle");
-  }
-}
-
-template <class Number, class Read>
-void Digest::add_numbers(hid_t memory_type, const Shape& shape, Read&& read) {
-  std::vector<Number> values;
-  const auto add = [&](const Shape& part, const Piece& piece) {
-    values.resize(n_elements(part));
-    if (!values.empty()) checked(read(memory_type, values.data(), piece));
-    if constexpr (std::is_floating_point_v<Number>)
-      for (Number& value : values)
-        if (std::isnan(value)) value = std::numeric_limits<Number>::quiet_NaN();
-    sum_.add(std::as_bytes(std::span(values)));
-  };
-  const hsize_t n_rows = shape.empty() ? 1 : shape[0];
-  const hsize_t a_piece = shape.empty() ? 1 : rows_a_piece(shape);
-  if (n_rows <= a_piece) return add(shape, {});
-  for (hsize_t first = 0; first < n_rows; first += a_piece) {
-    Shape part = shape;
-    part[0] = std::min(a_piece, n_rows - first);
-    add(part, {first, part});
-  }
-}
-
-void Digest::add_texts(std::span<const std::string> texts) {
-  for (const std::string& text : texts) {
-    sum_.add(std::to_string(text.size()) + ":");
-    sum_.add(text);
-  }
 }
 
 }  // namespace
 
+std::string data_digest(hid_t file) {
+  Digest digest;
+  walk_contents(file, is_beside_the_data, digest);
+  return digest.text();
+}
+
 std::string digest_of(const std::string& path) {
-  verify_seal(path);
-  silence_hdf5();
   return naming_file(path, [&] {
-    const Hdf5Handle file = open_to_read(path);
-    return Digest().of(file);
+    return in_child_process([&] {
+      const ResultsFile valid(path);  // refuses what the walk would trust
+      return data_digest(open_to_read(path));
+    });
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include "results/checkpoints/seal.hpp"
 #include "results/checkpoints/temporary_file.hpp"
+#include "results/file/contents.hpp"
 #include "results/file/layout.hpp"
 #include "results/file/point_writer.hpp"
 #include "results/file/study_writer.hpp"
@@ -38,6 +39,7 @@ void write_hdf5(const std::string& path, const FileContent& content) {
   if (content.realization)
     state = write_points(file, content) ? RunState::complete : RunState::interrupted;
   write_provenance(file, content, state);
+  write_contents(file);
   file.close();
 }
 

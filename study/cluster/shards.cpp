@@ -97,11 +97,48 @@ void gather(Gathered& study, const std::string& path, const LiveLook& look) {
   place = std::move(shard);
 }
 
+/// The path of a shard's file, if it is named as that of another shard is: by the last number of
+/// its name.
+std::optional<std::string> path_like(const ShardStatus& other, std::uint32_t index) {
+  const std::size_t name = other.path.find_last_of('/') + 1;  // 0 without a folder
+  const std::size_t last = other.path.find_last_of("0123456789", other.path.rfind('.'));
+  if (last == std::string::npos || last < name) return std::nullopt;
+  std::size_t first = last;
+  while (first > name && std::isdigit(static_cast<unsigned char>(other.path[first - 1])) != 0)
+    --first;
+  const std::string number = other.path.substr(first, last + 1 - first);
+  const std::string padded = fmt::format("{:0{}}", other.index, number.size());
+  if (number != padded) return std::nullopt;
+  return other.path.substr(0, first) + fmt::format("{:0{}}", index, number.size()) +
+         other.path.substr(last + 1);
+}
+
+/// Files that cannot be read hold shards all the same: those that their names tell, and else any.
+void place_unreadable(ShardsStatus& study, const std::vector<BadFile>& bad_files) {
+  std::vector<std::string> paths;
+  for (const BadFile& file : bad_files) paths.push_back(file.path);
+  const auto known = std::ranges::find_if(study.shards, [](const ShardStatus& shard) {
+    return !shard.path.empty() && path_like(shard, shard.index);
+  });
+  if (known != study.shards.end()) {
+    const ShardStatus pattern = *known;
+    for (ShardStatus& shard : study.shards) {
+      if (shard.state != ShardState::missing) continue;
+      const auto found = std::ranges::find(paths, *path_like(pattern, shard.index));
+      if (found == paths.end()) continue;
+      shard.state = ShardState::unreadable;
+      shard.path = *found;
+      paths.erase(found);
+    }
+  }
+  if (!study.indices(ShardState::missing).empty()) study.unread = paths;
+}
+
 void count_missing(Gathered& study, const Study& stored) {
   const std::uint64_t points = stored.points.size(), all = points * stored.realizations;
   const std::uint64_t count = study.status.shards.size();
   for (ShardStatus& shard : study.status.shards) {
-    if (shard.state != ShardState::missing) continue;
+    if (shard.state != ShardState::missing && shard.state != ShardState::unreadable) continue;
     for (std::uint64_t n = shard.index - 1; n < all; n += count) {
       const std::uint64_t rows = stored.points[n % points].taps + 1;
       ++shard.realizations;
@@ -192,6 +229,8 @@ const char* name_of(ShardState state) {
       return "dead";
     case ShardState::missing:
       return "missing";
+    case ShardState::unreadable:
+      return "unreadable";
   }
   return "unknown";
 }
@@ -216,6 +255,7 @@ Overview overview_of(std::span<const std::string> files) {
     }
   }
   for (auto& [key, known] : studies) {
+    place_unreadable(known.gathered.status, overview.bad_files);
     count_missing(known.gathered, known.first.study());
     estimate_left(known.gathered);
     overview.studies.push_back(std::move(known.gathered.status));

@@ -18,8 +18,9 @@ namespace jostle::inline study {
 std::vector<std::string> results_files(std::span<const std::string> named);
 
 /// How a shard stands. `stopped`: in good order, by a signal or a time limit; `dead`: its process
-/// was killed; `missing`: no file holds it. All three go on with a resume.
-enum class ShardState { done, running, stopped, dead, missing };
+/// was killed; `missing`: no file holds it. All three go on with a resume. `unreadable`: by its
+/// name a file holds it that cannot be read, and what is in it may be finished.
+enum class ShardState { done, running, stopped, dead, missing, unreadable };
 const char* name_of(ShardState state);
 
 struct ShardStatus {
@@ -39,6 +40,7 @@ struct ShardsStatus {
   Seconds used{0};                  // of processors
   std::optional<Seconds> left;      // estimated of what was done; nothing before the first tap
   std::vector<std::string> twice;   // files that hold a share another file holds
+  std::vector<std::string> unread;  // files that cannot be read: each may hold any missing share
 
   std::vector<std::uint32_t> indices(ShardState state) const;
 };

@@ -74,25 +74,26 @@ void make_tables(const ResultsFile& file, const Scene& scene, int threads, Table
   for (const Table& table : groups.back().tables) observer.analysed(table);
 }
 
-void store(const ResultsFile& file, const std::vector<TableGroup>& groups, int threads) {
+void store(const ResultsFile& file, const std::vector<TableGroup>& groups, int threads,
+           const Patience& patience) {
   if (groups.empty()) return;
-  store_tables(file.path(), groups, provenance_of_this_run(fmt::to_string(threads)));
+  store_tables(file.path(), groups, provenance_of_this_run(fmt::to_string(threads)), patience);
 }
 
 }  // namespace
 
 std::vector<std::string> store_scene_tables(const ResultsFile& file, int threads,
-                                            TablesObserver& observer) {
+                                            TablesObserver& observer, const Patience& patience) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);
   std::vector<TableGroup> groups;
   if (parsed.scene) {
     try {
       make_tables(file, *parsed.scene, threads, observer, groups);
     } catch (...) {
-      store(file, groups, threads);
+      store(file, groups, threads, patience);
       throw;
     }
-    store(file, groups, threads);
+    store(file, groups, threads, patience);
   }
   std::vector<std::string> names;
   for (const TableGroup& group : groups) {

@@ -21,8 +21,10 @@ class TablesObserver {
 /// how its targets are met, and stores them in one replacement of the file: nothing where it asks
 /// for nothing, or is not one that this version reads. Where one cannot be made, for want of memory
 /// as much as for the disk, those before it are stored first. Returns the names of the tables with
-/// their groups, "fits/...". Throws ResultsError.
+/// their groups, "fits/...". Throws ResultsError;
+/// LockHeld where another process works on the file for longer than `patience` lasts.
 std::vector<std::string> store_scene_tables(const ResultsFile& file, int threads,
-                                            TablesObserver& observer);
+                                            TablesObserver& observer,
+                                            const Patience& patience = {});
 
 }  // namespace jostle::inline study

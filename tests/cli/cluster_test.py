@@ -263,7 +263,7 @@ class Status(Case):
         self.shard(4)
         study = self.status()["studies"][0]
         self.assertEqual(study["counts"], {"done": 2, "running": 0, "stopped": 0, "dead": 0,
-                                           "missing": 3})
+                                           "missing": 3, "unreadable": 0})
         self.assertGreater(study["core_hours_used"], 0)
         # 2 of 6 realizations are done, of the same cost.
         self.assertGreater(study["core_hours_left"], 0)
@@ -291,6 +291,29 @@ class Status(Case):
                          {"tiny": 2, "other": 1})
         self.assertEqual([one["file"] for one in status["bad_files"]], ["shards/2.h5"])
         self.assertIn("shards/2.h5", shown.stderr)
+
+    def test_a_shard_that_cannot_be_read_is_not_missing(self):
+        for index in (1, 3):
+            self.shard(index, 4)
+        damaged = self.folder / "shards/3.h5"
+        damaged.write_bytes(damaged.read_bytes()[:-100])
+        study = json.loads(self.jostle("status", "shards", "--json", expect=BROKEN).stdout)["studies"][0]
+        self.assertEqual([one["state"] for one in study["shards"]], ["done", "missing", "unreadable", "missing"])
+        self.assertEqual(study["shards"][2]["file"], "shards/3.h5")
+        self.assertEqual(len(study["redo"]), 2)
+        self.assertFalse([command for command in study["redo"] if "3/4" in command])
+        shown = self.jostle("status", "shards", expect=BROKEN).stdout
+        self.assertIn("unreadable   1: 3", shown)
+        self.assertNotIn("3/4", shown)
+        # A name that tells no number: it may hold any of them, and none is done again.
+        damaged.rename(self.folder / "shards/copy.h5")
+        study = json.loads(self.jostle("status", "shards", "--json", expect=BROKEN).stdout)["studies"][0]
+        self.assertEqual(study["unread"], ["shards/copy.h5"])
+        self.assertEqual(study["redo"], [])
+        self.assertIn("shards/copy.h5 cannot be read", self.jostle("status", "shards", expect=BROKEN).stdout
+                      .replace("\n               ", " "))
+        (self.folder / "shards/copy.h5").unlink()
+        self.assertEqual(len(self.status()["studies"][0]["redo"]), 3)
 
     def test_a_share_in_two_files_is_told(self):
         self.shard(1, 2)

@@ -33,7 +33,7 @@ class Rings(Case):
     def test_rings_of_links_and_long_names_are_said_plainly(self):
         self.write(TAPPED)
         (self.folder / "ring.h5").symlink_to("ring.h5")
-        for output, answer in (("ring.h5", "ring"), ("x" * 300, "File name too long")):
+        for output, answer in (("ring.h5", "ring"), ("x" * 300, "has a name of 300 bytes, and its folder takes up to 255")):
             for options in ((), ("--resume",)):
                 with self.subTest(output=output[:9], options=options):
                     err = self.jostle("run", "scene.json", "-o", output, *options, expect=BROKEN).stderr

@@ -67,7 +67,7 @@ TEST_CASE("a truncated, empty, foreign or missing file is refused") {
   const std::string path = folder / "a.h5";
   run_to_end(path);
   const std::uint64_t size = std::filesystem::file_size(path);
-  for (const std::uint64_t length : {size - 1, size - 80, size / 2, std::uint64_t{9}}) {
+  for (const std::uint64_t length : {size - 1, size - 79, size - 81, size / 2, std::uint64_t{9}}) {
     std::filesystem::resize_file(path, length);
     CHECK_THROWS_WITH(ResultsFile(path), Contains("truncated"));
   }

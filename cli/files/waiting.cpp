@@ -1,0 +1,40 @@
+#include "cli/files/waiting.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/reports/durations.hpp"
+#include "cli/terminal/standard_streams.hpp"
+#include "results/export/printable.hpp"
+#include "results/results_file.hpp"
+#include "study/provenance.hpp"
+
+namespace jostle::inline cli {
+
+void add_wait(Command& command, Patience& patience) {
+  patience.tell = [](const std::string& what) {
+    print_to_standard_error(fmt::format("jostle: {}\n", printable(what)));
+  };
+  command
+      .add_reader(
+          "--wait",
+          [&patience](const std::string& text) {
+            const auto duration = parse_duration(text);
+            if (!duration) throw BadValue(fmt::format("\"{}\" is not a duration, as 10m", text));
+            patience.for_storing = patience.for_runs = *duration;
+          },
+          "How long to wait for another process that works on the results (default: 10s for one "
+          "that stores tables, and 0s for a run)")
+      .environment("JOSTLE_WAIT");
+}
+
+void warn_of_lost_seals(std::span<const std::string> paths) {
+  for (const std::string& path : paths) {
+    const std::string warning = seal_warning(path);
+    if (warning.empty()) continue;
+    print_to_standard_error(fmt::format("jostle: warning: {}: {}. Seal the file again with\n  {}\n",
+                                        printable(path), warning,
+                                        shell_words({"jostle", "info", "--reseal", path})));
+  }
+}
+
+}  // namespace jostle::inline cli

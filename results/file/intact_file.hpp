@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "results/results_file.hpp"
+
+// A results file is as jostle wrote it where its seal says so, or, where another program opened it
+// for writing and so cut the seal off, where its contents do. All throw ResultsError.
+namespace jostle::inline results {
+
+/// Refuses what is not as jostle wrote it, naming what differs. `known_as`: the file's name in
+/// errors.
+void require_intact(const std::string& path, const std::string& known_as, Verify verify);
+
+/// Copies a file into one that is going to replace it, and refuses it likewise.
+class TemporaryFile;
+void copy_intact(const std::string& path, TemporaryFile& copy);
+
+}  // namespace jostle::inline results
