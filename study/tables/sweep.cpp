@@ -194,7 +194,7 @@ std::vector<std::string> places_of(std::span<const Member> members,
   std::vector<std::string> places;
   for (const Member& member : members) {
     if (!member.taps.empty() && member.steady == verdict)
-      places.push_back(fmt::format("{:.4g}", member.x));
+      places.push_back(finite_text("{:.4g}", member.x));
   }
   return places;
 }
