@@ -359,16 +359,15 @@ class Crafted(Case):
                     self.use(command)
 
     def test_a_digest_survives_bytes_on_which_hdf5_crashes(self):
-        """Headers of attributes, which HDF5 1.10 frees twice; of these files the third crashed it."""
+        """HDF5 1.10 crashes where it lists attributes whose headers are damaged, or closes the file after that."""
         self.write_grains()
         data = (self.folder / "good.h5").read_bytes()[:-SEAL]
         rng = random.Random(20261125)
         crashes = 0
         for _ in range(40):
             changed_data = bytearray(data)
-            # A message of an attribute: its name stands 8 bytes and more behind its version.
-            at = data.index(b"long_name\0", rng.randrange(len(data) // 2)) - rng.randrange(1, 9)
-            changed_data[at] ^= rng.randrange(1, 256)
+            for _ in range(rng.randint(1, 4)):
+                changed_data[rng.randrange(len(data))] = rng.randrange(256)
             (self.folder / "file.h5").write_bytes(sealed(bytes(changed_data)))
             done = self.use(["info", "file.h5", "--digest"])
             crashes += "HDF5 crashes when it reads" in done.stderr.replace("\n", " ")

@@ -116,7 +116,7 @@ class Folders(Faults):
             "$JOSTLE" run scene.json -o locked/tiny.h5""")
         self.assertEqual(ended.returncode, BROKEN, ended.stderr)
         self.assertRegex(ended.stderr, r"^jostle: locked/tiny\.h5\.lock: cannot create: Read-only "
-                                       r"file system; make the folder writable")
+                                       r"file system; write to another disk")
 
     @unittest.skipIf(os.getuid() == 0, "permissions do not bind root")
     def test_a_folder_without_permission_is_named(self):
