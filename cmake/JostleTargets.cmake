@@ -42,12 +42,26 @@ endfunction()
 set(JOSTLE_COMMON_HEADERS <algorithm> <array> <chrono> <cmath> <functional> <map> <memory> <numeric>
                           <optional> <span> <string> <variant> <vector>)
 
-# jostle_library(engine [NOT_HOT] SOURCES a.cpp ... PUBLIC jostle_x ... PRIVATE ...): one folder, one
-# library, installed as jostle::engine. Link only what the arrows allow: engine <- structure <-
+# jostle_unify(TARGET SOURCES ...): the sources of each folder are compiled as one unit, because most of the
+# compilers' time goes into the headers that they share. Generated sources stay apart.
+function(jostle_unify target)
+  foreach(source ${ARGN})
+    if(source MATCHES "^[^/$]")
+      get_filename_component(folder ${source} DIRECTORY)
+      string(MAKE_C_IDENTIFIER "unit_${folder}" unit)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${unit})
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# jostle_library(engine [NOT_HOT] SOURCES a.cpp ... [SEPARATE b.cpp ...] PUBLIC jostle_x ... PRIVATE ...): one
+# folder, one library, installed as jostle::engine. SEPARATE sources hold the loops that runs spend their time in:
+# each is a unit of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <- structure <-
 # ensemble; config and results stand on those; study joins them, and cli is its command line.
 function(jostle_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "SOURCES;PUBLIC;PRIVATE")
-  add_library(jostle_${name} STATIC ${arg_SOURCES})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "SOURCES;SEPARATE;PUBLIC;PRIVATE")
+  add_library(jostle_${name} STATIC ${arg_SOURCES} ${arg_SEPARATE})
   add_library(jostle::${name} ALIAS jostle_${name})
   set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(jostle_${name} PUBLIC cxx_std_20)
@@ -64,5 +78,6 @@ function(jostle_library name)
   else()
     jostle_precompile(jostle_${name} hot ${JOSTLE_COMMON_HEADERS})
   endif()
+  jostle_unify(jostle_${name} ${arg_SOURCES})
   set_property(GLOBAL APPEND PROPERTY jostle_libraries jostle_${name})
 endfunction()

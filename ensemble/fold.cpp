@@ -2,15 +2,13 @@
 
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle::inline ensemble {
 
-namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 FoldedColumn fold(std::span<const double> column, std::uint32_t realizations) {
   assert(realizations > 0 && column.size() % realizations == 0);
@@ -30,7 +28,7 @@ SeriesBlock::SeriesBlock(std::size_t n_columns, std::uint64_t first_tap, std::ui
                          std::uint32_t realizations)
     : first_tap_(first_tap),
       realizations_(realizations),
-      columns_(n_columns, std::vector<double>(n_taps * realizations, nan)) {}
+      columns_(n_columns, std::vector<double>(n_taps * realizations, not_a_number)) {}
 
 void SeriesBlock::set(std::uint32_t realization, const TapRow& row) {
   assert(row.tap >= first_tap_ && row.observables.size() + row.diagnostics.size() == n_columns());
@@ -54,7 +52,7 @@ void SeriesBlock::set(std::uint32_t realization, std::span<const double> rows) {
 
 void SeriesBlock::set(std::size_t column, std::uint64_t tap, std::uint32_t realization,
                       double value) {
-  columns_[column][tap * realizations_ + realization] = std::isnan(value) ? nan : value;
+  columns_[column][tap * realizations_ + realization] = std::isnan(value) ? not_a_number : value;
 }
 
 }  // namespace jostle::inline ensemble

@@ -1,13 +1,12 @@
 #include "ensemble/moments.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "engine/numbers.hpp"
 
 namespace jostle::inline ensemble {
 
-namespace {
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 void Moments::add(double value) {
   if (std::isnan(value)) return;

@@ -12,6 +12,7 @@
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
 #include "fitting/limit_fit.hpp"
+#include "fitting/numbers.hpp"
 #include "fitting/refusal.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
@@ -19,7 +20,6 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int most_attempts = 5;  // to find a minimum that no profile undercuts
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 

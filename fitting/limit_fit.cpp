@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
@@ -10,12 +9,12 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
+#include "fitting/numbers.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unnoticed = 0.01;  // rise of the cost, in variances of a residual
 constexpr double rounding = 1e-14;  // of a residual, relative to the data
 
@@ -194,7 +193,7 @@ void restore_covariance(const Model& model, const Limit& limit, const Fit& found
 }
 
 // "B and tau"
-std::string listed(const std::vector<std::string>& names) {
+std::string listed_limits(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
@@ -288,7 +287,7 @@ std::variant<Fit, Refusal> fit_at_limit(const Model& model, const Curve& curve,
                    limit.law->formula() + ": " + limit.approach +
                    ". The data determine this law of " + std::to_string(found.estimates.size()) +
                    (found.estimates.size() == 1 ? " parameter" : " parameters") + ", and not " +
-                   listed(lost) + (lost.size() > 1 ? " separately." : "."),
+                   listed_limits(lost) + (lost.size() > 1 ? " separately." : "."),
                limit.law, found.estimates};
   fit.remarks.insert(fit.remarks.begin(), fit.limit->statement);
   return fit;

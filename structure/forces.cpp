@@ -2,8 +2,8 @@
 
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle::inline structure {
@@ -81,10 +81,9 @@ GranularTemperature granular_temperature(const Packing& packing, std::span<const
   }
   while (!bins.empty() && bins.back().n < 2) bins.pop_back();
   GranularTemperature temperature;
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Bin& bin : bins) {
-    temperature.lateral.push_back(bin.n < 2 ? nan : bin.lateral / (bin.n - 1));
-    temperature.vertical.push_back(bin.n < 2 ? nan : bin.vertical / (bin.n - 1));
+    temperature.lateral.push_back(bin.n < 2 ? not_a_number : bin.lateral / (bin.n - 1));
+    temperature.vertical.push_back(bin.n < 2 ? not_a_number : bin.vertical / (bin.n - 1));
   }
   return temperature;
 }

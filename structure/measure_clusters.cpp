@@ -1,6 +1,6 @@
-#include <limits>
 #include <stdexcept>
 
+#include "engine/numbers.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/voids/clusters.hpp"
 
@@ -22,7 +22,6 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
     chi.push_back(per_cell.back() / (found.mean[k] / n.back() - 1 - least_free_volume));
     clusters.push_back(static_cast<double>(found.clusters[k]));
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Measurement out;
   out.places = {{"cells", n, "1", "cells of a cluster"}};
   out.quantities = {
@@ -33,7 +32,7 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .long_name = "variance of the volume of a cluster over its cells and over "
                     "shared_cells; the same for all sizes where cells are independent",
        .source = "Lechenault et al. 2006, doi:10.1088/1742-5468/2006/07/P07009",
-       .beyond = nan,
+       .beyond = not_a_number,
        .with_change = true,
        .with_packings = true},
       {.name = "relative_variance",
@@ -42,13 +41,13 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .long_name =
            "variance of the volume of a cluster over its cells and over shared_cells, over that of "
            "the single cells it is of: 1 where cells are independent",
-       .beyond = nan},
+       .beyond = not_a_number},
       {.name = "shared_cells",
        .places = "cells",
        .values = independent,
        .long_name = "what the variance of these clusters is lowered by, because they share cells, "
                     "where cells are independent",
-       .beyond = nan},
+       .beyond = not_a_number},
       {.name = "chi",
        .places = "cells",
        .values = chi,
@@ -56,7 +55,7 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .long_name = "compactivity (mean - least) / k of cells and clusters, k by moments: variance "
                     "over mean less least",
        .source = "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309",
-       .beyond = nan,
+       .beyond = not_a_number,
        .with_change = true,
        .with_packings = true},
       {.name = "n_clusters",

@@ -1,8 +1,8 @@
 #include <cmath>
-#include <limits>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
+#include "engine/numbers.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/order/bond_order.hpp"
 #include "structure/order/crystal_order.hpp"
@@ -13,8 +13,6 @@
 namespace jostle::inline structure {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> cuts_up_to(const CoordinationSettings& settings) {
   std::vector<double> cuts;
@@ -120,7 +118,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
        .source = "Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641",
        .pooling = Pooling::weighted,
        .weights = pairs.expected,
-       .beyond = nan},
+       .beyond = not_a_number},
       {.name = "pairs",
        .places = "r",
        .values = counts,
@@ -132,7 +130,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
        .long_name = "mean number of other centres up to this distance, where shells are whole",
        .pooling = Pooling::weighted,
        .weights = std::vector(pairs.r.size(), centres),
-       .beyond = nan},
+       .beyond = not_a_number},
       {.name = "density",
        .values = {pairs.density},
        .units = "1/diameter^3",
@@ -183,7 +181,7 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                               .values = by_height[c].values(),
                               .long_name = long_name,
                               .source = source,
-                              .beyond = nan});
+                              .beyond = not_a_number});
     out.quantities.push_back(
         {.name = name, .values = of_region[c].values(), .long_name = long_name, .source = source});
   }

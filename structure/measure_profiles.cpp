@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
+#include "engine/numbers.hpp"
 #include "structure/density/gradient.hpp"
 #include "structure/density/profile_parts.hpp"
 #include "structure/density/profiles.hpp"
@@ -13,8 +13,6 @@
 namespace jostle::inline structure {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> middles(const Profile& profile) {
   std::vector<double> places;
@@ -169,7 +167,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
     at.push_back(layer.height);
     where.push_back(layer.found);
     filling.push_back(layer.filling);
-    share.push_back(layer.filling > 0 ? layer.share : nan);
+    share.push_back(layer.filling > 0 ? layer.share : not_a_number);
   }
   Measurement out;
   out.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
@@ -184,7 +182,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
                      .values = where,
                      .units = "diameter",
                      .long_name = "mean height of the centres near that place of the layer",
-                     .beyond = nan},
+                     .beyond = not_a_number},
                     {.name = "filling",
                      .places = "layer_height",
                      .values = filling,
@@ -193,7 +191,7 @@ Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
                      .places = "layer_height",
                      .values = share,
                      .long_name = "part of them within the tolerance of the found height",
-                     .beyond = nan},
+                     .beyond = not_a_number},
                     {.name = "grown_layers",
                      .values = {static_cast<double>(grown_layers(in.packing, settings.rule))},
                      .long_name = "ordered layers from the floor up to the first that is not"}};

@@ -1,17 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/numbers.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/voids/pores.hpp"
 
 namespace jostle::inline structure {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double mean_of(std::span<const double> values) {
   double sum = 0;
@@ -111,7 +109,7 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
              "sphere volumes");
   add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction", out);
   const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal
-  add_single("k", varies ? above_least * above_least / (sigma * sigma) : nan,
+  add_single("k", varies ? above_least * above_least / (sigma * sigma) : not_a_number,
              "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
              "least cell being a regular dodecahedron",
              out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
@@ -231,7 +229,7 @@ Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
                             .values = std::move(values),
                             .long_name = long_name,
                             .source = source,
-                            .beyond = nan,
+                            .beyond = not_a_number,
                             .with_error = measured};
   };
   constexpr const char* table_one = "Philippe & Bideau 2001, table I";

@@ -8,7 +8,7 @@ namespace jostle::inline cli {
 
 namespace {
 
-constexpr const char* beginning = R"BASH(# bash completion of {0}, made of its options
+constexpr const char* script_beginning = R"BASH(# bash completion of {0}, made of its options
 
 # Files with one of the suffixes that follow the word, any file without; and folders.
 _{0}_files() {{
@@ -142,8 +142,8 @@ std::string bash_completion(const CommandText& program) {
       "    '') {} ;;\n",
       offer_or_nothing(offer_command(program.name, {.words = names_of(program.commands)})));
   const std::string name = "_" + program.name;
-  return fmt::format(beginning, program.name) + function(name + "_value", values, "return 1") +
-         "\n# The options of \"COMMAND KIND\".\n" +
+  return fmt::format(script_beginning, program.name) +
+         function(name + "_value", values, "return 1") + "\n# The options of \"COMMAND KIND\".\n" +
          function(name + "_options", options,
                   fmt::format("printf -- '{}\\n'", option_names(program.options)).c_str()) +
          "\n# _" + program.name + "_words COMMAND WORD: what may stand without a name.\n" +

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "engine/numbers.hpp"
 #include "study/bad_input.hpp"
 #include "study/number_text.hpp"
 
@@ -22,7 +23,6 @@ double read_end(const std::string& text, double otherwise, const std::string& op
 }  // namespace
 
 FitRange read_range(const std::string& option, const std::string& text) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   const auto colon = text.find(':');
   const std::string first = text.substr(0, colon);
   const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);

@@ -15,7 +15,7 @@
 namespace jostle::inline cli {
 namespace {
 
-constexpr std::size_t rows = 8, widest = 72;  // of a drawing, in characters
+constexpr std::size_t drawn_rows = 8, widest = 72;  // of a drawing, in characters
 constexpr std::size_t narrowest_drawing = 24;
 
 /// A braille character has two by four dots.
@@ -200,11 +200,11 @@ std::string curve_text(const std::string& name, std::span<const double> values, 
   width = std::min(width, widest);
   if (n < 3 || width < margin + narrowest_drawing) return "";
   const std::size_t columns = width - margin, first = 3;  // of tap 1
-  Drawing drawing(columns, rows, glyphs);
+  Drawing drawing(columns, drawn_rows, glyphs);
   draw(drawing, values, range, first * drawing.dots_a_column());
   std::string text = name + " over taps\n";
-  for (std::size_t line = 0; line < rows; ++line) {
-    const std::string label = line == 0 ? top : line + 1 == rows ? bottom : "";
+  for (std::size_t line = 0; line < drawn_rows; ++line) {
+    const std::string label = line == 0 ? top : line + 1 == drawn_rows ? bottom : "";
     text += fmt::format("{:>{}} {}\n", label, margin - 1, drawing.line(line));
   }
   return text + fmt::format("{:>{}} {}\n", "", margin - 1,

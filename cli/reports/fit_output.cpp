@@ -12,7 +12,7 @@ namespace jostle::inline cli {
 
 namespace {
 
-constexpr const char* legend =
+constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; not identifiable: the data set "
     "no "
     "limit. docs/fitting.md says what the rest means.\n";
@@ -196,7 +196,7 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
     text += fit_text(outcome, detail);
   }
   if (fits.size() > 1) text.append("\n").append(compare(fits, fitted.comparison));
-  if (!fits.empty()) text += legend;
+  if (!fits.empty()) text += verdict_legend;
   text += '\n';
   return wrapped(text, layout.width);
 }

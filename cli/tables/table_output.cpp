@@ -11,7 +11,7 @@ namespace jostle::inline cli {
 namespace {
 
 /// To the last bit.
-std::string cell(const Quantity& quantity, std::size_t index) {
+std::string stored_cell(const Quantity& quantity, std::size_t index) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&quantity.values)) {
     const double number = numbers->at(index);
     return std::isnan(number) ? "nan" : fmt::format("{}", number);
@@ -90,10 +90,10 @@ std::string table_csv(const Table& table) {
       std::vector<std::string> cells;
       const auto indices = place(table, block, row);
       for (std::size_t i = 0; i < indices.size(); ++i) {
-        cells.push_back(cell(axis_named(table, block.axes[i]), indices[i]));
+        cells.push_back(stored_cell(axis_named(table, block.axes[i]), indices[i]));
       }
       for (const Quantity* quantity : block.columns) {
-        cells.push_back(cell(*quantity, row));
+        cells.push_back(stored_cell(*quantity, row));
       }
       text += csv_line(cells);
     }

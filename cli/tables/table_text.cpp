@@ -33,7 +33,7 @@ std::string plain_number(double number, const std::string& name) {
   return number_text(number, whole ? 7 : is_probability(name) ? 2 : 4);
 }
 
-std::string cell(const Quantity& quantity, std::size_t index) {
+std::string shown_cell(const Quantity& quantity, std::size_t index) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&quantity.values)) {
     return plain_number(numbers->at(index), quantity.name);
   }
@@ -85,14 +85,14 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
   if (has_interval(quantity, block)) {
     const double low = number_at(beside(quantity, block, "_low_95"), index);
     const double high = number_at(beside(quantity, block, "_high_95"), index);
-    if (!std::isfinite(low) || !std::isfinite(high)) return cell(quantity, index);
+    if (!std::isfinite(low) || !std::isfinite(high)) return shown_cell(quantity, index);
     return fmt::format("{} ({})", number_text(number_at(&quantity, index), 4),
                        limits_text(low, high, 4));
   }
   const Quantity* error = beside(quantity, block, "_error");
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
   const double width = number_at(error, index);
-  if (!numbers || !(width > 0)) return cell(quantity, index);
+  if (!numbers || !(width > 0)) return shown_cell(quantity, index);
   return value_with_error(numbers->at(index), width, scale_of(*numbers));
 }
 
@@ -156,7 +156,8 @@ std::string sentences(const Table& table, const Block& block, const Quantity& qu
   for (std::size_t row = 0; row < texts.size(); ++row) {
     std::string at;
     for (std::size_t i = 0; const std::size_t index : place(table, block, row)) {
-      at.append(at.empty() ? "" : "/").append(cell(axis_named(table, block.axes[i++]), index));
+      at.append(at.empty() ? "" : "/")
+          .append(shown_cell(axis_named(table, block.axes[i++]), index));
     }
     std::string& listed = rows[texts[row]];
     if (listed.empty()) order.push_back(texts[row]);
@@ -272,7 +273,7 @@ class BlockText {
     for (std::size_t row = 0; row < block_.n_rows(); ++row) {
       std::vector<std::string> cells;
       for (std::size_t i = 0; const std::size_t index : place(table_, block_, row)) {
-        cells.push_back(cell(axis_named(table_, block_.axes[i++]), index));
+        cells.push_back(shown_cell(axis_named(table_, block_.axes[i++]), index));
       }
       for (const Quantity* quantity : quantities) cells.push_back(shown(*quantity, block_, row));
       text.add(std::move(cells));

@@ -9,7 +9,7 @@
 namespace jostle::inline cli {
 namespace {
 
-constexpr std::size_t gap = 2;
+constexpr std::size_t column_gap = 2;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::string TextTable::rows_of(const std::vector<std::size_t>& columns) const {
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::string& cell = row[columns[i]];
-      if (i > 0) text.append(gap, ' ');
+      if (i > 0) text.append(column_gap, ' ');
       text.append(widths[i] - width_of(cell), ' ').append(cell);
     }
     text.erase(text.find_last_not_of(' ') + 1);
@@ -48,7 +48,7 @@ std::string TextTable::text(std::size_t width) const {
   std::vector<std::size_t> keys(std::min(keys_, rows_.front().size()));
   std::iota(keys.begin(), keys.end(), 0);
   std::size_t width_of_keys = 0;
-  for (const std::size_t key : keys) width_of_keys += width_of_column(key) + gap;
+  for (const std::size_t key : keys) width_of_keys += width_of_column(key) + column_gap;
   std::string text;
   std::vector<std::size_t> block = keys;
   std::size_t used = width_of_keys;
@@ -60,7 +60,7 @@ std::string TextTable::text(std::size_t width) const {
       used = width_of_keys;
     }
     block.push_back(column);
-    used += needed + gap;
+    used += needed + column_gap;
   }
   return text + rows_of(block);
 }

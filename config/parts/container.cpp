@@ -79,7 +79,7 @@ Json written_fully_periodic(const FullyPeriodicBox& box) {
   return out;
 }
 
-constexpr Kinds<Container> kinds{
+constexpr Kinds<Container> container_kinds{
     {"periodic", read_box<PeriodicBox>,
      [](const PeriodicBox& box) { return written_widths("periodic", box.width_x, box.width_y); }},
     {"walls", read_box<WalledBox>,
@@ -96,19 +96,19 @@ Container read_container(const Reader& in) {
   const auto sides = in.find("sides");
   if (!sides) {
     if (in.is_object_of({"sides", "width", "height", "diameter"})) {
-      in.missing("sides", "one of the strings " + listed(names_of(kinds)));
+      in.missing("sides", "one of the strings " + listed(names_of(container_kinds)));
     }
     return {};
   }
-  if (const auto kind = sides->one_of(names_of(kinds))) {
-    return read_kind(kinds, Choice{*kind, in});
+  if (const auto kind = sides->one_of(names_of(container_kinds))) {
+    return read_kind(container_kinds, Choice{*kind, in});
   }
   in.is_object_of({"sides", "width", "height", "diameter"});
   return {};
 }
 
 Json written(const Container& container) {
-  return written_settings(kinds, container);
+  return written_settings(container_kinds, container);
 }
 
 }  // namespace jostle::inline config

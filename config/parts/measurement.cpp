@@ -99,7 +99,7 @@ Json written_bulk_fraction(const BulkFraction& bulk) {
   return settings;
 }
 
-constexpr Kinds<Observable> kinds{
+constexpr Kinds<Observable> observable_kinds{
     {"mean_height", read_plain<MeanHeight>, written_plain<MeanHeight>},
     {"bottom_fraction", read_plain<BottomFraction>, written_plain<BottomFraction>},
     {"corrected_fraction", read_corrected_fraction, written_corrected_fraction},
@@ -109,14 +109,15 @@ constexpr Kinds<Observable> kinds{
     {"ordered_height", read_plain<OrderedHeight>, written_plain<OrderedHeight>}};
 
 Observable read_observable(const Reader& in) {
-  const auto choice = in.named_choice(names_of(kinds));
+  const auto choice = in.named_choice(names_of(observable_kinds));
   if (!choice) return MeanHeight{};
-  return read_kind(kinds, *choice);
+  return read_kind(observable_kinds, *choice);
 }
 
 Json written(const Observable& observable) {
-  const bool plain = written_settings(kinds, observable).is_null();
-  return plain ? Json(name_of(kinds, observable)) : written_kind(kinds, observable);
+  const bool plain = written_settings(observable_kinds, observable).is_null();
+  return plain ? Json(name_of(observable_kinds, observable))
+               : written_kind(observable_kinds, observable);
 }
 
 std::vector<std::uint64_t> read_tap_list(const Reader& in) {

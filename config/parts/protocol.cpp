@@ -136,7 +136,7 @@ Tap read_vibration(const Reader& in, const StrengthReader& strength) {
   return tap;
 }
 
-constexpr TableOf<TapEntry, Tap>::Type taps{
+constexpr TableOf<TapEntry, Tap>::Type tap_kinds{
     {"dilate",
      [](const Reader& in, const StrengthReader& strength) -> Tap {
        return Dilate{strength(in, dilations, Rooted::yes)};
@@ -163,16 +163,17 @@ constexpr TableOf<TapEntry, Tap>::Type taps{
      }}};
 
 Tap read_tap(const Reader& in, const StrengthReader& strength) {
-  const auto choice = in.choice(names_of(taps));
+  const auto choice = in.choice(names_of(tap_kinds));
   if (!choice) return Dilate{};
-  return read_kind(taps, choice->name,
+  return read_kind(tap_kinds, choice->name,
                    [&](const auto& kind) { return kind.read(choice->settings, strength); });
 }
 
 Json written(const Tap& tap, const StrengthWriter& strength) {
-  const Json settings = with_kind(
-      taps, tap, [&](const auto& kind, const auto& part) { return kind.write(part, strength); });
-  return {{name_of(taps, tap), settings}};
+  const Json settings = with_kind(tap_kinds, tap, [&](const auto& kind, const auto& part) {
+    return kind.write(part, strength);
+  });
+  return {{name_of(tap_kinds, tap), settings}};
 }
 
 ProtocolLine read_line(const Reader& in) {

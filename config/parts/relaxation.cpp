@@ -129,24 +129,24 @@ Json written_metropolis(const MetropolisMove& move) {
   return metropolis;
 }
 
-constexpr Kinds<Move> moves{{"polar", read_polar, written_polar},
-                            {"metropolis", read_metropolis, written_metropolis}};
+constexpr Kinds<Move> move_kinds{{"polar", read_polar, written_polar},
+                                 {"metropolis", read_metropolis, written_metropolis}};
 
 }  // namespace
 
 Relaxation read_relaxation(const Reader& in) {
   Relaxation relaxation;
-  std::vector<std::string> keys = names_of(moves);
+  std::vector<std::string> keys = names_of(move_kinds);
   keys.insert(keys.end(), {"stop", "max_sweeps", "sampler"});
   if (!in.is_object_of(keys)) return relaxation;
   std::size_t n_moves = 0;
-  for (const std::string& name : names_of(moves)) {
+  for (const std::string& name : names_of(move_kinds)) {
     const auto move = in.find(name);
     if (!move) continue;
-    relaxation.move = read_kind(moves, Choice{name, *move});
+    relaxation.move = read_kind(move_kinds, Choice{name, *move});
     ++n_moves;
   }
-  if (n_moves > 1) in.fault("expected only one of the keys " + listed(names_of(moves)));
+  if (n_moves > 1) in.fault("expected only one of the keys " + listed(names_of(move_kinds)));
   if (const auto stop = in.find("stop")) relaxation.stop.rule = read_stop(*stop);
   in.read_whole("max_sweeps", relaxation.stop.max_sweeps, 1, most_sweeps);
   in.read_name("sampler", relaxation.sampler, samplers);
@@ -154,7 +154,7 @@ Relaxation read_relaxation(const Reader& in) {
 }
 
 Json written(const Relaxation& relaxation) {
-  Json out = written_kind(moves, relaxation.move);
+  Json out = written_kind(move_kinds, relaxation.move);
   out["stop"] = written_kind(stops, relaxation.stop.rule);
   out["max_sweeps"] = relaxation.stop.max_sweeps;
   out["sampler"] = name_in(samplers, relaxation.sampler);

@@ -133,7 +133,7 @@ Json written_file(const PackingFile& file) {
   return out;
 }
 
-constexpr Kinds<StartChoice> kinds{
+constexpr Kinds<StartChoice> start_kinds{
     {"pour", read_pour, [](const SteepestDescentPour&) { return Json("steepest_descent"); }},
     {"pour", read_pour, [](const FittedPour&) { return Json("fitted"); }},
     {"random_settle", read_random_settle,
@@ -152,9 +152,9 @@ constexpr Kinds<StartChoice> kinds{
 }  // namespace
 
 StartChoice read_start(const Reader& in) {
-  const auto start = in.choice(names_of(kinds));
+  const auto start = in.choice(names_of(start_kinds));
   if (!start) return SteepestDescentPour{};
-  return read_kind(kinds, *start);
+  return read_kind(start_kinds, *start);
 }
 
 Start engine_start(const StartChoice& choice) {
@@ -170,11 +170,11 @@ Start engine_start(const StartChoice& choice) {
 }
 
 std::string key_of(const StartChoice& start) {
-  return name_of(kinds, start);
+  return name_of(start_kinds, start);
 }
 
 Json written(const StartChoice& start) {
-  return written_kind(kinds, start);
+  return written_kind(start_kinds, start);
 }
 
 }  // namespace jostle::inline config

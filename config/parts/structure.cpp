@@ -23,7 +23,7 @@ template <class Settings>
 const std::vector<NumberKey<Settings>> number_keys{};
 
 constexpr Range widths = between(0.001, 10);
-constexpr double highest = 1e6;
+constexpr double longest_distance = 1e6;
 
 template <>
 const std::vector<NumberKey<ProfileSettings>> number_keys<ProfileSettings> = {
@@ -32,7 +32,7 @@ const std::vector<NumberKey<ProfileSettings>> number_keys<ProfileSettings> = {
 template <>
 const std::vector<NumberKey<SidesSettings>> number_keys<SidesSettings> = {
     {"bin_width", &SidesSettings::bin_width, widths},
-    {"reach", &SidesSettings::reach, above(0, highest)}};
+    {"reach", &SidesSettings::reach, above(0, longest_distance)}};
 template <>
 const std::vector<NumberKey<LayersSettings>> number_keys<LayersSettings> = {
     {"bin_width", &LayersSettings::bin_width, widths}};
@@ -250,7 +250,7 @@ Region read_region(const Reader& in) {
   } else {
     in.missing("heights", "two numbers, low and high");
   }
-  in.read("from_sides", region.from_sides, between(0, highest));
+  in.read("from_sides", region.from_sides, between(0, longest_distance));
   return region;
 }
 

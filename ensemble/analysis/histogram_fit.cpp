@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 #include "ensemble/statistics/student_tests.hpp"
@@ -13,7 +13,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_expected = 5;            // of a bin, for chi2
 constexpr double least_scatter = 0.01;          // of counts, in Poisson's: less is none of counts
 constexpr double doubted = significance_level;  // p below which the law is called wrong
@@ -50,7 +49,7 @@ Groups groups_of(const Histogram& histogram, const std::vector<double>& expected
 }
 
 struct Goodness {
-  double p = nan;
+  double p = not_a_number;
   std::size_t bins = 0;
 };
 
@@ -125,7 +124,7 @@ void add_errors(const Model& law, const Histogram& histogram, HistogramFit& foun
 HistogramFit fit_histogram(const Model& law, const Histogram& histogram) {
   const std::uint32_t m = histogram.realizations;
   const std::size_t n = law.parameters().size();
-  HistogramFit found{std::vector(n, nan), std::vector(n, nan), nan, ""};
+  HistogramFit found{std::vector(n, not_a_number), std::vector(n, not_a_number), not_a_number, ""};
   if (m == 0) return found.status = "no packing", found;
   const std::vector<double> counts = mean_counts(histogram, m);
   const auto filled = std::ranges::count_if(counts, [](double count) { return count != 0; });

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/analyses.hpp"
 
 namespace jostle::inline ensemble {
@@ -10,7 +10,6 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr const char* flyvbjerg_petersen = "Flyvbjerg & Petersen 1989, doi:10.1063/1.457480";
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* wolff = "Wolff 2004, doi:10.1016/S0010-4655(03)00467-3";
 
 Quantity one(std::string name, double value, std::string units, std::string long_name,

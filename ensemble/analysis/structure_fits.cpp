@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/histogram_fit.hpp"
 #include "ensemble/statistics/diverged.hpp"
 #include "ensemble/statistics/jackknife.hpp"
@@ -17,7 +17,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_depth = 2;  // of bed between the layers at the floor and the surface
 
 /// What a law gave at one tap.
@@ -79,7 +78,9 @@ FoundLaw fitted_curve(const std::string& quantity, const Model& model, const Pac
     }
   }
   const std::size_t n = model.parameters().size();
-  FoundLaw found{{std::vector(n, nan), std::vector(n, nan), nan, "converged"}, curves.realizations};
+  FoundLaw found{
+      {std::vector(n, not_a_number), std::vector(n, not_a_number), not_a_number, "converged"},
+      curves.realizations};
   std::string& status = found.fit.status;
   if (curves.realizations == 0) return status = "no packing", found;
   const auto outcome = fit(model, mean_curve(curves), {.profiles = false, .memory = false});
@@ -234,8 +235,8 @@ FittedLaw density_profile(const ProfileSettings& settings) {
             });
             const double surface = found.fit.values[3] * sphere_radius;  // z*
             if (surface < low + least_depth) {
-              std::ranges::fill(found.fit.values, nan);
-              std::ranges::fill(found.fit.errors, nan);
+              std::ranges::fill(found.fit.values, not_a_number);
+              std::ranges::fill(found.fit.errors, not_a_number);
               found.fit.status = "the surface is less than 2 d above the layers at the floor";
             }
             return found;

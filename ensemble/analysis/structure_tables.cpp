@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/structure_fits.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
@@ -13,8 +13,6 @@
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The longest list of each kind of places.
 std::map<std::string_view, Places> longest_places(const PartPackings& part) {
@@ -79,7 +77,7 @@ MeansAndErrors averages(const PartPackings& part, std::string_view name, std::si
         double value = quantity->at(place);
         if (change) {
           const auto* start = part[0][r] ? part[0][r]->find(name) : nullptr;
-          value -= start != nullptr ? start->at(place) : nan;
+          value -= start != nullptr ? start->at(place) : not_a_number;
         }
         moments.add(value);
       }

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
-#include <limits>
+
+#include "engine/numbers.hpp"
 
 namespace jostle::inline ensemble {
 
-namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 MotionRecords::MotionRecords(const MotionSettings& followed, std::uint32_t spheres,
                              std::uint32_t realizations)
@@ -17,9 +16,10 @@ MotionRecords::MotionRecords(const MotionSettings& followed, std::uint32_t spher
   const std::size_t n_origins = settings.origins.size();
   for (const MotionQuantity& one : motion_quantities)
     values.emplace_back(
-        n_origins * settings.lags.size() * n_places(one.places, settings) * n_realizations, nan);
-  layer_height.resize(n_origins * settings.layers * n_realizations, nan);
-  largest_step.resize(n_realizations, nan);
+        n_origins * settings.lags.size() * n_places(one.places, settings) * n_realizations,
+        not_a_number);
+  layer_height.resize(n_origins * settings.layers * n_realizations, not_a_number);
+  largest_step.resize(n_realizations, not_a_number);
 }
 
 void MotionRecords::add(std::uint32_t realization, const MotionState& state,

@@ -1,16 +1,14 @@
 #include "ensemble/statistics/jackknife.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
-namespace {
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 double jackknife_error(std::span<const double> left_out) {
   Moments moments;

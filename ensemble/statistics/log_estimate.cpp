@@ -1,20 +1,18 @@
 #include "ensemble/statistics/log_estimate.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
-namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 LogEstimate no_estimate() {
-  return {nan, nan, nan, nan, nan, nan};
+  return {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number, not_a_number};
 }
 
 LogEstimate log_estimate(double value, const ErrorOf& of_logarithm) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 
@@ -11,7 +11,6 @@ namespace jostle::inline ensemble {
 
 TestedEnds tested_ends(const std::vector<double>& values, double best, double dof,
                        const std::function<double(double value)>& t_of) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   TestedEnds ends{{-infinite, -infinite}, {infinite, infinite}};
   for (const bool up : {false, true}) {
     double inside = best, t_inside = 0;

@@ -14,11 +14,11 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double times_of_a_block = 5;    // autocorrelation times
-constexpr double rounding = 1e-12;        // what is left of a change is no memory
-constexpr std::size_t fewest_blocks = 4;  // of a series
-constexpr double enough_freedom = 20;     // of an error within series
-constexpr double doubted = 0.25;          // p of realizations that differ by more than they change
+constexpr double times_of_a_block = 5;  // autocorrelation times
+constexpr double rounding = 1e-12;      // what is left of a change is no memory
+constexpr std::size_t fewest_blocks_of_series = 4;
+constexpr double enough_freedom = 20;  // of an error within series
+constexpr double doubted = 0.25;       // p of realizations that differ by more than they change
 
 // Sum of (i - center)^2.
 double leverage(double n) {
@@ -54,10 +54,10 @@ void TrendTest::add(std::span<const double> series) {
   if (n_ == 0) {
     n_ = series.size();
     // 1, 2, 3, 4, 6, 8, 12, ... taps
-    for (std::size_t length = 1; fewest_blocks * length <= n_; length *= 2) {
+    for (std::size_t length = 1; fewest_blocks_of_series * length <= n_; length *= 2) {
       levels_.push_back({length, n_ / length, 0});
       const std::size_t between = length / 2 * 3;
-      if (length >= 2 && fewest_blocks * between <= n_)
+      if (length >= 2 && fewest_blocks_of_series * between <= n_)
         levels_.push_back({between, n_ / between, 0});
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fitting/numbers.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
@@ -63,7 +64,6 @@ DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
 
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
                            const Eigen::VectorXd& residuals, bool sigma_given, double evidence) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   const Influence found = influence(jacobian);
   const auto independent = static_cast<double>(residuals.size() - jacobian.cols());
   const double unit = sigma_given ? 1 : residuals.squaredNorm() / independent;

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
 #include "fitting/models/combination.hpp"
+#include "fitting/numbers.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // The minimum in the parameters of another model.
 struct Rewritten {

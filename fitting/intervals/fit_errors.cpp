@@ -6,13 +6,13 @@
 
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/gapped_dof.hpp"
+#include "fitting/numbers.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double least_error_dof = 10;  // of a curve alone
 
 // Of every realization from the mean, in errors of the mean: [n_points, n_realizations].

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/numbers.hpp"
 #include "fitting/solver/projection.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double edge = 1e-3;      // how near two parameters in order come, relatively
 constexpr double far_away = 100;   // in largest values of X
 constexpr double rounding = 1e-6;  // of a value, in errors of the curve, that is not felt

@@ -5,6 +5,7 @@
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
+#include "fitting/numbers.hpp"
 
 namespace jostle::inline fitting {
 
@@ -218,7 +219,6 @@ double Estimate::half_width() const {
 }
 
 void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   if (fit.condition <= singular_condition) return;
   for (Estimate& estimate : estimates) {
     if (estimate.identifiability <= Identifiability::not_examined) continue;

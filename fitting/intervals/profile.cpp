@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "fitting/intervals/held_fits.hpp"
+#include "fitting/numbers.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double reach_of_logarithm = 13.8;  // a factor 10^6
 constexpr double reach_of_errors = 1e4;
 

@@ -1,17 +1,13 @@
 #include "fitting/solver/projection.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "fitting/numbers.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
 
-namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 Projection::Projection(const Model& model, const Curve& curve, std::span<const double> fixed)
     : model_(model), curve_(curve) {

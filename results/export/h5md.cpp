@@ -51,11 +51,6 @@ void write_values(hid_t element, Frames frames, const Shape& rest,
   for (std::size_t i = 0; i < frames.size(); ++i) value.write(i, of(frames[i]));
 }
 
-std::vector<double> components_of(const std::vector<Vec3>& vectors) {
-  const double* const first = &vectors[0].x;
-  return {first, first + 3 * vectors.size()};
-}
-
 std::vector<double> centres(const ExportedFrame& frame) {
   return components_of(frame.packing.centres);
 }

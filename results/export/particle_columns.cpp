@@ -27,6 +27,14 @@ std::uint32_t type_number(CrystalOrder order) {
 
 }  // namespace
 
+std::vector<double> components_of(const std::vector<Vec3>& vectors) {
+  std::vector<double> components;
+  components.reserve(3 * vectors.size());
+  for (const Vec3& vector : vectors)
+    components.insert(components.end(), {vector.x, vector.y, vector.z});
+  return components;
+}
+
 Packing wrapped_inside(const Packing& packing) {
   Packing moved = packing;
   const Boundary boundary(packing.container);

@@ -31,6 +31,9 @@ struct ExportedFrame {
   std::vector<VectorColumn> vectors{};
 };
 
+/// Returns x, y, z of every vector, one after the other.
+std::vector<double> components_of(const std::vector<Vec3>& vectors);
+
 /// The packing with its centres inside the container, where cells and neighbours are sought; those
 /// of another program may be periods away. Throws std::invalid_argument naming a sphere that no
 /// period brings inside.

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they are");
 
-constexpr const char* header =
+constexpr const char* file_header =
     "<?xml version=\"1.0\"?>\n"
     "<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
 
@@ -58,12 +58,6 @@ std::string array(const std::string& name, const std::vector<T>& values, int com
       type_name(T{}), name, components, encoded(values));
 }
 
-std::vector<double> components_of(const std::vector<Vec3>& vectors) {
-  std::vector<double> components;
-  for (const Vec3& one : vectors) components.insert(components.end(), {one.x, one.y, one.z});
-  return components;
-}
-
 std::string escaped(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -86,7 +80,7 @@ std::string vtk_points_text(const ExportedFrame& frame) {
   std::vector<std::int64_t> connectivity(n), offsets(n);
   std::iota(connectivity.begin(), connectivity.end(), 0);
   std::iota(offsets.begin(), offsets.end(), 1);
-  std::string text = fmt::format(header, "PolyData");
+  std::string text = fmt::format(file_header, "PolyData");
   text += fmt::format(
       "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
       "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n</FieldData>\n"
@@ -106,7 +100,7 @@ std::string vtk_points_text(const ExportedFrame& frame) {
 }
 
 std::string vtk_collection_text(std::span<const std::pair<std::uint64_t, std::string>> files) {
-  std::string text = fmt::format(header, "Collection") + "<Collection>\n";
+  std::string text = fmt::format(file_header, "Collection") + "<Collection>\n";
   for (const auto& [tap, name] : files)
     text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", tap, escaped(name));
   return text + "</Collection>\n</VTKFile>\n";

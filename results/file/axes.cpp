@@ -6,14 +6,14 @@
 namespace jostle::inline results {
 namespace {
 
-constexpr hsize_t numbers_a_chunk = 65536;
+constexpr hsize_t most_numbers_per_chunk = 65536;
 
 template <class Number>
 Hdf5Handle write_counting(hid_t group, const char* name, Number n, const char* long_name) {
   RowsDataset<Number> axis(group, name, {n}, chunk_along_first({n}));
   std::vector<Number> values;
   for (Number first = 0; first < n; first += static_cast<Number>(values.size())) {
-    values.resize(std::min<std::size_t>(numbers_a_chunk, n - first));
+    values.resize(std::min<std::size_t>(most_numbers_per_chunk, n - first));
     std::iota(values.begin(), values.end(), first);
     axis.write(first, values);
   }
@@ -58,14 +58,14 @@ Shape chunk_along_first(const Shape& shape) {
   hsize_t others = 1;
   for (std::size_t i = 1; i < shape.size(); ++i) others *= shape[i];
   Shape chunk = shape;
-  chunk[0] = std::clamp<hsize_t>(numbers_a_chunk / std::max<hsize_t>(others, 1), 1,
+  chunk[0] = std::clamp<hsize_t>(most_numbers_per_chunk / std::max<hsize_t>(others, 1), 1,
                                  std::max<hsize_t>(shape[0], 1));
   return chunk;
 }
 
 std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns) {
   constexpr std::uint64_t bytes_a_block = 16u << 20;
-  const std::uint64_t chunk = std::max<std::uint64_t>(numbers_a_chunk / n_realizations, 1);
+  const std::uint64_t chunk = std::max<std::uint64_t>(most_numbers_per_chunk / n_realizations, 1);
   const std::uint64_t bytes_a_row = n_columns * n_realizations * sizeof(double);
   return std::max<std::uint64_t>(bytes_a_block / bytes_a_row / chunk, 1) * chunk;
 }

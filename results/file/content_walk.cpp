@@ -55,10 +55,10 @@ struct Piece {
 
 /// Whole chunks of results files (chunk_along_first), and no more than a few of them.
 hsize_t rows_a_piece(const Shape& shape) {
-  constexpr hsize_t numbers_a_chunk = 65536, chunks_a_piece = 32;
+  constexpr hsize_t numbers_per_chunk = 65536, chunks_a_piece = 32;
   const hsize_t a_row = std::max<hsize_t>(n_elements(shape) / std::max<hsize_t>(shape[0], 1), 1);
-  const hsize_t a_chunk = std::max<hsize_t>(numbers_a_chunk / a_row, 1);
-  return std::max<hsize_t>(numbers_a_chunk * chunks_a_piece / a_row / a_chunk, 1) * a_chunk;
+  const hsize_t a_chunk = std::max<hsize_t>(numbers_per_chunk / a_row, 1);
+  return std::max<hsize_t>(numbers_per_chunk * chunks_a_piece / a_row / a_chunk, 1) * a_chunk;
 }
 
 Names attribute_names(hid_t object) {

@@ -52,9 +52,9 @@ Hdf5Handle write_axis(hid_t group, const Column& label, const std::vector<Number
   return axis;
 }
 
-class Writer {
+class MotionWriter {
  public:
-  Writer(hid_t group, const MotionRecords& records)
+  MotionWriter(hid_t group, const MotionRecords& records)
       : group_(group),
         records_(records),
         origins_(write_axis(group,
@@ -129,7 +129,7 @@ class Writer {
 }  // namespace
 
 void write_motion_records(hid_t group, const MotionRecords& records) {
-  Writer writer(group, records);
+  MotionWriter writer(group, records);
   for (std::size_t q = 0; q < records.values.size(); ++q)
     writer.write(motion_quantities[q], records.values[q]);
   writer.write_layer_heights();

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 #include "engine/bed/random.hpp"
+#include "engine/numbers.hpp"
 #include "results/checkpoints/part.hpp"
 #include "results/file/axes.hpp"
 #include "results/file/layout.hpp"
@@ -17,11 +17,9 @@
 namespace jostle::inline results {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// All NaN look alike in the file.
 double canonical(double value) {
-  return std::isnan(value) ? nan : value;
+  return std::isnan(value) ? not_a_number : value;
 }
 
 /// Numbers of realizations, those of one source together.
@@ -49,7 +47,7 @@ PointWriter::PointWriter(hid_t file, const Study& study, std::uint32_t point)
       n_realizations_(study.realizations),
       labels_(point_.columns()) {
   const std::size_t n_snapshots = point_.snapshots.taps.size() * n_realizations_;
-  statistics_.coordination.resize(n_snapshots, nan);
+  statistics_.coordination.resize(n_snapshots, not_a_number);
   if (point_.snapshots.forces) statistics_.forces.resize(n_snapshots);
 }
 
@@ -96,7 +94,7 @@ void PointWriter::take_snapshots(StoredRealization& realization) {
   for (const SnapshotOutline& snapshot : snapshots) {
     const auto row = std::ranges::lower_bound(taps, snapshot.tap) - taps.begin();
     const std::size_t cell = static_cast<std::size_t>(row) * n_realizations_ + number;
-    statistics_.coordination[cell] = canonical(snapshot.coordination.value_or(nan));
+    statistics_.coordination[cell] = canonical(snapshot.coordination.value_or(not_a_number));
     if (point_.snapshots.forces) statistics_.forces[cell] = snapshot.forces;
   }
   write_particles(file_, particles_name({number_, number}), point_.container, point_.n_spheres,
@@ -202,7 +200,7 @@ void PointWriter::write_fittings() {
   for (const FittingColumn& column : fitting_columns) {
     std::vector<double> values;
     for (const auto& fitting : fittings_)
-      values.push_back(fitting ? canonical((*fitting).*column.field) : nan);
+      values.push_back(fitting ? canonical((*fitting).*column.field) : not_a_number);
     const Hdf5Handle written = write_numbers(group, column.name, values);
     write_label(written, {column.name, column.units, column.long_name, "jostle"});
     attach_axes(written, axes);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "results/file/axes.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/write.hpp"
@@ -13,11 +13,9 @@
 namespace jostle::inline results {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-class Writer {
+class StatisticsWriter {
  public:
-  Writer(hid_t group, const StudyPoint& point, std::uint32_t n_realizations)
+  StatisticsWriter(hid_t group, const StudyPoint& point, std::uint32_t n_realizations)
       : group_(group),
         point_(point),
         n_taps_(point.snapshots.taps.size()),
@@ -68,9 +66,11 @@ class Writer {
                      force = write_bare_axis(group_, "force", 3);
     std::vector<double> normal, friction, moment;
     for (const auto& one : forces) {
-      for (std::size_t k = 0; k < 9; ++k) moment.push_back(one ? one->moment[k] : nan);
+      for (std::size_t k = 0; k < 9; ++k) moment.push_back(one ? one->moment[k] : not_a_number);
       for (std::size_t w = 0; w < n_walls; ++w) {
-        const WallForce wall = one ? one->walls.at(w) : WallForce{nan, {nan, nan, nan}};
+        const WallForce wall =
+            one ? one->walls.at(w)
+                : WallForce{not_a_number, {not_a_number, not_a_number, not_a_number}};
         normal.push_back(wall.normal);
         for (const double x : {wall.friction.x, wall.friction.y, wall.friction.z})
           friction.push_back(x);
@@ -100,7 +100,7 @@ class Writer {
       for (std::size_t tap = first; tap < std::min<std::size_t>(first + chunk[0], n_taps_); ++tap) {
         for (std::uint32_t r = 0; r < n_realizations_; ++r) {
           const std::vector<double> bins = statistics.profile(which, tap, r);
-          const double absent = bins.empty() ? nan : profile.padding;
+          const double absent = bins.empty() ? not_a_number : profile.padding;
           values.insert(values.end(), bins.begin(), bins.end());
           values.insert(values.end(), n_bins - bins.size(), absent);
         }
@@ -135,7 +135,7 @@ class Writer {
 
 void write_snapshot_statistics(hid_t group, const StudyPoint& point, std::uint32_t n_realizations,
                                const SnapshotStatistics& statistics) {
-  Writer writer(group, point, n_realizations);
+  StatisticsWriter writer(group, point, n_realizations);
   if (point.snapshots.coordination) writer.write_coordination(statistics.coordination);
   writer.write_profiles(statistics);
   if (point.snapshots.forces) writer.write_forces(statistics.forces);

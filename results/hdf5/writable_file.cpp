@@ -161,7 +161,8 @@ herr_t truncate_file(H5FD_t* base, hid_t, hbool_t) {
 H5FD_class_t driver_class() {
   H5FD_class_t driver{};
 #ifdef H5FD_CLASS_VERSION  // HDF5 1.14 checks both members; 1.10 and 1.12 have neither
-  constexpr H5FD_class_value_t unregistered_driver = 256;  // first value left to unregistered drivers
+  constexpr H5FD_class_value_t unregistered_driver =
+      256;  // first value left to unregistered drivers
   driver.version = H5FD_CLASS_VERSION;
   driver.value = unregistered_driver;
 #endif

@@ -8,7 +8,7 @@ namespace jostle::inline structure {
 
 namespace {
 
-constexpr double rounding = 1e-9;
+constexpr double period_rounding = 1e-9;
 
 /// Area that two equal discs share, their middles `apart`.
 double lens_area(double apart, double radius) {
@@ -19,7 +19,7 @@ double lens_area(double apart, double radius) {
 }
 
 bool within_period(double displacement, double period) {
-  return std::abs(displacement) <= 0.5 * period * (1 + rounding);
+  return std::abs(displacement) <= 0.5 * period * (1 + period_rounding);
 }
 
 }  // namespace

@@ -11,13 +11,13 @@
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
+#include "engine/numbers.hpp"
 #include "structure/order/accessible.hpp"
 #include "structure/order/neighbours.hpp"
 
 namespace jostle::inline structure {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double least_share = 0.25;  // of central spheres that can make a displacement
 
 double narrowest_period(const Boundary& boundary) {

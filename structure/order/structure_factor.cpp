@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/numbers.hpp"
 
 namespace jostle::inline structure {
 
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double turn = 2 * std::numbers::pi;
 
 /// A wave vector, in units of the least one along each side.
@@ -131,7 +130,7 @@ class LineToZero {
     if (n_ == 1 || x > last_ + 1e-9) ++different_;
     last_ = n_ == 1 ? x : std::max(last_, x);
   }
-  double value() const { return different_ < 3 ? nan : y_ - xy_ / xx_ * x_; }
+  double value() const { return different_ < 3 ? not_a_number : y_ - xy_ / xx_ * x_; }
 
  private:
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, last_ = 0;
@@ -162,7 +161,7 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
     }
     out.k.push_back((static_cast<double>(b) + 0.5) * settings.bin_width);
     out.modes.push_back(bins[b].size());
-    out.s.push_back(bins[b].empty() ? nan : sum / static_cast<double>(bins[b].size()));
+    out.s.push_back(bins[b].empty() ? not_a_number : sum / static_cast<double>(bins[b].size()));
   }
   std::ranges::sort(small);
   LineToZero of_squares, of_line;
@@ -172,7 +171,7 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
   }
   out.s_0_of_squares = of_squares.value();
   out.s_0_of_line = of_line.value();
-  out.fitted_from = small.empty() ? nan : small.front().first;
+  out.fitted_from = small.empty() ? not_a_number : small.front().first;
   out.fitted_modes = small.size();
   return out;
 }

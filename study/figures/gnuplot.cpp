@@ -12,7 +12,7 @@ namespace jostle::inline study {
 namespace {
 
 // Lengths in mm. Digits of text_points are about so wide.
-constexpr double digit_width = 1.57, line_height = 3.6, margin = 3, sample_width = 5.5;
+constexpr double digit_width = 1.57, line_height = 3.6, page_margin = 3, sample_width = 5.5;
 constexpr double mm_per_inch = 25.4, points_per_inch = 72, pixels_per_inch = 96;
 constexpr const char* ink = "#222222";
 constexpr const char* dashes[] = {"solid", "'-'", "'.'", "'-..'"};
@@ -86,7 +86,7 @@ PageLayout layout_of(const Figure& figure, JournalColumns columns, const std::ve
   std::size_t longest = 1;
   for (const Scale& scale : ys) longest = std::max(longest, scale.longest_label);
   page.left = 10 + digit_width * static_cast<double>(longest);
-  page.right = page.width - margin;
+  page.right = page.width - page_margin;
   page.key = key_of(figure);
   double key_height = 0;
   if (!page.key.empty()) {
@@ -104,9 +104,9 @@ PageLayout layout_of(const Figure& figure, JournalColumns columns, const std::ve
   const double first = is_narrow ? 48 : 80, other = is_narrow ? 20 : 32, between = 3;
   const auto n_others = static_cast<double>(figure.panels.size() - 1);
   const double bottom = below_axis(figure.panels.back(), xs.back());
-  page.height = bottom + first + n_others * (other + between) + key_height + margin;
-  page.key_top = page.height - margin / 2;
-  double top = page.height - margin - key_height;
+  page.height = bottom + first + n_others * (other + between) + key_height + page_margin;
+  page.key_top = page.height - page_margin / 2;
+  double top = page.height - page_margin - key_height;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const double height = i == 0 ? first : other;
     page.panels.push_back({top - height, top});

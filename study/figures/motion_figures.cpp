@@ -10,8 +10,6 @@
 namespace jostle::inline study {
 namespace {
 
-constexpr auto logarithmic = AxisKind::logarithmic;
-
 /// One table of a point, as "displacement".
 std::optional<TableView> table_of(const std::vector<TableView>& made, std::uint32_t point,
                                   const std::string& name) {
@@ -43,8 +41,8 @@ FigurePanel squares(const TableView& table, const std::string& name, const std::
                      " in a lag t from the waiting time t_W on, mean over spheres and "
                      "realizations; bars are standard errors.",
           .source = table.source(name),
-          .x = {"lag t (taps)", logarithmic},
-          .y = {"mean square" + unit_text(table.units(name)), logarithmic},
+          .x = {"lag t (taps)", AxisKind::logarithmic},
+          .y = {"mean square" + unit_text(table.units(name)), AxisKind::logarithmic},
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
             return FigureRow{.x = lag, .y = square(k, j), .error = error(k, j)};
           })};
@@ -74,7 +72,7 @@ FigurePanel by_height(const TableView& table) {
                              lags[longest]),
       .source = table.source(name),
       .x = {"height (diameter)"},
-      .y = {"mean square" + unit_text(table.units(name)), logarithmic}};
+      .y = {"mean square" + unit_text(table.units(name)), AxisKind::logarithmic}};
   for (std::size_t k = 0; k < ages.size(); ++k) {
     FigureSeries one{.name = fmt::format("t_W = {}", ages[k]),
                      .colour = colour_of(k, ages.size()),
@@ -110,7 +108,7 @@ FigurePanel susceptibility(const TableView& table) {
           "bars are 68 % intervals, left out where few spheres have moved.",
           lengths[place]),
       .source = table.source(name),
-      .x = {"lag t (taps)", logarithmic},
+      .x = {"lag t (taps)", AxisKind::logarithmic},
       .y = {"χ_4"},
       .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
         return FigureRow{

@@ -12,7 +12,7 @@
 namespace jostle::inline study {
 namespace {
 
-constexpr const char* head = R"(<!DOCTYPE html>
+constexpr const char* page_head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -97,7 +97,7 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
       fits.push_back(std::get<Fit>(outcome.result));
     }
   }
-  std::string text = fmt::format(head, html_text(fitted.source.title));
+  std::string text = fmt::format(page_head, html_text(fitted.source.title));
   text += listed(fitted.source.notes);
   if (!fits.empty()) text += paragraph(verdict(fits, fitted.comparison));
   for (const PageFigure& figure : figures) text += figure_html(figure);

@@ -27,7 +27,7 @@ struct KeptRealization {
 };
 
 /// Sweep points, and realizations of each, that are looked at.
-constexpr std::size_t most_points = 100, most_realizations = 20;
+constexpr std::size_t most_shown_points = 100, most_realizations = 20;
 
 /// Realizations of a sweep point that keep positions.
 struct KeptPoint {
@@ -182,7 +182,7 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   std::uint32_t largest = 0;
   std::size_t most_there = 0;
   const std::size_t n_points = file.study().points.size();
-  for (const std::size_t point : evenly_spread(n_points, most_points)) {
+  for (const std::size_t point : evenly_spread(n_points, most_shown_points)) {
     KeptPoint kept = kept_of(file, static_cast<std::uint32_t>(point));
     if (kept.realizations.empty()) continue;
     largest = std::max(largest, kept.n_spheres);
@@ -202,10 +202,10 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
                     "points, taps and realizations",
                     chosen.packings.size(), chosen.of));
   }
-  if (n_points > most_points || most_there > most_realizations) {
+  if (n_points > most_shown_points || most_there > most_realizations) {
     left_out.push_back(
         fmt::format("packings are those of at most {} sweep points and {} realizations of each",
-                    most_points, most_realizations));
+                    most_shown_points, most_realizations));
   }
   std::vector<Packing> packings;
   std::vector<std::vector<Contact>> contacts;

@@ -14,9 +14,9 @@
 namespace jostle::inline study {
 namespace {
 
-constexpr std::size_t most_listed = 50;       // failures, processes
-constexpr std::size_t most_points = 2000;     // that are named
-constexpr std::size_t longest_scene = 60000;  // bytes
+constexpr std::size_t most_listed = 50;          // failures, processes
+constexpr std::size_t most_named_points = 2000;  // that are named
+constexpr std::size_t longest_scene = 60000;     // bytes
 
 Json page_container(const Container& container) {
   return {{"kind", container_text(container).kind},
@@ -62,7 +62,7 @@ Json page_provenance(const Provenance& by) {
 
 Json page_points(const Study& study, const std::vector<Tally>& tallies) {
   Json points = Json::array();
-  for (const std::size_t p : evenly_spread(study.points.size(), most_points)) {
+  for (const std::size_t p : evenly_spread(study.points.size(), most_named_points)) {
     const StudyPoint& point = study.points[p];
     Json values = Json::object();
     for (const auto& [pointer, value] : point.sweep_values) {
@@ -115,9 +115,9 @@ Json page_run(const ResultsFile& file, const std::string& digest,
   for (const Provenance& by : file.provenance()) {
     if (processes.size() < most_listed) processes.push_back(page_provenance(by));
   }
-  if (study.points.size() > most_points) {
+  if (study.points.size() > most_named_points) {
     left_out.push_back(
-        fmt::format("{} of {} sweep points are named", most_points, study.points.size()));
+        fmt::format("{} of {} sweep points are named", most_named_points, study.points.size()));
   }
   return {{"file", page_text(std::filesystem::path(file.path()).filename().string())},
           {"state", name_of(file.state())},

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/numbers.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "results/file/layout.hpp"
@@ -15,8 +16,6 @@
 namespace jostle::inline study {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 const Quantity* quantity_named(const Table& table, const std::string& name) {
   for (const Quantity& quantity : table.quantities) {
@@ -69,7 +68,7 @@ ErrorOf error_of_interval(const Table& table, std::size_t place, const std::stri
   return {side / two_sided(interval_levels[0], dof), dof};
 }
 
-const std::string restated = "restated_";  // parameters of the law that draws the same curve
+const std::string restated_prefix = "restated_";  // parameters of the law that draws the same curve
 
 std::optional<ParameterPoint> point_along(const Table& fit, const std::string& name,
                                           const std::string& prefix) {
@@ -93,7 +92,7 @@ std::optional<ParameterPoint> point_along(const Table& fit, const std::string& n
 
 bool is_restated_as(const Table& fit, const std::string& law) {
   return std::ranges::any_of(fit.notes, [&](const auto& note) {
-    return note.first == restated + "model" && note.second == law;
+    return note.first == restated_prefix + "model" && note.second == law;
   });
 }
 
@@ -149,7 +148,7 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
   for (const Table& table : tables.fits) {
     if (!table.name.starts_with(fmt::format("{}/{}/", point_name(point), observable))) continue;
     if (!is_restated_as(table, kind)) continue;
-    if (auto found = parameter(table, name, restated)) return *std::move(found);
+    if (auto found = parameter(table, name, restated_prefix)) return *std::move(found);
   }
   throw BadInput(
       fmt::format("{} of {} is not kept for sweep point {}: make the analysis or the fit first",

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/numbers.hpp"
 #include "fitting/report.hpp"
 #include "results/file/layout.hpp"
 #include "study/results_input.hpp"
@@ -22,7 +23,6 @@ ResampledErrors resampled_errors(const Model& model, const RealizationCurves& be
   Fit at_limit = fit;
   at_limit.estimates = fit.limit->estimates;
   const ResampledErrors found = resample(*fit.limit->law, behind, at_limit, options);
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   ResampledErrors errors;
   errors.resamples = found.resamples;
   errors.failed = found.failed;
@@ -78,8 +78,6 @@ std::string lines(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) all.append(all.empty() ? "" : "\n").append(text);
   return all;
 }
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 Quantity values(std::string name, std::vector<std::string> axes, std::vector<double> numbers,
                 std::string long_name) {

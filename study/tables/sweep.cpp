@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include "config/json/json_text.hpp"
 #include "config/sweep.hpp"
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/protocol_steps.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -26,8 +26,6 @@
 namespace jostle::inline study {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// One sweep point of one file as a point of the curve.
 struct Member {

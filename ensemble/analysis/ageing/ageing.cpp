@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // The realizations that reached both taps: X(t_W) and X(t_W + t), as differences from the first's
 // X(t_W), which keep the digits of small fluctuations.

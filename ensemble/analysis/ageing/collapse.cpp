@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+
+#include "engine/numbers.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -37,7 +38,6 @@ Collapse collapse(std::span<const ScaledCurve> curves) {
       }
     }
   }
-  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   if (n == 0) return {not_a_number, 0};
   return {std::sqrt(differences / squares), n};
 }

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/ageing/law.hpp"
 #include "ensemble/parallel.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -17,8 +17,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double wide = 2;  // a factor to either side
 const AgeingLaw no_law = {no_estimate(), no_estimate(), no_estimate(), not_a_number, "not fitted"};
 

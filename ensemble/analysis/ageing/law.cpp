@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/tested_ends.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/decompositions.hpp"
@@ -15,7 +15,6 @@ namespace {
 constexpr double step = 0.2;    // of the grid, in ln B, ln tau and ln A_inf
 constexpr double farthest = 7;  // of ln A_inf from its best, to either side: a factor 1100
 constexpr double ln_b_range[] = {-6.91, 6.91};
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::vector<double> places(double low, double high) {
   const auto n = static_cast<std::size_t>(std::ceil((high - low) / step));

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/tested_ends.hpp"
 #include "fitting/solver/decompositions.hpp"
@@ -17,7 +17,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_mu = -1, most_mu = 2, mu_step = 0.05;
 constexpr double refuted = significance_level;
 constexpr Eigen::Index fewest_realizations = 4;  // of three, intervals hold the truth too seldom

@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double significant = significance_level;
-constexpr double decisive = 10;   // a factor that a test should find
-constexpr double farthest = 1e6;  // a factor beyond which nothing is stored
+constexpr double decisive = 10;         // a factor that a test should find
+constexpr double largest_factor = 1e6;  // a factor beyond which nothing is stored
 
 // Of a logarithm that the weights times `values` estimate, over the sum of their squares.
 AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
@@ -26,10 +25,10 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
   const ErrorOf error = error_of_sum(curves, weights / squares);
   AgeTrend found{log_estimate(std::exp(logarithm), error), p_value(logarithm, error),
                  std::exp(smallest_effect_found(significant, error.dof) * error.error), ""};
-  if (!(found.factor.low_95 > 1 / farthest && found.factor.high_95 < farthest)) {
+  if (!(found.factor.low_95 > 1 / largest_factor && found.factor.high_95 < largest_factor)) {
     found.factor = no_estimate();
   }
-  if (!(found.detectable < farthest)) found.detectable = not_a_number;
+  if (!(found.detectable < largest_factor)) found.detectable = not_a_number;
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
@@ -14,8 +15,6 @@
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The intercept at 0 of a straight line through (x, y), with its error by the scatter about it;
 /// the mean where x is 0 throughout. None where x is one other value.
@@ -99,7 +98,7 @@ MemoryTest memory_test(std::span<const History> histories, std::vector<LagWindow
     found.corrected = p[i];
     found.detectable = found.error.known() && !std::isnan(found.value)
                            ? found.error.error * smallest_effect_found(level, found.error.dof)
-                           : infinity;
+                           : infinite;
   }
   return test;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 #include "ensemble/statistics/variance_estimate.hpp"
@@ -13,8 +13,7 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr MeanEstimate no_mean{nan, nan, 0};
+constexpr MeanEstimate no_mean{not_a_number, not_a_number, 0};
 constexpr std::size_t n_directions = 3, x = 0, y = 1, z = 2;
 
 template <class Value>
@@ -36,7 +35,7 @@ std::vector<double> about_mean(std::span<const double> square, std::span<const d
 std::vector<double> non_gaussian(std::span<const double> fourth, std::span<const double> second,
                                  double factor) {
   return each(fourth.size(), [&](std::size_t r) {
-    return second[r] > 0 ? fourth[r] / (factor * second[r] * second[r]) - 1 : nan;
+    return second[r] > 0 ? fourth[r] / (factor * second[r] * second[r]) - 1 : not_a_number;
   });
 }
 
@@ -130,7 +129,7 @@ std::vector<double> independent_susceptibility(const MotionRecords& records,
     const auto n = static_cast<double>(sizes[layer]);
     const auto row = records.row(overlap, origin, lag, n_lengths * layer + length);
     for (std::size_t r = 0; r < row.size(); ++r)
-      sums[r] += n > 1 ? n * row[r] * (1 - row[r]) * n / (n - 1) : nan;
+      sums[r] += n > 1 ? n * row[r] * (1 - row[r]) * n / (n - 1) : not_a_number;
   }
   for (double& sum : sums) sum /= records.n_spheres;
   return sums;
@@ -182,7 +181,7 @@ LogEstimate lateral_ratio(const MotionRecords& records, std::size_t origin, std:
       pairs(lateral_squares(records, origin, lag), lateral_squares(records, 0, lag));
   const MeanEstimate logarithm = mean_estimate(each(squares.first.size(), [&](std::size_t r) {
     const double ratio = std::log(squares.first[r] / squares.second[r]);
-    return std::isfinite(ratio) ? ratio : nan;
+    return std::isfinite(ratio) ? ratio : not_a_number;
   }));
   return log_estimate(std::exp(logarithm.value), {logarithm.error, logarithm.dof});
 }

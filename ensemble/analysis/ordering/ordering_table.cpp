@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/ordering/weibull.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
@@ -12,7 +12,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kaplan_meier = "Kaplan & Meier 1958, doi:10.2307/2281868";
 constexpr const char* brookmeyer = "Brookmeyer & Crowley 1982, doi:10.2307/2530286";
 constexpr const char* thoman = "Thoman, Bain & Antle 1969, Technometrics 11, 445";
@@ -96,7 +95,7 @@ OrderingTimes OrderingAnalysis::times(std::size_t n_realizations) const {
 void OrderingAnalysis::add_times(Table& table) const {
   std::vector<double> taps;
   for (const OrderingTime& time : times_) {
-    taps.push_back(time.ordered ? static_cast<double>(time.tap) : nan);
+    taps.push_back(time.ordered ? static_cast<double>(time.tap) : not_a_number);
   }
   const std::vector<std::string> along = {"realization"};
   table.axes.push_back({"realization", along, realizations_, "1", "number of the realization", ""});
@@ -106,7 +105,11 @@ void OrderingAnalysis::add_times(Table& table) const {
 
 void OrderingAnalysis::add_law(Table& table) const {
   const auto fit = weibull(times_, last_);
-  const WeibullFit law = fit.value_or(WeibullFit{nan, nan, {nan, nan}, {nan, nan}, nan});
+  const WeibullFit law = fit.value_or(WeibullFit{not_a_number,
+                                                 not_a_number,
+                                                 {not_a_number, not_a_number},
+                                                 {not_a_number, not_a_number},
+                                                 not_a_number});
   put(table, one("weibull_shape", law.shape, "1",
                  "of S = exp(-(t/scale)^shape), tap n being t = n - 1/2; 1: memoryless", thoman));
   add_limits(table, "weibull_shape", law.shape_68, "68", "1", thoman);

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Of at least k of n, each with probability p: the incomplete beta function I_p(k, n - k + 1).
 double at_least(std::uint64_t k, std::uint64_t n, double p) {
@@ -102,7 +100,7 @@ Survival survival(std::span<const OrderingTime> times, std::uint64_t last) {
 double median_time(std::span<const OrderingTime> times) {
   const std::vector<std::uint64_t> events = ordered_taps(times);
   const std::size_t half = (times.size() + 1) / 2;
-  return events.size() < half ? nan : static_cast<double>(events[half - 1]);
+  return events.size() < half ? not_a_number : static_cast<double>(events[half - 1]);
 }
 
 Limits median_limits(std::span<const OrderingTime> times, double level) {
@@ -112,9 +110,9 @@ Limits median_limits(std::span<const OrderingTime> times, double level) {
   std::uint64_t rank = 0;
   while (rank < n / 2 && 1 - at_least(rank + 1, n, 0.5) <= 0.5 * (1 - level)) ++rank;
   const auto time = [&](std::uint64_t at) {
-    return at >= 1 && at <= events.size() ? static_cast<double>(events[at - 1]) : nan;
+    return at >= 1 && at <= events.size() ? static_cast<double>(events[at - 1]) : not_a_number;
   };
-  if (rank == 0) return {nan, nan};
+  if (rank == 0) return {not_a_number, not_a_number};
   return {time(rank), time(n + 1 - rank)};
 }
 

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 struct Points {
   std::vector<double> x, y;

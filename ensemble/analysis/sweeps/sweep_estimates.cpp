@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/distributions.hpp"
@@ -13,8 +13,6 @@
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// A number that is linear in the values of a curve's points.
 using Combination = std::vector<double>;  // [n_points]

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/volumes/log_ratio.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -17,7 +18,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_overlap = 0.02;
 
 /// `of` with no realization left out, then each.

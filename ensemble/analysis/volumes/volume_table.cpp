@@ -1,8 +1,8 @@
 #include "ensemble/analysis/volumes/volume_table.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/jackknife.hpp"
 
@@ -10,7 +10,6 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* nowak = "Nowak et al. 1998, doi:10.1103/PhysRevE.57.1971";
 constexpr const char* dean = "Dean & Lefevre 2003, doi:10.1103/PhysRevLett.90.198301";
 
