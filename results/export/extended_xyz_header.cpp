@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "results/export/container_text.hpp"
+#include "results/export/printable.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -26,7 +27,7 @@ using Keys = std::map<std::string, std::string>;
 
 template <class... Parts>
 [[noreturn]] void refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
-  throw std::invalid_argument(fmt::format(text, std::forward<Parts>(parts)...));
+  throw std::invalid_argument(printable(fmt::format(text, std::forward<Parts>(parts)...)));
 }
 
 std::string lower(std::string text) {
