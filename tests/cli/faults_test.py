@@ -177,7 +177,7 @@ class Folders(Faults):
         refused = self.run_scene("--resume", expect=BROKEN)
         self.assertIn("of disk may be needed", refused.stderr)
         self.run_scene("--resume", "--time-limit", "1s", expect=STOPPED)
-        self.assertEqual(self.info("long.h5")["state"], "running")
+        self.assertEqual(self.info("long.h5")["state"], "interrupted")
 
     @needs_mounts
     def test_a_merge_that_does_not_fit_is_refused_before_it_is_written(self):
