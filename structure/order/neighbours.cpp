@@ -105,6 +105,26 @@ void keep_centres(std::uint32_t i, std::vector<Neighbour>& near) {
   near.resize(kept);
 }
 
+/// Beyond so many periods centres are looked at one by one: a search within a distance would meet
+/// hundreds of images of each.
+constexpr double most_periods = 4;
+
+/// What keep_centres() leaves of all images of all centres.
+void add_nearest_images(const Packing& packing, const Boundary& boundary,
+                        const NeighbourFinder& adjacent, std::uint32_t i,
+                        std::vector<Neighbour>& near) {
+  std::vector<bool> is_adjacent(packing.centres.size());
+  adjacent.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+    near.push_back({j, way, distance_squared});
+    is_adjacent[j] = true;
+  });
+  for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
+    if (j == i || is_adjacent[j]) continue;
+    const Vec3 way = separation(boundary, packing.centres[j], packing.centres[i]);
+    near.push_back({j, way, norm_squared(way)});
+  }
+}
+
 }  // namespace
 
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
@@ -114,17 +134,26 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
   std::iota(waiting.begin(), waiting.end(), 0U);
   const double farthest = farthest_reach(packing);
   std::vector<Neighbour> near;
+  const Boundary boundary(packing.container);
+  const NeighbourFinder adjacent(packing, first_nearest_cut);
+  const Vec3 periods = boundary.periods();
+  const double longest_period = std::max({periods.x, periods.y, periods.z});
   // Periods are wider than 2: within the first cut centre i meets no image of its own.
   for (double cut = first_nearest_cut; !waiting.empty() && count > 0; cut *= 1.4) {
     const NeighbourFinder finder(packing, cut);
     std::vector<std::uint32_t> short_of;
     for (const std::uint32_t i : waiting) {
       near.clear();
-      finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
-        near.push_back({j, way, distance_squared});
-      });
-      if (cut > first_nearest_cut) keep_centres(i, near);
-      if (near.size() < count && cut < farthest) {
+      const bool meets_all = longest_period > 0 && cut > most_periods * longest_period;
+      if (meets_all) {
+        add_nearest_images(packing, boundary, adjacent, i, near);
+      } else {
+        finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+          near.push_back({j, way, distance_squared});
+        });
+        if (cut > first_nearest_cut) keep_centres(i, near);
+      }
+      if (near.size() < count && cut < farthest && !meets_all) {
         short_of.push_back(i);
         continue;
       }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/structure/random_points.hpp"
 
@@ -110,6 +111,23 @@ TEST_CASE("The nearest neighbours are the first of all pairs and images") {
     CHECK(table.of(i)[11].distance_squared == Approx(expected[11].distance_squared).epsilon(1e-12));
     expected.pop_back();  // the other of two images as far may be the last
     CHECK(keys(table.of(i).first(11)) == keys(expected));
+  }
+}
+
+TEST_CASE("The nearest neighbours of spheres far apart are found among periods that are narrow") {
+  // Searched within a distance, each would meet 1e9 images.
+  Packing packing{PeriodicBox{2.5, 3}, {}};
+  for (int k = 0; k < 20; ++k)
+    packing.centres.push_back(
+        {std::fmod(1.7 * k, 2.5), std::fmod(2.3 * k, 3.0), 4000.0 * k * (k % 5 == 4 ? 1.01 : 1)});
+  packing.centres.push_back({1.25, 1.5, 0.4});  // and one that touches the first from both sides
+  packing.centres[0] = {0, 1.5, 0.4};
+  const NeighbourTable table = nearest_neighbours(packing, 12);
+  for (std::uint32_t i = 0; i < table.size(); ++i) {
+    std::vector<Neighbour> expected = spheres_only(by_brute_force(packing, i, 1e9), i);
+    expected.resize(12);
+    CHECK(nearest_first(table.of(i)));
+    CHECK(keys(table.of(i)) == keys(expected));
   }
 }
 
