@@ -137,14 +137,6 @@ double fraction_of(const Packing& packing, const Region& region) {
          (footprint_area(packing.container) * boundary.height);
 }
 
-void require_bins(double length, double width) {
-  constexpr double most = 1e6;
-  if (length / width <= most) return;
-  throw std::invalid_argument("more than a million bins of " + std::to_string(width) +
-                              " up to a height of " + std::to_string(length) +
-                              ": take wider ones, and see whether a sphere lies far above the bed");
-}
-
 std::vector<double> middles_of_bins(std::size_t n, double width) {
   std::vector<double> middles(n);
   for (std::size_t k = 0; k < n; ++k) middles[k] = (static_cast<double>(k) + 0.5) * width;

@@ -149,7 +149,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
 }
 
 Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
-  require_bins(top_height(in.packing), settings.bin_width);
+  require_height_bins(in.packing, settings.bin_width);
   const NeighbourTable nearest = nearest_neighbours(in.packing);
   const std::vector<CrystalOrder> orders = crystal_order(nearest);
   const std::vector<BondOrder> bonds = bond_order(nearest);

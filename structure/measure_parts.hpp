@@ -46,9 +46,6 @@ std::vector<double> whole_numbers(std::size_t n);
 /// box.
 double fraction_of(const Packing& packing, const Region& region);
 
-/// Throws std::invalid_argument where bins of `width` up to `length` would be more than a million.
-void require_bins(double length, double width);
-
 /// Each count over their sum, [n_counts].
 std::vector<double> shares(std::span<const std::uint64_t> counts);
 

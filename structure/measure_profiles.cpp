@@ -103,7 +103,7 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
 
 Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
   require_floor(in.packing);
-  require_bins(top_height(in.packing), settings.bin_width);
+  require_height_bins(in.packing, settings.bin_width);
   const Profile vertical =
       vertical_profile(in.packing, height_edges(in.packing, settings.bin_width));
   GradientRange range = gradient_range(in.packing.container);
@@ -159,7 +159,7 @@ Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
 
 Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
   require_floor(in.packing);
-  require_bins(top_height(in.packing), settings.bin_width);
+  require_height_bins(in.packing, settings.bin_width);
   const std::vector<Layer> found = layers(in.packing, settings.rule.tolerance);
   const std::vector<double> n = height_histogram(in.packing, settings.bin_width);
   std::vector<double> at, where, filling, share;

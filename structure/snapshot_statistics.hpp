@@ -39,8 +39,11 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
 /// nearly all of more would be empty. Requires a sphere.
 bool has_height_bins(const Packing& packing, double bin_width);
 
-/// Bins [k width, (k + 1) width), k = 0 .. up to the highest centre. Requires a sphere. Throws
-/// std::invalid_argument without has_height_bins().
+/// Throws std::invalid_argument without has_height_bins(), and says why.
+void require_height_bins(const Packing& packing, double bin_width);
+
+/// Bins [k width, (k + 1) width), k = 0 .. up to the highest centre. Requires a sphere. Throws as
+/// require_height_bins() does.
 std::size_t n_height_bins(const Packing& packing, double bin_width);
 
 /// n(z): fraction of all centres per height bin, bins [k width, (k + 1) width), k = 0 .. up to the
