@@ -14,6 +14,7 @@
 #include <sstream>
 #include <thread>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/checksum.hpp"
 #include "results/checkpoints/names.hpp"
 #include "results/checkpoints/output_path.hpp"
@@ -121,7 +122,7 @@ struct Held {
 
   LockHeld error(const std::string& path, Patience::Duration waited) const {
     const std::string still =
-        waited.count() > 0 ? fmt::format(", still after {:.3g} s", waited.count()) : "";
+        waited.count() > 0 ? finite_text(", still after {:.3g} s", waited.count()) : "";
     if (on_other_host)
       return {path,
               fmt::format("{} may still be working on this file{}; if it is not, take the file "
@@ -154,7 +155,7 @@ class Wait {
                              limit = held.storing ? patience_.for_storing : patience_.for_runs;
     if (waited >= limit) throw held.error(path_, limit);
     if (!held.storing && !told_ && patience_.tell) {
-      patience_.tell(fmt::format("{}: {} is working on this file; waiting up to {:.3g} s", path_,
+      patience_.tell(finite_text("{}: {} is working on this file; waiting up to {:.3g} s", path_,
                                  held.process, limit.count()));
       told_ = true;
     }
