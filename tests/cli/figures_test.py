@@ -108,8 +108,7 @@ class Everything(Figures):
 
     def fits(self, file):
         series = self.data("fits-of-bottom-fraction-point-0001")
-        names = ["data", "inverse logarithm", "inverse logarithm of 1/Z", "stretched exponential",
-                 "two exponentials"]
+        names = ["data", "inverse logarithm", "stretched exponential", "two exponentials"]
         self.assertEqual([name for name, _, _ in series], names + names[1:])  # and the residuals
         stored = file["fits/point_0001/bottom_fraction/kww"]
         t = list(stored["t"][()])
