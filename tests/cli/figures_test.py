@@ -117,8 +117,8 @@ class Everything(Figures):
         x, error, fitted = (stored[key][()][taps] for key in ("x", "x_error", "fitted"))
         numpy.testing.assert_array_equal(column(series[0][2], 1), x)
         numpy.testing.assert_array_equal(column(series[0][2], 2), error)
-        numpy.testing.assert_array_equal(column(series[3][2], 1), fitted)
-        numpy.testing.assert_array_equal(column(series[7][2], 1), (x - fitted) / error)
+        numpy.testing.assert_array_equal(column(series[2][2], 1), fitted)
+        numpy.testing.assert_array_equal(column(series[5][2], 1), (x - fitted) / error)
 
     def structure(self, file):
         stored = file["structure/point_0002/profile"]
