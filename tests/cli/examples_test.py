@@ -73,7 +73,7 @@ def documented(page):
     found += [" ".join(line.split()) for line in re.findall(r"`((?:jostle|\./dev) [^`]*)`", page)]
     commands = [re.sub(r"^\./dev", "jostle", command) for command in found]
     return [command for command in dict.fromkeys(commands)
-            if command.split()[1] in COMMANDS and not re.search(r"\b[A-Z]{2,}\b|\[|\.\.\.", command)
+            if command.split()[1] in COMMANDS and not re.search(r"\b[A-Z]{2,}\b|\[|\.\.\.|\*", command)
             and (re.search(r"\.(h5|json|csv|xyz)\b", command) or " new " in command)]
 
 
