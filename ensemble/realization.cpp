@@ -105,7 +105,7 @@ SnapshotRecord Realization::snapshot_of_row() const {
   record.tap = state_.rows;
   if (wanted.positions) record.centres = packing_.centres;
   if (wanted.coordination) record.coordination = coordination(packing_, wanted.contact_cut);
-  // What a bed has none of is stored as missing.
+  // A quantity that a bed does not have is stored as missing.
   if (wanted.height_histogram && has_height_bins(packing_, wanted.bin_width))
     record.height_histogram = height_histogram(packing_, wanted.bin_width);
   if (moves_in_time(wanted)) add_mechanics(record);

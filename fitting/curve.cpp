@@ -43,7 +43,7 @@ Curve chosen(const Curve& curve, const std::vector<std::size_t>& points) {
   return part;
 }
 
-// Of the error of each mean over their root mean square, by the number of realizations present.
+// The error of each mean over their root mean square, by the number of realizations present.
 std::vector<double> error_growth(const Curve& curve) {
   std::vector<double> growth(curve.x.size(), 1.0);
   if (curve.present.empty()) return growth;

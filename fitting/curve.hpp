@@ -16,7 +16,7 @@ struct Curve {
   /// a fit then come from how they scatter as whole curves, whatever the memory of each.
   std::vector<double> values = {};
   std::size_t n_realizations = 0;  // 0, or at least 2
-  /// Which realizations had a value, [n, n_realizations], or empty: all. Where one had none,
+  /// The realizations that had a value, [n, n_realizations], or empty: all. Where one had none,
   /// `values` are the pseudo-values of mean_of_present(), and `offsets` [n_realizations] its
   /// offsets.
   std::vector<std::uint8_t> present = {};

@@ -27,11 +27,12 @@ struct FitOptions {
   /// Whether a curve without realizations may have a memory, which is then found in its residuals.
   /// Not for points that are known to be independent.
   bool memory = true;
-  /// Whether the law's limits are fitted too, and one reported where the law has reached it. Needs
+  /// True if the law's limits are fitted too, and one reported where the law has reached it. Needs
   /// profiles.
   bool limits = true;
-  /// Of the law over the curve, in all: searches and intervals. A derivative by one parameter is
-  /// one. A fit that reaches it is not settled, or has intervals left open, and says so.
+  /// Evaluations of the law over the curve, in all: searches and intervals. A derivative by one
+  /// parameter is one. A fit that reaches it is not settled, or has intervals left open, and says
+  /// so.
   long long max_evaluations = 200000;
   SolverOptions solver = {};
 };
@@ -91,7 +92,7 @@ struct LimitingFit {
   std::vector<Estimate> estimates;  // [n_parameters of that law]
 };
 
-/// The same fit in the parameters of a law that draws the same curves.
+/// This fit in the parameters of another law that draws equal curves.
 struct RestatedFit {
   std::string model, formula, source;
   std::vector<Estimate> estimates;  // [n_parameters of that law]

@@ -63,7 +63,7 @@ double squared_norm(const Curve& curve) {
   return sum;
 }
 
-// What rounding leaves of the residuals of a law that meets the curve.
+// The residuals that rounding leaves where a law meets the curve.
 double exact_cost(const Curve& curve) {
   return rounding * rounding * squared_norm(curve);
 }

@@ -23,7 +23,7 @@ std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
 /// that were held out.
 std::string compare(const std::vector<Fit>& fits, const LawComparison& comparison);
 
-/// Which law is chosen and on what grounds, or that the data do not decide: one line without a
+/// States the chosen law and the grounds, or that the data do not decide: one line without a
 /// newline. Empty where fewer than two laws were fitted.
 std::string choice_text(const LawComparison& comparison);
 

@@ -138,9 +138,9 @@ class ResultsFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What another program did to a file that it opened for writing and closed, where the contents are
-/// still the old ones and readers take it; empty where there is nothing to tell. Reads the ends of
-/// the file alone.
+/// The changes that another program made to a file that it opened for writing and closed, where the
+/// contents are still the old ones and readers take it; empty where there is nothing to tell. Reads
+/// the ends of the file alone.
 std::string seal_warning(const std::string& path);
 
 /// Seals such a file again, and returns whether there was anything to do. Throws ResultsError where

@@ -20,7 +20,7 @@ namespace jostle::inline results {
 /// time from one; everything else from one thread. Every function throws ResultsError.
 class RunStore : public Sink {
  public:
-  /// Whether a disk with less space than disk_estimate() is refused. A run that may be stopped
+  /// True if a disk with less space than disk_estimate() is refused. A run that may be stopped
   /// before it has computed everything may need less.
   enum class Room { for_all, for_a_part };
 

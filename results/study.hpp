@@ -44,7 +44,7 @@ struct Study {
   std::vector<StudyPoint> points;
 };
 
-/// What the work of all sweep points is counted in; empty where their engines differ, whose units
+/// The unit of the work of all sweep points; empty where their engines differ, whose units
 /// do not add up.
 std::string common_unit(const Study& study);
 

@@ -53,7 +53,7 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
 
 namespace {
 
-/// Of more bins nearly all are empty: the spheres have left each other.
+/// A larger number of bins would be nearly all empty: the spheres have left each other.
 double most_height_bins(const Packing& packing) {
   constexpr double bins_of_a_sphere = 100, always_taken = 1e5;
   return std::max(always_taken, bins_of_a_sphere * static_cast<double>(packing.centres.size()));

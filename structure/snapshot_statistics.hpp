@@ -35,7 +35,7 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
 /// How many spheres have k neighbours, k = 0 .. up to the greatest number.
 std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers);
 
-/// Whether bins of height up to the highest centre are at most 100,000, or 100 for each sphere:
+/// True if bins of height up to the highest centre are at most 100,000, or 100 for each sphere:
 /// nearly all of more would be empty. Requires a sphere.
 bool has_height_bins(const Packing& packing, double bin_width);
 

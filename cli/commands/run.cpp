@@ -102,7 +102,7 @@ std::string resume_command(const RunArguments& arguments) {
   return shell_words(words);
 }
 
-/// What this process computed, all sweep points together; `unit` is empty of several engines, whose
+/// The work of this process, all sweep points together; `unit` is empty of several engines, whose
 /// rates do not add up.
 std::string process_line(const Progress& progress, Seconds elapsed, int threads,
                          const std::string& unit) {

@@ -40,7 +40,7 @@ struct SlurmArguments {
   bool force = false;
 };
 
-/// What a text in the script must be: one line that shows what it holds.
+/// Checks a text of the script: it must be one line that shows what it holds.
 std::string one_line(const std::string& text, const char* what) {
   const std::string shown = printable_name(text);
   if (shown != text)

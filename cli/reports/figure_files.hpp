@@ -24,7 +24,7 @@ struct FigureFolder {
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
                           const Provenance& by);
 
-/// The same of the fits of a measured curve, which `input` holds.
+/// Returns the fits of a measured curve, which `input` holds.
 std::string write_figures(const FittedCurve& measured, const std::string& input,
                           const FigureFolder& folder, const Provenance& by);
 

@@ -49,7 +49,7 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// What a command line of `run` asked for.
+/// The request of a command line of `run`.
 struct RunWords {
   std::string scene;
   std::vector<std::string> options;  // those that are taken over

@@ -8,9 +8,9 @@
 
 namespace jostle::inline ensemble {
 
-/// What stands for a sentence one of whose numbers is not finite. Whoever writes a sentence decides
-/// first which of its numbers there are, and writes another sentence without the missing ones:
-/// this text is seen only where that was forgotten.
+/// The phrase that replaces a sentence with a number that is not finite. Whoever writes a sentence
+/// decides first which of its numbers there are, and writes another sentence without the missing
+/// ones: this text is seen only where that was forgotten.
 inline constexpr const char* not_stated =
     "no statement: a number of it is not finite, which is a fault of jostle; please report it";
 

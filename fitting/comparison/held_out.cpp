@@ -83,7 +83,7 @@ Eigen::ArrayXd weighted_curve(const Ensemble& ensemble, const Model& model,
   return law * ensemble.root_weight;
 }
 
-// What a law makes of the ensemble, all curves weighted.
+// The predictions of a law for the ensemble, all curves weighted.
 struct Predictions {
   std::string model;
   Eigen::ArrayXd fitted;     // [n_points], to the mean of all realizations
@@ -166,7 +166,7 @@ double squared_error(const Ensemble& ensemble, const Predictions& law) {
   return error / static_cast<double>(ensemble.n_realizations()) - variance;
 }
 
-// Of the difference of squared errors of two laws, to second order in the deviations.
+// The variance of the difference of squared errors of two laws, to second order in the deviations.
 double variance_of_difference(const Ensemble& ensemble, const Predictions& law,
                               const Predictions& other) {
   const auto m = static_cast<double>(ensemble.n_realizations());

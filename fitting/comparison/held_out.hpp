@@ -22,7 +22,7 @@ struct HeldOutLaw {
   /// leading law, for as many laws as are compared (Bonferroni); 1 for the leading law.
   double p = 1;
   bool worse = false;  // p < LawComparison::level
-  /// Whether its curve is that of the leading law, so that nothing can decide between them.
+  /// True if its curve is that of the leading law, so that nothing can decide between them.
   bool same_curve = false;
 
   bool operator==(const HeldOutLaw&) const = default;
@@ -39,7 +39,7 @@ struct LawComparison {
   std::string cannot_decide;          // why nothing was compared, a sentence; or empty
   std::vector<std::string> left_out;  // laws that were not compared and why, a sentence each
 
-  /// Whether every other law is worse than the leading law.
+  /// True if every other law is worse than the leading law.
   bool is_decided() const;
 };
 

@@ -79,7 +79,7 @@ bool inside(const Model& model, const ParameterValues& p) {
   return true;
 }
 
-// Which parameters of the equivalent law are free; none of them where a parameter is fixed that it
+// The free parameters of the equivalent law; none of them where a parameter is fixed that it
 // does not have.
 std::vector<bool> free_of(const Equivalent& other, const std::vector<bool>& free) {
   std::vector<bool> theirs(other.equal.size(), true);

@@ -9,7 +9,7 @@ namespace jostle::inline fitting {
 
 namespace {
 
-// What a variable changes by per change of each mean: [n_points] a variable.
+// The change of a variable per change of each mean: [n_points] a variable.
 Eigen::MatrixXd gains(const Eigen::MatrixXd& jacobian, const Curve& curve) {
   const auto n = jacobian.rows();
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();

@@ -85,8 +85,8 @@ class Model {
                                               std::size_t n) const;
   /// Pairs of positive parameters that can diverge together, and what a curve then determines.
   virtual std::vector<Combination> combinations() const { return {}; }
-  /// What it becomes where some of its parameters are 0 or infinite, fewest parameters first
-  /// (fitting/models/limit.hpp).
+  /// The laws that it becomes where some of its parameters are 0 or infinite, fewest parameters
+  /// first (fitting/models/limit.hpp).
   virtual std::vector<Limit> limits() const;
   /// The law that draws the same curves with other parameters, if there is one.
   virtual std::optional<Equivalent> equivalent() const { return std::nullopt; }

@@ -25,7 +25,7 @@ class Residuals {
 /// the start, or by those of now.
 enum class StepScaling { largest, first, current };
 
-/// What all descents of a fit may spend together: evaluations of the residuals, a Jacobian counted
+/// The budget of all descents of a fit together: evaluations of the residuals, a Jacobian counted
 /// as one for every variable.
 struct EvaluationBudget {
   long long left = 0, used = 0;

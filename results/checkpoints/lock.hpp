@@ -8,7 +8,7 @@
 
 namespace jostle::inline results {
 
-/// What a lock is held for; it is written in the lock.
+/// The purpose of a lock; it is written in the lock.
 enum class LockUse { run, storing };
 
 /// NAME.lock: one process at a time works on NAME. Held by flock, so that two processes never both

@@ -20,7 +20,7 @@ std::string output_path(const std::string& path);
 /// Who may write to a folder beside its owner.
 enum class Writers { everybody, a_group_or_everybody };
 
-/// Whether another user may have put what is at `path` there: it is of another user, in a folder
+/// True if another user may have put what is at `path` there: it is of another user, in a folder
 /// where these may write.
 bool may_be_planted(const std::string& path, Writers writers);
 

@@ -22,13 +22,13 @@
 namespace jostle::inline results {
 namespace {
 
-/// Whether the file system below a path has run out of files, not of bytes.
+/// True if the file system below a path has run out of files, not of bytes.
 bool has_no_more_files(const std::string& path) {
   struct statvfs disk;
   return ::statvfs(folder_of(path).c_str(), &disk) == 0 && disk.f_files > 0 && disk.f_favail == 0;
 }
 
-/// What to do about a failed call.
+/// Advice after a failed call.
 std::string way_out(const std::string& path, std::string_view what, int error) {
   if (what == "open" || what == "read") return "";
   switch (error) {

@@ -27,7 +27,7 @@ SealState seal_state(const std::string& path);
 [[nodiscard]] SealState verify_seal(
     const std::string& path, const std::function<void(std::span<const std::byte>)>& take = {});
 
-/// Whether a file has HDF5's signature, behind a user block too. Throws ResultsError where it
+/// True if a file has HDF5's signature, behind a user block too. Throws ResultsError where it
 /// cannot be read.
 bool is_hdf5_file(const std::string& path);
 

@@ -54,7 +54,7 @@ std::string name_on_the_way(const std::string& target, const std::string& digits
   return beside(target, fmt::format(".{}{}", digits, ending));
 }
 
-/// Whether a file is one that a TemporaryFile makes of what goes to `target`.
+/// True if a file is one that a TemporaryFile makes of what goes to `target`.
 bool is_temporary(const std::string& path, const std::string& target) {
   if (path.size() < random_digits + ending.size()) return false;
   const std::string digits =

@@ -17,7 +17,7 @@
 namespace jostle::inline results {
 namespace {
 
-// As in scenes; a column of all spheres is as high as they are many.
+// The limit of scenes; a column of all spheres is as high as they are many.
 constexpr std::size_t most_columns = 1000;
 // Digits that another program did not write.
 constexpr double rounding = 1e-6;

@@ -8,7 +8,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-// What the comment line of an extended XYZ frame says of the spheres below it.
+// The comment line of an extended XYZ frame: the properties of the spheres below it.
 namespace jostle::inline results {
 
 /// A column, or several, that holds sizes of spheres: all must have the model's.

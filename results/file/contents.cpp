@@ -119,7 +119,7 @@ class ComparedHashes : public ItemHashes {
       changed_.push_back(item);
   }
 
-  /// Whether another change tells why a list of names is another one: what was added is named.
+  /// True if another change tells why a list of names is another one: what was added is named.
   bool explains(const Item& list) const {
     const std::string below = list.path == "/" ? "/" : list.path + "/";
     return std::ranges::any_of(changed_, [&](const Item& one) {

@@ -18,8 +18,8 @@ void write_contents(hid_t file);
 /// they were; of a file that has no hashes, all. Throws Hdf5Error.
 void update_contents(hid_t file, std::span<const std::string> groups);
 
-/// What is not as the hashes have it, in words, a place each; empty where all is. Throws Hdf5Error
-/// where there are no hashes, and for what no results file has.
+/// Describes what differs from the hashes, in words, a place each; empty where all is. Throws
+/// Hdf5Error where there are no hashes, and for what no results file has.
 std::vector<std::string> changed_contents(hid_t file);
 
 }  // namespace jostle::inline results

@@ -25,7 +25,7 @@ class Digest : public ContentSink {
   Sha256 sum_;
 };
 
-/// What depends on who made the numbers, or can be made of them again.
+/// Contents that depend on who made the numbers, or can be made of them again.
 bool is_beside_the_data(const std::string& path) {
   constexpr std::array beside{"/provenance", "/timing", "/h5md"};
   return std::ranges::find(beside, path) != beside.end() ||

@@ -58,7 +58,7 @@ StepTable shares_inside(const std::vector<double>& coordinates, double low, doub
 /// footprint. It differs from that of evenly spread points where centres crowd at the sides.
 class FootprintShares {
  public:
-  /// Of displacements whose parts along x and y are at most `reach`.
+  /// Displacements whose parts along x and y are at most `reach`.
   FootprintShares(const AccessibleFootprint& footprint, const std::vector<Vec3>& centres,
                   double reach);
   /// `overlap`: the footprint's of that displacement, which is that of centres where sides are

@@ -109,7 +109,7 @@ void keep_centres(std::uint32_t i, std::vector<Neighbour>& near) {
 /// hundreds of images of each.
 constexpr double most_periods = 4;
 
-/// What keep_centres() leaves of all images of all centres.
+/// The images that keep_centres() leaves of all images of all centres.
 void add_nearest_images(const Packing& packing, const Boundary& boundary,
                         const NeighbourFinder& adjacent, std::uint32_t i,
                         std::vector<Neighbour>& near) {

@@ -77,7 +77,7 @@ void require_room(const Packing& packing, const AccessibleFootprint& footprint) 
       std::to_string(width_y(packing.container)) + " wide: centres have no room beside each other");
 }
 
-/// Of the accessible footprint: the mean of slabs that grow from the central spheres' heights to
+/// The accessible footprint: the mean of slabs that grow from the central spheres' heights to
 /// half a diameter inside the accessible ones.
 double number_density(const Packing& packing, const Heights& heights,
                       const AccessibleFootprint& footprint) {

@@ -30,7 +30,7 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
                          std::uint64_t divisor, std::uint64_t least,
                          std::optional<std::uint64_t> rows = std::nullopt);
 
-/// Whether these taps are steady, as the analysis of that name decides; nothing where they are too
+/// True if these taps are steady, as the analysis of that name decides; nothing where they are too
 /// few for it.
 std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps);
 

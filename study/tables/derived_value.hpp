@@ -35,7 +35,7 @@ struct DerivedValue {
   Column label;
   std::string no_value;    // why there is none
   bool error_is_no_basis;  // a fit's, of too few realizations
-  /// Of steady states: the taps that they were taken from, and whether these are steady.
+  /// Steady states alone: the taps that they were taken from, and whether these are steady.
   std::string taps = {};
   std::optional<Verdict> steady = {};
 };

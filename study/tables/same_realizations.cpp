@@ -49,7 +49,7 @@ std::vector<TapLine> tap_lines(const Json& protocol) {
   return lines;
 }
 
-/// Whether one sequence of taps begins with all of the other.
+/// True if one sequence of taps begins with all of the other.
 bool same_as_far_as_both_go(const std::vector<TapLine>& a, const std::vector<TapLine>& b) {
   const std::size_t n = std::min(a.size(), b.size());
   for (std::size_t i = 0; i < n; ++i) {

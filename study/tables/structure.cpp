@@ -190,7 +190,7 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   return ensemble;
 }
 
-/// Whether two packings have the same centres, in whichever order.
+/// True if two packings have the same centres, in whichever order.
 bool same_centres(const Packing& a, const Packing& b) {
   const auto sorted = [](std::vector<Vec3> centres) {
     std::ranges::sort(centres, {}, [](Vec3 r) { return std::tuple(r.z, r.y, r.x); });
@@ -200,7 +200,7 @@ bool same_centres(const Packing& a, const Packing& b) {
          sorted(a.centres) == sorted(b.centres);
 }
 
-/// Whether two files hold the same packing as the same frame. Different realizations may start from
+/// True if two files hold the same packing as the same frame. Different realizations may start from
 /// one packing: the first frame decides only where a file has no other.
 bool share_a_frame(const std::vector<Packing>& a, const std::vector<Packing>& b) {
   const std::size_t n = std::min(a.size(), b.size());

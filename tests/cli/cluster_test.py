@@ -70,7 +70,7 @@ class Script(Case):
                 self.assertIn("has a character that no line of a script can hold or show", done.stderr)
                 self.assertEqual(done.stdout, "")
                 self.assertNotRegex(done.stderr, "[\u202e\x1b\u2028\u009b]")
-        # Of the command line, which is no more than a comment, the rest is escaped.
+        # The command line, which is no more than a comment, the rest is escaped.
         text = self.script("--jobs", 1, "-o", f"{turned}/tiny.sbatch").stderr
         script = (self.folder / turned / "tiny.sbatch").read_text()
         self.assertNotIn("\u202e", script + text)

@@ -15,7 +15,7 @@ from support import SOURCE, UNFOLDED, Case
 # "nan", "-inf" and Python's "Infinity" as words; not X_inf, a beta of "infinity" or "--info".
 NOT_FINITE = re.compile(r"(?<![\w.])[-+]?(?:(?i:nan|inf)|Infinity)(?!\w)")
 FOR_PROGRAMS_TO_READ = ("nan", "inf", "-inf")
-# What stands for a sentence that was about to print one.
+# The phrase for a sentence that was about to print one.
 NOT_STATED = "a number of it is not finite"
 
 # Who writes numbers for programs, or is the formatter.
@@ -226,7 +226,7 @@ def add_tests(case, names):
         setattr(case, f"test_{name.replace(' ', '_')}", test_of(name))
 
 
-# The others are those of numbers_sweep_test.py.
+# numbers_sweep_test.py has the remaining cases.
 QUICK = ["constant", "one tap", "one sphere", "all failed"]
 
 

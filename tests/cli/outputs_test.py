@@ -17,7 +17,7 @@ CAN_RUN_AS_ANOTHER = os.geteuid() == 0 and shutil.which("setpriv") and subproces
     [*RUN_AS, JOSTLE, "--version"], capture_output=True).returncode == 0
 ONE = changed(TINY, sweep={}, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 40}])
 
-# What writes "out" in the folder "shared"; {} is a file's ending where the command makes one up.
+# The commands that write "out" in the folder "shared"; {} is a file's ending where the command makes one up.
 COMMANDS = {
     "run": "run scene.json --quiet -o shared/out",
     "run --force": "run scene.json --quiet --force -o shared/out",

@@ -73,7 +73,8 @@ TEST_CASE("Laws near their limits draw the curves of the limits") {
     for (const Limit& limit : model->limits()) {
       if (!limit.near) continue;
       const std::size_t n = limit.law->parameters().size();
-      // Of a height: level, change or start, and what is left in the order of each law.
+      // The variables of a height: level, change or start, and what is left in the order of each
+      // law.
       ParameterValues p = {14, 15, 0.02, 30};
       if (limit.law->parameters().back().unit == ParameterUnit::time) p = {14, 0.5, 30, 0};
       if (limit.law->name() == "exponential_and_line") p = {14, 0.01, 0.5, 30};
@@ -208,7 +209,7 @@ TEST_CASE("A fit stops after so many evaluations, and says so") {
   for (const long long most : {50LL, 1500LL}) {
     options.max_evaluations = most;
     const Fit found = std::get<Fit>(fit(InverseLog(), curve, options));
-    // What is under way is finished: a Jacobian, and one evaluation a descent.
+    // The step under way is finished: a Jacobian, and one evaluation a descent.
     CHECK(found.total_evaluations < most + 400);
     CHECK(std::ranges::any_of(found.remarks, [](const std::string& remark) {
       return remark.find("evaluations of the law over the curve, as many as allowed") !=

@@ -44,7 +44,7 @@ def called(member):
     return member
 
 
-# What is put in the place of an attribute or a dataset of the file.
+# Values put in the place of an attribute or a dataset of the file.
 VALUES = {
     "words": "one", "not a number": np.nan, "negative": -1, "huge": 2 ** 62, "empty": np.zeros(0),
     "three numbers": np.array([1.0, 2.0, 3.0]), "a matrix": np.zeros((2, 3), int),
@@ -177,7 +177,7 @@ class Damaged(Case):
         good = pathlib.Path("good.h5").read_bytes()
         for _ in range(20):
             bad = bytearray(good)
-            # Of the first bytes, where HDF5 keeps its structures; not of its signature.
+            # One of the first bytes, where HDF5 keeps its structures; not of its signature.
             for place in rng.integers(8, min(len(bad), 20000), 3):
                 bad[place] ^= 1 << int(rng.integers(8))
             pathlib.Path("bad.h5").write_bytes(bad)

@@ -170,7 +170,7 @@ std::size_t filled(const std::vector<std::string>& cells) {
   return n;
 }
 
-/// As many columns as the first line has, but for those that are empty in every line.
+/// The columns of the first line, but for those that are empty in every line.
 std::size_t columns_without_heading(const DelimitedText& text) {
   std::size_t n = text.lines.front().cells.size();
   const auto is_empty = [&](const DelimitedLine& line) { return filled(line.cells) < n; };

@@ -9,13 +9,13 @@
 
 namespace jostle::inline study {
 
-/// What stands beside t in a text of columns.
+/// The kind of column beside t in a text of columns.
 enum class CurveColumns {
   errors,       // X, and maybe sigma of X
   realizations  // X of a second realization, and of any number more
 };
 
-/// Which column is what, by their numbers from 0.
+/// The meaning of each column, numbered from 0.
 struct ColumnRoles {
   std::size_t t = 0;
   std::vector<std::size_t> x;  // one, or a column per realization

@@ -9,7 +9,7 @@
 
 namespace jostle::inline study {
 
-/// What becomes of a t at which some realizations have no value.
+/// The treatment of a t at which some realizations have no value.
 enum class Gaps {
   use_others,  // the mean is of those that have one
   drop_row     // it is left out

@@ -22,7 +22,7 @@ MeasuredCurve curve_of(const std::string& text, const CurveReading& reading = {}
   return read_curve(written(folder, text), reading);
 }
 
-/// What a reader is told; empty where the text is read.
+/// A message for the reader; empty where the text is read.
 std::string fault_of(const std::string& text, const CurveReading& reading = {}) {
   const TemporaryFolder folder;
   const std::string path = written(folder, text);
