@@ -156,7 +156,7 @@ class Cluster(Case):
     def redo_what_is_missing(self):
         status = self.status()
         self.assertEqual(status["counts"], {"done": SHARDS - 1, "running": 0, "stopped": 0,
-                                            "dead": 1, "missing": 0}, self.evidence())
+                                            "dead": 1, "missing": 0, "unreadable": 0}, self.evidence())
         self.assertEqual(status["redo"], [f"sbatch --array={LOST} array.shards/job.sbatch"])
         refused = self.jostle("merge", "array.shards", "-o", "array.h5", expect=BROKEN)
         self.assertIn(f"array.shards/{LOST}.h5: is not finished", refused.stderr)
