@@ -1,4 +1,4 @@
-"""Numbers in the README are those that the commands beside them print.
+"""Numbers in README and tutorial are those that the commands beside them print.
 
 Every indented block of output must occur, line by line and in order, in what the page's commands print, and every
 value with an error in a sentence, a(b), must occur there too. "..." in a block stands for text left out."""
@@ -72,6 +72,9 @@ class DocumentedNumbers(Case):
 
     def test_the_readme(self):
         self.check("README.md", least_lines=9, least_values=1)
+
+    def test_the_tutorial(self):
+        self.check("docs/tutorial.md", least_lines=15, least_values=8)
 
 
 if __name__ == "__main__":
