@@ -33,4 +33,17 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/jostle-config-version.cma
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/jostle-config.cmake
               ${PROJECT_BINARY_DIR}/jostle-config-version.cmake
+              cmake/FindVoro.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle COMPONENT dev)
+
+# pip install . makes a wheel of this component and of python/jostle: pyproject.toml.
+if(SKBUILD)
+  install(TARGETS jostle RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR} COMPONENT wheel)
+  install(DIRECTORY ${JOSTLE_MANUAL}/man1 DESTINATION ${SKBUILD_DATA_DIR}/share/man COMPONENT wheel)
+  install(DIRECTORY config/scenes DESTINATION ${SKBUILD_DATA_DIR}/share/jostle COMPONENT wheel)
+  install(FILES config/scene.schema.json DESTINATION ${SKBUILD_DATA_DIR}/share/jostle COMPONENT wheel)
+  install(FILES ${JOSTLE_MANUAL}/bash/jostle COMPONENT wheel
+          DESTINATION ${SKBUILD_DATA_DIR}/share/bash-completion/completions)
+  install(FILES ${JOSTLE_MANUAL}/zsh/_jostle COMPONENT wheel
+          DESTINATION ${SKBUILD_DATA_DIR}/share/zsh/site-functions)
+endif()

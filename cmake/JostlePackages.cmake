@@ -3,7 +3,9 @@
 # same bytes in any folder.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME jostle)
-set(CPACK_PACKAGE_CONTACT "The jostle authors <jostle@example.org>")  # -D at a release
+set(CPACK_JOSTLE_AUTHORS "${JOSTLE_AUTHORS}")
+set(CPACK_JOSTLE_ADDRESS "${JOSTLE_ADDRESS}")
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/PackageContact.cmake)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

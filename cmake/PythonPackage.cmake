@@ -7,7 +7,7 @@ if(of_other_versions)
 endif()
 set(metadata ${PROJECT_BINARY_DIR}/python/jostle-${PROJECT_VERSION}.dist-info)
 file(WRITE ${metadata}/METADATA "Metadata-Version: 2.1\nName: jostle\nVersion: ${PROJECT_VERSION}\n"
-                                "Summary: ${PROJECT_DESCRIPTION}\n")
+                                "Summary: ${PROJECT_DESCRIPTION}\nAuthor: ${JOSTLE_AUTHORS}\n")
 file(WRITE ${metadata}/entry_points.txt
      "[xarray.backends]\njostle = jostle.xarray_engine:JostleBackendEntrypoint\n")
 install(DIRECTORY python/jostle ${metadata} DESTINATION ${JOSTLE_PYTHON_DIR}

@@ -2,7 +2,7 @@
 
 namespace jostle::inline study {
 
-/// "0.2.0".
+/// The version that CITATION.cff states, as "0.3.0".
 const char* version();
 
 /// The commit this was built from, "-dirty" appended where tracked files differed; "unknown" where

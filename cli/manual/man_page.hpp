@@ -6,7 +6,7 @@
 
 namespace jostle::inline cli {
 
-/// The manual page of the program, jostle.1, in roff. `version`: "0.2.0".
+/// The manual page of the program, jostle.1, in roff. `version`: "0.3.0".
 std::string program_page(const CommandText& program, const std::string& version);
 
 /// The manual page of one of its commands, jostle-run.1.

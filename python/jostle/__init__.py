@@ -26,8 +26,6 @@ from .scenes import Checked, check, schema
 from .student import half_width
 from .tables import Quantity, Table, Tables
 
-__version__ = "0.2.0"
-
 __all__ = ["BadArgument", "Box", "Checked", "Choice", "Contacts", "Fault", "Fit", "FittedCurve", "HeldOut", "JostleError",
            "NoSuchPoint", "NotThere", "Parameter", "Point", "ProgramError", "ProgramMissing", "Quantity",
            "RealizationsFailed", "Results", "ResultsError", "RunStopped", "SceneError", "Table",
@@ -36,8 +34,11 @@ __all__ = ["BadArgument", "Box", "Checked", "Choice", "Contacts", "Fault", "Fit"
 
 
 def __getattr__(name: str) -> object:
-    """jostle.plot, which needs matplotlib, is imported when it is used."""
+    """Imports jostle.plot, which needs matplotlib, and determines the version, when they are used."""
     if name == "plot":
         import importlib
         return importlib.import_module(".plot", __name__)
+    if name == "__version__":
+        from .installed import version
+        return version()
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -17,6 +17,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from . import installed
 from .errors import BadArgument, Fault, ProgramError, ProgramMissing, SceneError
 from .guards import path_text, require_no_nul
 
@@ -26,12 +27,13 @@ Path = str | os.PathLike[str]
 
 
 def program_path(program: Path | None = None) -> str:
-    """The program: as named here, else by the environment variable JOSTLE, else on the PATH."""
+    """The program: as named here, else by the environment variable JOSTLE, else installed with this package by
+    pip, else on the PATH."""
     named = path_text(program, "program") if program is not None else os.environ.get("JOSTLE", "")
-    found = shutil.which(named or "jostle")
+    found = shutil.which(named) if named else installed.program() or shutil.which("jostle")
     if found is None:
         where = f"{named} is no program" if named else "it is not on the PATH"
-        raise ProgramMissing(f"the program jostle was not found: {where}. Build it (./dev install PREFIX), "
+        raise ProgramMissing(f"the program jostle was not found: {where}. Build it (pip install ., or ./dev install PREFIX), "
                              "and name it with program=, the environment variable JOSTLE, or the PATH")
     return found
 

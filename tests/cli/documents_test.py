@@ -8,6 +8,7 @@ import sys
 import unittest
 
 SOURCE = pathlib.Path(os.environ["SOURCE"])
+BUILD = pathlib.Path(os.environ["BUILD"])
 PAGES = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").rglob("*.md"))]
 
 
@@ -18,14 +19,30 @@ def anchors(text):
 
 
 class Documents(unittest.TestCase):
-    def test_one_version_stands_everywhere(self):
+    def test_everything_has_the_version_of_the_citation(self):
         said = subprocess.run([os.environ["JOSTLE"], "--version"], capture_output=True, text=True).stdout
         version = re.match(r"jostle (\d+\.\d+\.\d+) ", said).group(1)
-        for file, pattern in (("CMakeLists.txt", r"project\(jostle VERSION (\S+)"),
-                              ("python/jostle/__init__.py", r'__version__ = "(.*)"'),
-                              ("CITATION.cff", r"(?m)^version: (.*)$"),
+        for file, pattern in (("CITATION.cff", r"(?m)^version: (.*)$"),
                               ("CHANGELOG.md", r"(?m)^## \[(\d.*?)\]")):
             self.assertEqual(re.search(pattern, (SOURCE / file).read_text()).group(1), version, file)
+        python = subprocess.run([sys.executable, "-c", "import jostle; print(jostle.__version__)"], text=True,
+                                capture_output=True, env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
+        self.assertEqual(python.stdout.strip(), version, python.stderr)
+        manual = BUILD / "manual/man1/jostle.1"
+        if manual.exists():
+            self.assertIn(version, manual.read_text().splitlines()[0])
+
+    def test_a_version_has_one_section_of_the_changelog(self):
+        versions = re.findall(r"(?m)^## \[(.*?)\]", (SOURCE / "CHANGELOG.md").read_text())
+        self.assertEqual(len(versions), len(set(versions)), versions)
+        self.assertEqual([one for one in versions if not re.fullmatch(r"\d+\.\d+\.\d+", one)], [])
+
+    def test_no_address_is_a_placeholder(self):
+        placeholder = re.compile(rb"@example\.(org|com|net)\b")
+        files = [path for path in (*SOURCE.glob("*"), *SOURCE.glob("cmake/*"), *SOURCE.glob("packages/**/*"),
+                                   *SOURCE.glob("python/**/*.py"), *PAGES) if path.is_file()]
+        self.assertGreater(len(files), 60)
+        self.assertEqual([path for path in files if placeholder.search(path.read_bytes())], [])
 
     def test_the_index_names_every_page(self):
         index = (SOURCE / "docs/README.md").read_text()
