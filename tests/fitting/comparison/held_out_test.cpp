@@ -328,12 +328,36 @@ TEST_CASE("The calibration of the comparison of laws", "[nightly]") {
           }
         }
       }
+    }
+  }
+}
+
+TEST_CASE("The calibration of the comparison of laws on logarithmic grids", "[nightly]") {
+  constexpr int ensembles = 100;
+  for (const Truth& truth : truths()) {
+    DYNAMIC_SECTION(truth.name) {
       for (const int m : {3, 6, 20}) {
-        const Rates found = rates(truth, {geometric(1, 1e4, 60), m, 0.5, 0.9}, ensembles);
-        CHECK(found.share_wrong() <= allowed(ensembles));
+        for (const double rho : {0.0, 0.9}) {
+          for (const double signal : {0.5, 2.0}) {
+            const Rates found = rates(truth, {geometric(1, 1e4, 60), m, signal, rho}, ensembles);
+            CHECK(found.share_wrong() <= allowed(ensembles));
+          }
+        }
       }
-      const Rates found = rates(truth, {taps(4000), 3, 0.1, 0.99}, ensembles);
-      CHECK(found.share_wrong() <= allowed(ensembles));
+    }
+  }
+}
+
+TEST_CASE("The calibration of the comparison of laws over 4000 taps", "[nightly]") {
+  constexpr int ensembles = 20;
+  for (const Truth& truth : truths()) {
+    DYNAMIC_SECTION(truth.name) {
+      for (const int m : {3, 6, 20}) {
+        for (const double signal : {0.1, 0.5}) {
+          const Rates found = rates(truth, {taps(4000), m, signal, 0.99}, ensembles);
+          CHECK(found.share_wrong() <= allowed(ensembles));
+        }
+      }
     }
   }
 }
