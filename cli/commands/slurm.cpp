@@ -172,11 +172,12 @@ void write_script(const SlurmArguments& arguments) {
   say(script.estimate);
   for (const std::string& warning : warnings_of(plan, arguments, cost)) say("warning: " + warning);
   const std::string file = arguments.output.empty() ? script.name + ".sbatch" : arguments.output;
-  say(fmt::format(
-      "next{}:\n  {}\n  {}\n  {}", arguments.output.empty() ? ", with the script in " + file : "",
-      shell_words({"sbatch", operand(file)}),
-      shell_words({"jostle", "status", operand(script.results)}),
-      shell_words({"jostle", "merge", operand(script.results), "-o", script.name + ".h5"})));
+  say(fmt::format("next{}:\n  {}\n  {}\n  {}",
+                  arguments.output.empty() ? ", with the script in " + file : "",
+                  shell_words({"sbatch", operand(file)}),
+                  shell_words({command_line().front(), "status", operand(script.results)}),
+                  shell_words({command_line().front(), "merge", operand(script.results), "-o",
+                               script.name + ".h5"})));
 }
 
 }  // namespace

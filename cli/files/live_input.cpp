@@ -4,6 +4,7 @@
 
 #include "cli/files/waiting.hpp"
 #include "cli/terminal/standard_streams.hpp"
+#include "study/provenance.hpp"
 
 namespace jostle::inline cli {
 
@@ -19,8 +20,9 @@ ResultsFile open_to_read(const std::string& path, Live live) {
   if (file.state() == RunState::interrupted) {
     print_to_standard_error(fmt::format(
         "jostle: {}: its run is unfinished: here are the taps of its last {}. Finish it with "
-        "jostle run SCENE --resume.\n",
-        path, live == Live::yes ? "checkpoints" : "stop"));
+        "{} SCENE --resume.\n",
+        path, live == Live::yes ? "checkpoints" : "stop",
+        shell_words({command_line().front(), "run"})));
   }
   return file;
 }

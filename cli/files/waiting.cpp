@@ -31,9 +31,9 @@ void warn_of_lost_seals(std::span<const std::string> paths) {
   for (const std::string& path : paths) {
     const std::string warning = seal_warning(path);
     if (warning.empty()) continue;
-    print_to_standard_error(fmt::format("jostle: warning: {}: {}. Seal the file again with\n  {}\n",
-                                        printable(path), warning,
-                                        shell_words({"jostle", "info", "--reseal", path})));
+    print_to_standard_error(
+        fmt::format("jostle: warning: {}: {}. Seal the file again with\n  {}\n", printable(path),
+                    warning, shell_words({command_line().front(), "info", "--reseal", path})));
   }
 }
 

@@ -45,9 +45,10 @@ std::string text_of(const BadArgument& error) {
 }
 
 std::string text_of(const NoTapsYet& error) {
-  return fmt::format("{}{}. Finish it with jostle run SCENE --resume; {} says how far it is.",
-                     error.what(), error.live() == Live::no ? "; --live reads its checkpoints" : "",
-                     shell_words({"jostle", "info", operand(error.path())}));
+  return fmt::format("{}{}. Finish it with {} SCENE --resume; {} says how far it is.", error.what(),
+                     error.live() == Live::no ? "; --live reads its checkpoints" : "",
+                     shell_words({command_line().front(), "run"}),
+                     shell_words({command_line().front(), "info", operand(error.path())}));
 }
 
 std::string text_of(const OutputExists& error) {

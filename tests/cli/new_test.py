@@ -2,9 +2,10 @@
 
 import json
 import os
+import subprocess
 import unittest
 
-from support import BAD_INPUT, BROKEN, SOURCE, STOPPED, Case
+from support import BAD_INPUT, BROKEN, JOSTLE, PLAIN, SOURCE, STOPPED, Case
 
 SHIPPED = sorted(str(path.relative_to(SOURCE / "config/scenes").with_suffix(""))
                  for path in (SOURCE / "config/scenes").rglob("*.json"))
@@ -22,6 +23,21 @@ class New(Case):
                          (SOURCE / "config/scene.schema.json").read_text())
         self.jostle("run", "my-bed.json", "--time-limit", "0s", "--quiet", expect=STOPPED)
         self.assertIn("my-bed.h5", self.files())
+
+    def test_commands_that_are_printed_begin_with_the_word_that_was_typed(self):
+        def call(word, *arguments):
+            done = subprocess.run([word, *arguments], executable=JOSTLE, cwd=self.folder, env=PLAIN, text=True,
+                                  capture_output=True)
+            return " ".join((done.stdout + done.stderr).split())
+
+        for word in ("./dev", "../jostle/dev", "jostle"):
+            printed = call(word, "new", "mine", "--force")
+            self.assertIn(f"; {word} check mine.json says what it costs, {word} run mine.json writes", printed)
+            call(word, "run", "mine.json", "--time-limit", "0s", "--force")
+            self.assertIn(f"Finish it with {word} run SCENE --resume",
+                          call(word, "fit", "mine.h5", "--observable", "bottom_fraction"))
+            printed = call(word, "slurm", "mine.json", "--hours", "1", "--cpus", "1", "--jobs", "2", "-o", "x.sh", "--force")
+            self.assertIn(f" {word} status mine.shards {word} merge mine.shards -o mine.h5", printed)
 
     def test_every_shipped_scene_can_be_taken(self):
         self.assertGreater(len(SHIPPED), 20)
