@@ -13,7 +13,7 @@ import zlib
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, BROKEN, FAILED, JOSTLE, OK, PLAIN, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, FAILED, JOSTLE, OK, PLAIN, TINY, Case, changed, some
 
 SMALL = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], snapshots={"taps": [0, 40]})
 del SMALL["sweep"]
@@ -319,7 +319,8 @@ class Crafted(Case):
 
     def try_all(self, kinds, commands=COMMANDS):
         refusals = 0
-        for kind, change in kinds.items():
+        kinds = some(kinds.items(), 5)
+        for kind, change in kinds:
             self.craft(change)
             shutil.copy(self.folder / "file.h5", self.folder / "kept.h5")
             refused = 0
@@ -349,7 +350,7 @@ class Crafted(Case):
     def test_a_damaged_record_of_free_room(self):
         data = bytearray((self.folder / "good.h5").read_bytes()[:-SEAL])
         header, record = data.index(b"FSHD"), data.index(b"FSSE")
-        for at in (header + 12, header + 28, record + 6):
+        for at in some((header + 12, header + 28, record + 6), 2):
             changed_data = data.copy()
             changed_data[at] ^= 0xff
             (self.folder / "kept.h5").write_bytes(sealed(bytes(changed_data)))
@@ -364,14 +365,14 @@ class Crafted(Case):
         data = (self.folder / "good.h5").read_bytes()[:-SEAL]
         rng = random.Random(20261125)
         crashes = 0
-        for _ in range(40):
+        for _ in some(range(40), 8):
             changed_data = bytearray(data)
             for _ in range(rng.randint(1, 4)):
                 changed_data[rng.randrange(len(data))] = rng.randrange(256)
             (self.folder / "file.h5").write_bytes(sealed(bytes(changed_data)))
             done = self.use(["info", "file.h5", "--digest"])
             crashes += "HDF5 crashes when it reads" in done.stderr.replace("\n", " ")
-        print(f"{crashes} of 40 crashed HDF5")
+        print(f"{crashes} files crashed HDF5")
 
     def write_grains(self):
         grains = changed(SMALL, spheres=20, realizations=2, observe=["mean_height"], name="file",

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import JOSTLE, PLAIN, SOURCE, Case, changed
+from support import JOSTLE, PLAIN, SOURCE, Case, EVERY, changed, some
 
 COMMANDS = ("new", "run", "check", "cost", "schema", "info", "merge", "bench", "selftest", "fit",
             "analyse", "structure", "export", "report", "slurm", "status")
@@ -141,7 +141,8 @@ class Examples(Case):
     def test_every_example_of_every_help_runs(self):
         self.make_files()
         n = 0
-        for command in (None, *COMMANDS):
+        commands = some((None, *COMMANDS), 8)
+        for command in commands:
             text = self.jostle(*filter(None, (command, "--help"))).stdout
             found = examples(text)
             self.assertGreaterEqual(len(found), 1, command)
@@ -150,7 +151,7 @@ class Examples(Case):
             folder.mkdir()
             self.copy_files(folder)
             self.run_all(found, folder)
-        self.assertGreater(n, 35)
+        self.assertGreater(n, 2 * len(commands))
 
     def test_every_command_of_the_documentation_runs(self):
         self.make_files()
@@ -159,7 +160,9 @@ class Examples(Case):
         (self.folder / "volumes.csv").write_text("t,X\n" + "".join(
             f"{0.01 * t},{30 * math.exp(-0.1 * t) + 0.01 * math.cos(t * t)}\n" for t in range(20)))
         n = 0
-        for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))):
+        pages = [page for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md")))
+                 if documented(page.read_text())]
+        for page in some(pages, 4):
             found = documented(page.read_text())
             n += len(found)
             folder = self.folder / f"of_{page.parent.name}_{page.stem}"
@@ -172,7 +175,7 @@ class Examples(Case):
             (folder / "config/scenes/quickstart.json").write_text(json.dumps(QUICK))
             with self.subTest(page=page.name):
                 self.run_all(found, folder, lambda command: INSTEAD_IN_DOCS.get(command, command))
-        self.assertGreater(n, 40)
+        self.assertGreater(n, 40 if EVERY else 4)
 
     def test_no_command_is_forgotten(self):
         listed = re.search(r"Subcommands:\n((?:  .*\n)+)", self.jostle("--help").stdout).group(1)

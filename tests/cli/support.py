@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import pathlib
+import random
 import shutil
 import subprocess
 import tempfile
@@ -57,6 +58,19 @@ SCRATCH = in_memory()
 SLOW = changed(TINY, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 2}],
                relax={"polar": {}, "stop": {"sweeps": 1000000}}, snapshots={"taps": [0, 2]})
 del SLOW["sweep"]
+
+
+# Set where all cases of a script are tried, beside the test of every day that tries some.
+EVERY = bool(os.environ.get("JOSTLE_EVERY"))
+
+
+def some(cases, count):
+    """`count` of the cases, the first and the last among them, the same at every call; all where EVERY is set."""
+    cases = list(cases)
+    if EVERY or len(cases) <= count:
+        return cases
+    inner = random.Random(len(cases)).sample(range(1, len(cases) - 1), count - 2)
+    return [cases[0], *(cases[at] for at in sorted(inner)), cases[-1]]
 
 
 class Case(unittest.TestCase):

@@ -8,7 +8,7 @@ using namespace jostle;
 // One ordering of fig. 15, on a floor of a fortieth of the paper's area, springs ten times softer
 // and a second of vibration. The seed is the shipped scene's.
 TEST_CASE("Rosato & Dybenko: shaking hard enough to throw the bed densifies it, gently it does not",
-          "[statistics]") {
+          "[slow]") {
   const auto gain = [](double amplitude, double frequency) {
     const nlohmann::json vibration = {
         {"amplitude", amplitude}, {"frequency", frequency}, {"cycles", int(frequency)}};

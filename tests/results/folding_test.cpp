@@ -66,6 +66,57 @@ constexpr bool memory_is_watched = true;  // and more of it is taken
 constexpr bool memory_is_watched = false;
 #endif
 
+void check_snapshots_of_many_blocks(bool killed) {
+  const synthetic::Sizes sizes{.points = 1,
+                               .realizations = 3,
+                               .spheres = 2,
+                               .taps = 9000,
+                               .snapshot_taps = taps_up_to(9000)};
+  REQUIRE(chunk_along_first({9001, 3, 3})[0] < 9001);
+  const TemporaryFolder folder;
+  const std::string straight = folder / "straight.h5";
+  const std::string digest = digest_of_straight(straight, sizes);
+  CHECK(digest_of_stopped(folder / "stopped.h5", sizes, 10'000, killed) == digest);
+  const auto snapshots = ResultsFile(straight).snapshots({0, 2});
+  REQUIRE(snapshots.size() == 9001);
+  CHECK(snapshots[8000].tap == 8000);
+  CHECK(snapshots[8000].centres.size() == 2);
+  CHECK(snapshots[8000].height_histogram.size() == 3);
+  CHECK(*snapshots[8000].coordination == snapshots[8000].centres[0].x);
+}
+
+void check_memory_of_fold(bool of_series) {
+  if (memory_is_watched) return;
+  const synthetic::Sizes sizes = of_series ? synthetic::Sizes{.points = 1,
+                                                              .realizations = 2,
+                                                              .spheres = 2,
+                                                              .taps = 2'000'000,
+                                                              .snapshot_taps = {}}
+                                           : synthetic::Sizes{.points = 1,
+                                                              .realizations = 2,
+                                                              .spheres = 20'000,
+                                                              .taps = 200,
+                                                              .snapshot_taps = taps_up_to(200)};
+  constexpr double megabytes_of_the_run = 180, most = 80;
+  const TemporaryFolder folder;
+  const Ending ending = run_forked({}, folder / "messages", [&] {
+    const std::string path = folder / "a.h5";
+    const Study study = synthetic::study(sizes);
+    const auto store = RunStore::create(path, study, {}, provenance());
+    synthetic::run_pending(*store, study, {.checkpoint_every = 1'000'000});
+    const double before = peak_megabytes();
+    if (static_cast<double>(parts_bytes(path)) < 1e6 * megabytes_of_the_run)
+      throw std::runtime_error("the run is smaller than it should be");
+    store->finish();
+    digest_of(path);
+    const double grown = peak_megabytes() - before;
+    if (grown > most) throw std::runtime_error("took " + std::to_string(grown) + " MB");
+  });
+  std::ifstream messages(folder / "messages");
+  CAPTURE(of_series, std::string(std::istreambuf_iterator<char>(messages), {}));
+  CHECK(ending.code == 0);
+}
+
 }  // namespace
 
 TEST_CASE("series of many blocks are written as those of one, stopped or killed on the way") {
@@ -89,24 +140,12 @@ TEST_CASE("series of many blocks are written as those of one, stopped or killed 
   CHECK(file.record({0, 1}).rows.size() == (sizes.taps + 1) * n_columns);
 }
 
-TEST_CASE("snapshots of many blocks are written as those of one, stopped or killed on the way") {
-  const synthetic::Sizes sizes{.points = 1,
-                               .realizations = 3,
-                               .spheres = 2,
-                               .taps = 9000,
-                               .snapshot_taps = taps_up_to(9000)};
-  REQUIRE(chunk_along_first({9001, 3, 3})[0] < 9001);
-  const TemporaryFolder folder;
-  const std::string straight = folder / "straight.h5";
-  const std::string digest = digest_of_straight(straight, sizes);
-  const bool killed = GENERATE(false, true);
-  CHECK(digest_of_stopped(folder / "stopped.h5", sizes, 10'000, killed) == digest);
-  const auto snapshots = ResultsFile(straight).snapshots({0, 2});
-  REQUIRE(snapshots.size() == 9001);
-  CHECK(snapshots[8000].tap == 8000);
-  CHECK(snapshots[8000].centres.size() == 2);
-  CHECK(snapshots[8000].height_histogram.size() == 3);
-  CHECK(*snapshots[8000].coordination == snapshots[8000].centres[0].x);
+TEST_CASE("snapshots of many blocks are written as those of one, killed on the way") {
+  check_snapshots_of_many_blocks(true);
+}
+
+TEST_CASE("snapshots of many blocks are written as those of one, stopped on the way", "[slow]") {
+  check_snapshots_of_many_blocks(false);
 }
 
 TEST_CASE("parts that go on while they are read give what was there") {
@@ -137,37 +176,12 @@ TEST_CASE("parts that go on while they are read give what was there") {
   CHECK(early->vectors(60'000, kept_positions).empty());
 }
 
-TEST_CASE("a fold takes little memory, however large the run") {
-  if (memory_is_watched) return;
-  const bool of_series = GENERATE(true, false);
-  const synthetic::Sizes sizes = of_series ? synthetic::Sizes{.points = 1,
-                                                              .realizations = 2,
-                                                              .spheres = 2,
-                                                              .taps = 2'000'000,
-                                                              .snapshot_taps = {}}
-                                           : synthetic::Sizes{.points = 1,
-                                                              .realizations = 2,
-                                                              .spheres = 20'000,
-                                                              .taps = 200,
-                                                              .snapshot_taps = taps_up_to(200)};
-  constexpr double megabytes_of_the_run = 180, most = 80;
-  const TemporaryFolder folder;
-  const Ending ending = run_forked({}, folder / "messages", [&] {
-    const std::string path = folder / "a.h5";
-    const Study study = synthetic::study(sizes);
-    const auto store = RunStore::create(path, study, {}, provenance());
-    synthetic::run_pending(*store, study, {.checkpoint_every = 1'000'000});
-    const double before = peak_megabytes();
-    if (static_cast<double>(parts_bytes(path)) < 1e6 * megabytes_of_the_run)
-      throw std::runtime_error("the run is smaller than it should be");
-    store->finish();
-    digest_of(path);
-    const double grown = peak_megabytes() - before;
-    if (grown > most) throw std::runtime_error("took " + std::to_string(grown) + " MB");
-  });
-  std::ifstream messages(folder / "messages");
-  CAPTURE(of_series, std::string(std::istreambuf_iterator<char>(messages), {}));
-  CHECK(ending.code == 0);
+TEST_CASE("a fold of snapshots takes little memory, however large the run") {
+  check_memory_of_fold(false);
+}
+
+TEST_CASE("a fold of series takes little memory, however large the run", "[slow]") {
+  check_memory_of_fold(true);
 }
 
 /// Megabytes that a merge of so many shards takes, each with so much of every series that all of a

@@ -114,15 +114,15 @@ void check_growth_of_sides(double side) {
 
 }  // namespace
 
-TEST_CASE(
-    "writing, opening and digesting take time in proportion to points, realizations and taps") {
+TEST_CASE("writing, opening and digesting take time in proportion to realizations") {
+  check_growth("realizations", {.points = 1, .realizations = 60},
+               {.points = 1, .realizations = times * 60});
+}
+
+TEST_CASE("writing, opening and digesting take time in proportion to points and taps", "[slow]") {
   SECTION("points") {
     check_growth("points", {.points = 40, .realizations = 1},
                  {.points = times * 40, .realizations = 1});
-  }
-  SECTION("realizations") {
-    check_growth("realizations", {.points = 1, .realizations = 60},
-                 {.points = 1, .realizations = times * 60});
   }
   SECTION("taps") {
     check_growth("taps", {.points = 1, .realizations = 1, .taps = 20'000},

@@ -105,8 +105,9 @@ TEST_CASE("The stored AR(1) series has the exact error and autocorrelation time"
   CHECK(state.verdict() == Verdict::reached);
 }
 
-TEST_CASE("Errors of steady states are what the states scatter by", "[statistics]") {
-  const std::size_t realizations = GENERATE(1, 10);
+namespace {
+
+void check_errors(std::size_t realizations) {
   constexpr std::size_t n_taps = 4000, ensembles = 400;
   Moments values, errors, times, time_errors, sigmas, sigma_errors, plateaus;
   std::size_t drifting = 0;
@@ -140,6 +141,16 @@ TEST_CASE("Errors of steady states are what the states scatter by", "[statistics
   CHECK(sigma_errors.mean() == Approx(sigmas.sigma()).epsilon(spread + 0.05));
   // 3 deviations of 400 ensembles.
   CHECK(drifting <= Trend::level * ensembles + 3 * std::sqrt(Trend::level * ensembles));
+}
+
+}  // namespace
+
+TEST_CASE("Errors of a steady state are what such states scatter by", "[statistics]") {
+  check_errors(1);
+}
+
+TEST_CASE("Errors of steady states of ten realizations are what they scatter by", "[slow]") {
+  check_errors(10);
 }
 
 TEST_CASE("Drift, a late step and a long memory are not a steady state") {

@@ -106,28 +106,43 @@ void check(const Law& law, int n_realizations, double rho, int ensembles) {
   CHECK(found.share(1) <= 0.99 + margin(0.99));
 }
 
-}  // namespace
-
-TEST_CASE("Few realizations with memory: intervals hold the truth as they say", "[statistics]") {
-  for (const char* model : {"inverse_log", "kww", "power_law"}) {
-    for (const Law& law : laws()) {
-      if (std::string(law.model) != model) continue;
-      check(law, 3, 0, 20);
-      check(law, 3, 0.99, 20);
-      check(law, 10, 0.99, 20);
-    }
+void check_few_realizations(const std::string& model) {
+  for (const Law& law : laws()) {
+    if (law.model != model) continue;
+    check(law, 3, 0, 20);
+    check(law, 3, 0.99, 20);
+    check(law, 10, 0.99, 20);
   }
 }
 
-TEST_CASE("One realization with memory: intervals hold the truth, or none are given",
-          "[statistics]") {
+void check_one_realization(const std::string& model) {
   for (const Law& law : laws()) {
-    if (std::string(law.model) != "inverse_log" && std::string(law.model) != "kww") continue;
+    if (law.model != model) continue;
     for (const double rho : {0.5, 0.9}) check(law, 1, rho, 40);
     // 400 points that remember for 100 are worth 2: an error would be a guess.
     const Coverage found = coverage(law, 1, 0.99, 40);
     CHECK(found.examined <= 0.2 * 40 * static_cast<double>(law.truth.size()));
   }
+}
+
+}  // namespace
+
+TEST_CASE("Few realizations with memory: intervals hold the truth as they say", "[statistics]") {
+  check_few_realizations("inverse_log");
+}
+
+TEST_CASE("Few realizations with memory: intervals of other laws hold the truth", "[slow]") {
+  for (const char* model : {"kww", "power_law"}) check_few_realizations(model);
+}
+
+TEST_CASE("One realization with memory: intervals hold the truth, or none are given",
+          "[statistics]") {
+  check_one_realization("kww");
+}
+
+TEST_CASE("One realization with memory: intervals of eq. 1 hold the truth, or none are given",
+          "[slow]") {
+  check_one_realization("inverse_log");
 }
 
 TEST_CASE("Where B and tau diverge together, their ratio has limits that hold the truth") {

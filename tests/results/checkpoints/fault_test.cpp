@@ -80,15 +80,12 @@ void check_recovery(const Place& place, const std::string& expected) {
   }
 }
 
-}  // namespace
-
-// What is on disk after call n is what is there before call n + 1, so that killing before every
-// call and after the last one is killing before and after every call.
-TEST_CASE("killed before, within or after any write, fsync, rename or removal, nothing is lost") {
+/// Killed at every `stride`-th call, and after the last.
+void kill_at_calls(long stride) {
   const auto [calls, digest] = undisturbed();
   REQUIRE(calls > 50);
   const std::string action = GENERATE("kill_before", "kill_within", "kill_after");
-  for (long at = action == "kill_after" ? calls : 1; at <= calls; ++at) {
+  for (long at = action == "kill_after" ? calls : 1; at <= calls; at += stride) {
     CAPTURE(action, at, calls);
     const Place place;
     REQUIRE(work_with_fault(place, action, at).signal == SIGKILL);
@@ -96,10 +93,10 @@ TEST_CASE("killed before, within or after any write, fsync, rename or removal, n
   }
 }
 
-TEST_CASE("killed while it goes on from a folded file, nothing is lost") {
+void kill_while_going_on(long stride) {
   const std::string digest = undisturbed().digest;
   bool killed = true;
-  for (long at = 1; killed; ++at) {
+  for (long at = 1; killed; at += stride) {
     CAPTURE(at);
     const Place place;
     work_on(place.path, stopped);
@@ -107,6 +104,28 @@ TEST_CASE("killed while it goes on from a folded file, nothing is lost") {
     killed = work_with_fault(place, "kill_after", at).signal == SIGKILL;
     check_recovery(place, digest);
   }
+}
+
+}  // namespace
+
+// What is on disk after call n is what is there before call n + 1, so that killing before every
+// call and after the last one is killing before and after every call.
+TEST_CASE("killed before, within or after any write, fsync, rename or removal, nothing is lost",
+          "[slow]") {
+  kill_at_calls(1);
+}
+
+TEST_CASE(
+    "killed before, within or after some writes, fsyncs, renames and removals, nothing is lost") {
+  kill_at_calls(7);
+}
+
+TEST_CASE("killed at any call while it goes on from a folded file, nothing is lost", "[slow]") {
+  kill_while_going_on(1);
+}
+
+TEST_CASE("killed while it goes on from a folded file, nothing is lost") {
+  kill_while_going_on(7);
 }
 
 TEST_CASE("a full disk is reported with its path, and the run goes on once there is room") {

@@ -378,7 +378,7 @@ TEST_CASE("Counts are those of all pairs and images") {
   CHECK(pairs.counts == counts);
 }
 
-TEST_CASE("The hard-sphere fluid has the g(1+) of an independent Monte Carlo", "[statistics]") {
+TEST_CASE("The hard-sphere fluid has the g(1+) of an independent Monte Carlo", "[slow]") {
   // The reference's g(r) farther out is not compared: at Phi = 0.40 and r of 1.04 to 1.1 it lies
   // 0.3 to 0.9 % below that of 40 000 sweeps of ours, as if cells 12 to a side of 12.16 had missed
   // pairs two cells apart. Ours counts all pairs, as the test above tells.

@@ -108,8 +108,10 @@ Table profiles_of(std::uint32_t point) {
   return table;
 }
 
-Json data_of(const ResultsFile& file) {
-  return page_data(file, "", {.drawn = DrawnRoom::of_one_in(1), .packing_bytes = 4'000'000}, 2);
+/// In the room of one file among `n_files`.
+Json data_of(const ResultsFile& file, std::size_t n_files = 1) {
+  return page_data(file, "", {.drawn = DrawnRoom::of_one_in(n_files), .packing_bytes = 4'000'000},
+                   2);
 }
 
 std::string said(const Json& data) {
@@ -123,19 +125,16 @@ std::size_t page_bytes(const ResultsFile& file) {
   return report_page({&source, 1}, synthetic::provenance(), 2).size();
 }
 
-}  // namespace
-
-TEST_CASE("curves of hundreds of sweep points are thinned to the room, ends and peaks kept") {
-  const TemporaryFolder folder;
-  const ResultsFile file = file_of({.points = 400, .taps = 300}, folder / "many.h5", 187);
-  const Json data = data_of(file);
+void check_thinned_curves(const ResultsFile& file, std::size_t n_points, std::size_t n_files) {
+  const Json data = data_of(file, n_files);
   CHECK_THAT(said(data), Catch::Contains("curves are drawn at 5 taps a decade"));
-  CHECK_THAT(said(data), Catch::Contains("of 400 sweep points, evenly spread"));
+  CHECK_THAT(said(data),
+             Catch::Contains(fmt::format("of {} sweep points, evenly spread", n_points)));
   const auto& curves = data.at("curves").elements();
-  REQUIRE(curves.size() > 200);
-  CHECK(curves.size() < 400);
+  REQUIRE(curves.size() > n_points / 2);
+  CHECK(curves.size() < n_points);
   CHECK(curves.front().at("point").whole_number() == 0);
-  CHECK(curves.back().at("point").whole_number() == 399);
+  CHECK(curves.back().at("point").whole_number() == n_points - 1);
   for (const Json& curve : {curves.front(), curves.back()}) {
     const auto& taps = curve.at("taps").elements();
     const auto& mean = curve.at("columns").elements().front().at("mean").elements();
@@ -148,7 +147,42 @@ TEST_CASE("curves of hundreds of sweep points are thinned to the room, ends and 
     CHECK(mean[static_cast<std::size_t>(peak - taps.begin())].number() == 1e6);
     CHECK(std::ranges::is_sorted(taps, {}, [](const Json& tap) { return tap.whole_number(); }));
   }
-  CHECK(data.at("points").elements().size() == 400);
+  CHECK(data.at("points").elements().size() == n_points);
+}
+
+/// A file in which so many sweep points have profiles.
+ResultsFile file_of_profiles(const std::string& path, std::uint32_t n_points) {
+  { const ResultsFile file = file_of({.points = n_points}, path); }
+  std::vector<Table> tables;
+  for (std::uint32_t point = 0; point < n_points; ++point) tables.push_back(profiles_of(point));
+  store_tables(path, "structure", tables, synthetic::provenance());
+  return ResultsFile(path);
+}
+
+void check_thinned_tables(const ResultsFile& file, std::size_t n_points, std::size_t n_files) {
+  const Json data = data_of(file, n_files);
+  CHECK_THAT(said(data), Catch::Contains("tables are drawn at some of their taps and places"));
+  CHECK_THAT(said(data),
+             Catch::Contains(fmt::format("of {} sweep points, evenly spread", n_points)));
+  const auto& kept = data.at("tables").elements();
+  CHECK(kept.size() > n_points / 3);
+  CHECK(kept.size() < n_points);
+  CHECK(kept.front().at("name").text() == "point_0000/profile");
+  CHECK(kept.back().at("name").text() == fmt::format("point_{:04}/profile", n_points - 1));
+}
+
+}  // namespace
+
+TEST_CASE("curves of many sweep points are thinned to the room, ends and peaks kept") {
+  const TemporaryFolder folder;
+  check_thinned_curves(file_of({.points = 100, .taps = 300}, folder / "many.h5", 187), 100, 4);
+}
+
+TEST_CASE("curves of hundreds of sweep points are thinned, and their page keeps its bounds",
+          "[slow]") {
+  const TemporaryFolder folder;
+  const ResultsFile file = file_of({.points = 400, .taps = 300}, folder / "many.h5", 187);
+  check_thinned_curves(file, 400, 1);
   CHECK(page_bytes(file) < most_bytes);
 }
 
@@ -187,23 +221,16 @@ TEST_CASE("packings of hundreds of realizations are chosen, the first and the la
   CHECK(bytes < room);
 }
 
-TEST_CASE("tables of hundreds of sweep points are thinned, and then left out at some points") {
+TEST_CASE("tables of many sweep points are thinned, and then left out at some points") {
   const TemporaryFolder folder;
-  const std::string path = folder / "tables.h5";
-  constexpr std::uint32_t n_points = 200;
-  { const ResultsFile file = file_of({.points = n_points}, path); }
-  std::vector<Table> tables;
-  for (std::uint32_t point = 0; point < n_points; ++point) tables.push_back(profiles_of(point));
-  store_tables(path, "structure", tables, synthetic::provenance());
-  const ResultsFile file(path);
-  const Json data = data_of(file);
-  CHECK_THAT(said(data), Catch::Contains("tables are drawn at some of their taps and places"));
-  CHECK_THAT(said(data), Catch::Contains("of 200 sweep points, evenly spread"));
-  const auto& kept = data.at("tables").elements();
-  CHECK(kept.size() > n_points / 3);
-  CHECK(kept.size() < n_points);
-  CHECK(kept.front().at("name").text() == "point_0000/profile");
-  CHECK(kept.back().at("name").text() == "point_0199/profile");
+  check_thinned_tables(file_of_profiles(folder / "tables.h5", 50), 50, 4);
+}
+
+TEST_CASE("tables of hundreds of sweep points are thinned, and their page keeps its bounds",
+          "[slow]") {
+  const TemporaryFolder folder;
+  const ResultsFile file = file_of_profiles(folder / "tables.h5", 200);
+  check_thinned_tables(file, 200, 1);
   const std::size_t bytes = page_bytes(file);
   CHECK(bytes > 1'000'000);
   CHECK(bytes < most_bytes);
