@@ -46,7 +46,7 @@ def measured(command, folder, environment):
 def room(output):
     """The folder of the sources that an output of the build is made from."""
     parts = pathlib.PurePath(output).parts
-    if len(parts) < 2 or parts[0].startswith("CMakeFiles"):
+    if len(parts) < 2 or parts[0] == "/" or parts[0].startswith("CMakeFiles"):
         return "build files"
     return "/".join(parts[:2]) if parts[0] == "tests" and not parts[1].startswith("CMake") else parts[0]
 
