@@ -1,5 +1,6 @@
 // Makes COUNT trials of a scene with one effect, COUNT taps of a realization, or COUNT
 // measurements, to be counted by callgrind (which has no AVX-512: the loops take AVX2).
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -55,7 +56,8 @@ const std::map<std::string, Measurement> measurements = {{"height_histogram", an
                                                          {"cells_and_pores", cells_and_pores}};
 
 bool make_trials(const Scene& scene, std::uint64_t count) {
-  const auto loop = make_trial_loop(scene.container, scene.move, cost_trials, InstructionSet::avx2);
+  const auto loop = make_trial_loop(scene.container, scene.move, cost_trials,
+                                    std::min(InstructionSet::avx2, best_instruction_set()));
   loop->load(cost_bed(scene.container));
   loop->run(count);
   return loop->tally().accepted > 0;

@@ -1,5 +1,6 @@
 // "taps COUNT" makes taps written out, with nothing between tap and trials. What `cost_of_effect`
 // takes more than this is the price of what is there and not used.
+#include <algorithm>
 #include <cstdlib>
 
 #include "bench/cost_state.hpp"
@@ -10,7 +11,8 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const std::uint64_t count = std::strtoull(argv[2], nullptr, 10);
   const PeriodicBox box{8, 8};
-  const auto loop = make_trial_loop(box, PolarMove{}, bench::cost_trials, InstructionSet::avx2);
+  const auto loop = make_trial_loop(box, PolarMove{}, bench::cost_trials,
+                                    std::min(InstructionSet::avx2, best_instruction_set()));
   RandomStream random(stream_key(bench::cost_seed, 0, 0, Purpose::tap));
   Packing bed = bench::poured_cost_bed(box);
   for (std::uint64_t tap = 0; tap < count; ++tap) {

@@ -153,10 +153,10 @@ struct Times {
 Times run_on_threads(std::vector<GrainLoop>& beds) {
   std::vector<double> processor(beds.size());
   const auto began = std::chrono::steady_clock::now();
-  std::vector<std::jthread> threads;
+  std::vector<std::thread> threads;
   for (std::size_t k = 0; k < beds.size(); ++k)
     threads.emplace_back([&, k] { processor[k] = seconds_of(beds[k], steps * turns); });
-  threads.clear();
+  for (std::thread& thread : threads) thread.join();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   return {*std::ranges::max_element(processor), elapsed.count()};
 }

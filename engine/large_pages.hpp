@@ -23,10 +23,14 @@ struct LargePageAllocator {
     const std::size_t bytes = (n * sizeof(T) + alignment - 1) / alignment * alignment;
     void* memory = std::aligned_alloc(alignment, bytes);
     if (memory == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE) && !defined(JOSTLE_PORTABLE)
     if (alignment == page) madvise(memory, bytes, MADV_HUGEPAGE);  // advice: refusal is no fault
+#endif
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  void deallocate(T* memory, std::size_t) {
+    std::free(memory);
+  }
 
   bool operator==(const LargePageAllocator&) const = default;
 

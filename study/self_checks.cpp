@@ -197,8 +197,7 @@ std::string read_back(const std::string& folder) {
 std::vector<SelfCheck> self_checks(const std::string& folder) {
   using enum SelfCheck::Finds;
   std::vector<SelfCheck> checks;
-  for (const InstructionSet set :
-       {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : instruction_sets()) {
     if (set > best_instruction_set()) continue;
     checks.push_back({fmt::format("trials, {}", name(set)),
                       [set] { return compare_with_plain_loop(set); }, wrong_numbers});

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/kernel_sets.hpp"
 
 namespace jostle::inline engine {
 
@@ -14,15 +15,21 @@ namespace {
 constexpr double deepest_possible = 0.2;  // of spheres that press on each other
 
 GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
-  switch (set) {
-    case InstructionSet::avx512:
-      return avx512::grain_kernels(law);
-    case InstructionSet::avx2:
-      return avx2::grain_kernels(law);
-    case InstructionSet::baseline:
-      break;
+  struct Entry {
+    InstructionSet set;
+    GrainKernels (*kernels)(GrainLaw);
+  };
+  constexpr Entry entries[] = {
+      {InstructionSet::baseline, baseline::grain_kernels},
+#ifdef JOSTLE_X86_KERNELS
+      {InstructionSet::avx2, avx2::grain_kernels},
+      {InstructionSet::avx512, avx512::grain_kernels},
+#endif
+  };
+  for (const Entry& one : entries) {
+    if (one.set == set) return one.kernels(law);
   }
-  return baseline::grain_kernels(law);
+  throw_not_compiled_in(set);
 }
 
 Vec3 spin_of(const Row& row, double spin_z) {

@@ -14,6 +14,8 @@ JOSTLE = os.environ["JOSTLE"]
 # Surroundings of a program whose calls the shim answers; one with sanitizers wants its own runtime first.
 SHIM = {"LD_PRELOAD": os.environ["FAULT_SHIM"], "ASAN_OPTIONS": "verify_asan_link_order=0"}
 SOURCE = pathlib.Path(os.environ["SOURCE"])
+# Built without intrinsics and without what only Linux has.
+PORTABLE = os.environ.get("PORTABLE") == "1"
 
 OK, BAD_INPUT, FAILED, BROKEN, STOPPED = 0, 2, 3, 4, 75
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -32,7 +30,7 @@ template <class Box>
   constexpr float touching = 1 - 1e-5f;
   const Lanes x = cache.x - dx, y = cache.y - dy, z = cache.z - dz;
   const auto blocked = x * x + y * y + z * z < touching;
-  return (_mm_movemask_ps((__m128)blocked) != 0) | PackedBox<Box>::leaves(cache.room, dx, dy, dz);
+  return any_of_four(blocked) | PackedBox<Box>::leaves(cache.room, dx, dy, dz);
 }
 
 /// The caches of all spheres. Lanes 0 to 3 of cache i hold the first four of row i of the lists:

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,16 +8,17 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 #include "engine/large_pages.hpp"
+#include "engine/monte_carlo/kernel/four_floats.hpp"
 
 // The arithmetic of engine/bed/geometry.hpp for the trial loop: x and y side by side in one
 // register and no branches. It gives the same numbers, bit for bit (a zero may differ in its sign);
 // the trial loop is tested against the plain functions.
 namespace jostle::inline engine {
 
-/// Two lateral coordinates, in one SSE2 register.
+/// Two lateral coordinates, in one register.
 using Pair = double __attribute__((vector_size(16), may_alias));
 
-/// Four numbers in single precision, in one SSE register.
+/// Four numbers in single precision, in one register.
 using Lanes = float __attribute__((vector_size(16), may_alias));
 
 /// A centre ready for the loop: aligned, half a cache line.
@@ -129,7 +128,7 @@ struct PackedBox<WalledBox> : PackedOpenBox {
     using Bits = std::int32_t __attribute__((vector_size(16)));
     const Bits side = (Bits)room & std::int32_t(0x80000000);
     const Lanes towards = (Lanes)((Bits)Lanes{dx, dy, dz, 0} ^ side);
-    return _mm_movemask_ps((__m128)(towards > (Lanes)((Bits)room ^ side))) != 0;
+    return any_of_four(towards > (Lanes)((Bits)room ^ side));
   }
 };
 

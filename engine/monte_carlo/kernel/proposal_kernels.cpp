@@ -1,37 +1,16 @@
 // Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
 // It must instantiate nothing that another translation unit could pick up: plain arrays, intrinsics
 // and static functions only.
-#include <immintrin.h>
-
 #include "engine/bed/elementary.hpp"
 #include "engine/monte_carlo/kernel/proposals.hpp"
+#include "engine/monte_carlo/kernel/word_lanes.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 
 namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
-// One Philox word a 64-bit lane, in its lower half; the upper half is never looked at.
-#if defined(__AVX512F__)
-using Lanes = std::uint64_t __attribute__((vector_size(64)));
-inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
-  return (Lanes)_mm512_mul_epu32((__m512i)a, (__m512i)b);
-}
-#elif defined(__AVX2__)
-using Lanes = std::uint64_t __attribute__((vector_size(32)));
-inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
-  return (Lanes)_mm256_mul_epu32((__m256i)a, (__m256i)b);
-}
-#else
-using Lanes = std::uint64_t __attribute__((vector_size(16)));
-inline Lanes product_of_lower_halves(Lanes a, Lanes b) {
-  return (Lanes)_mm_mul_epu32((__m128i)a, (__m128i)b);
-}
-#endif
-
 constexpr std::uint32_t n = ProposalBatch::size;
-constexpr std::uint32_t n_lanes = sizeof(Lanes) / sizeof(std::uint64_t);
-
 constexpr std::uint32_t n_made = n + ProposalBatch::margin;
 
 // The words of consecutive Philox blocks, word by word; word 0 already turned into a sphere.
@@ -48,21 +27,21 @@ void name_next_spheres(const Words& words, ProposalBatch& batch) {
 // Philox4x32-10 (Salmon et al. 2011, doi:10.1145/2063384.2063405); constants as in Random123,
 // against which it is tested.
 void make_words(const BatchOrigin& origin, Words& words) {
-  constexpr Lanes zero = {};
-  const Lanes multiplier0 = zero + 0xD2511F53u, multiplier1 = zero + 0xCD9E8D57u;
-  const Lanes n_spheres = zero + origin.n_spheres;
-  Lanes first = zero;
+  constexpr WordLanes zero = {};
+  const WordLanes multiplier0 = zero + 0xD2511F53u, multiplier1 = zero + 0xCD9E8D57u;
+  const WordLanes n_spheres = zero + origin.n_spheres;
+  WordLanes first = zero;
   for (std::uint32_t lane = 0; lane < n_lanes; ++lane) first[lane] = lane;
   for (std::uint32_t t = 0; t < n_made; t += n_lanes) {
     // origin.first is a multiple of n, so the sum never carries into the high word within a batch.
-    Lanes c0 = first + ((origin.first & 0xffffffffu) + t);
-    Lanes c1 = zero + (origin.first >> 32), c2 = zero, c3 = zero;
+    WordLanes c0 = first + ((origin.first & 0xffffffffu) + t);
+    WordLanes c1 = zero + (origin.first >> 32), c2 = zero, c3 = zero;
     auto k0 = static_cast<std::uint32_t>(origin.key);
     auto k1 = static_cast<std::uint32_t>(origin.key >> 32);
 #pragma GCC unroll 10
     for (int round = 0; round < 10; ++round) {
-      const Lanes p0 = product_of_lower_halves(c0, multiplier0);
-      const Lanes p1 = product_of_lower_halves(c2, multiplier1);
+      const WordLanes p0 = product_of_lower_halves(c0, multiplier0);
+      const WordLanes p1 = product_of_lower_halves(c2, multiplier1);
       c0 = (p1 >> 32) ^ c1 ^ k0;
       c2 = (p0 >> 32) ^ c3 ^ k1;
       c1 = p1;
@@ -70,10 +49,10 @@ void make_words(const BatchOrigin& origin, Words& words) {
       k0 += 0x9E3779B9u;
       k1 += 0xBB67AE85u;
     }
-    *reinterpret_cast<Lanes*>(words.sphere + t) = product_of_lower_halves(c0, n_spheres) >> 32;
-    *reinterpret_cast<Lanes*>(words.w1 + t) = c1;
-    *reinterpret_cast<Lanes*>(words.w2 + t) = c2;
-    *reinterpret_cast<Lanes*>(words.w3 + t) = c3;
+    *reinterpret_cast<WordLanes*>(words.sphere + t) = product_of_lower_halves(c0, n_spheres) >> 32;
+    *reinterpret_cast<WordLanes*>(words.w1 + t) = c1;
+    *reinterpret_cast<WordLanes*>(words.w2 + t) = c2;
+    *reinterpret_cast<WordLanes*>(words.w3 + t) = c3;
   }
 }
 

@@ -3,9 +3,9 @@
 // static functions only.
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
-#include <xmmintrin.h>
-
 #include <cassert>
+
+#include "engine/monte_carlo/kernel/four_floats.hpp"
 
 namespace jostle::inline engine::JOSTLE_KERNELS {
 
@@ -30,7 +30,7 @@ inline void store(Floats values, float* at) {
 }
 
 // Four numbers, of four spheres or the coordinates of one.
-using Four = float __attribute__((vector_size(16)));
+using Four = FourFloats;
 using FourIntegers = std::int32_t __attribute__((vector_size(16)));
 
 inline FourIntegers at(const GridPlace& place) {
@@ -63,10 +63,10 @@ inline Four tangent_squared(Four x, Four y, Four z, float margin) {
 // Which of four are in the way, one bit each.
 inline unsigned in_the_way(const Sight& sight, const Four (&r)[4]) {
   Four x = r[0], y = r[1], z = r[2], rest = r[3];
-  _MM_TRANSPOSE4_PS(x, y, z, rest);
+  transpose(x, y, z, rest);
   const auto counts =
       (tangent_squared(x, y, z, sight.margin) < sight.farthest) & (z > -sight.highest);
-  return static_cast<unsigned>(_mm_movemask_ps((__m128)counts));
+  return bits_of_four(counts);
 }
 
 // Four of a list, from place m on.
@@ -135,12 +135,12 @@ StepOutcome try_step(const Sight& sight, const Surroundings& around, std::uint32
     for (int k = 0; k < 4; ++k) {
       r[k] = seen_from(sight, own, at(around.places[four.sphere[k]])) - step;
     }
-    _MM_TRANSPOSE4_PS(r[0], r[1], r[2], r[3]);
+    transpose(r[0], r[1], r[2], r[3]);
     const Four squared = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
     nearest = squared < nearest ? squared : nearest;
   }
-  if (_mm_movemask_ps((__m128)(nearest < 1.0f - sight.doubt)) != 0) return StepOutcome::blocked;
-  const bool unsure = _mm_movemask_ps((__m128)(nearest < 1.0f + sight.doubt)) != 0;
+  if (any_of_four(nearest < 1.0f - sight.doubt)) return StepOutcome::blocked;
+  const bool unsure = any_of_four(nearest < 1.0f + sight.doubt);
   return unsure ? StepOutcome::unsure : StepOutcome::free;
 }
 
@@ -167,7 +167,7 @@ void sphere_coefficients(const Obstacles& obstacles, float margin, float longest
   for (std::uint32_t j = 0; j < obstacles.n; j += 4) {
     const auto* const r = reinterpret_cast<const Four*>(obstacles.r[j]);
     Four x = r[0], y = r[1], z = r[2], rest = r[3];
-    _MM_TRANSPOSE4_PS(x, y, z, rest);
+    transpose(x, y, z, rest);
     const Four c = tangent_squared(x, y, z, margin);
     const Four norm = 1.0f + 0.5f * c;
     const Four per_c = 1.0f / c;

@@ -138,9 +138,7 @@ TEST_CASE("a bed falls between walls as by brute force, to the bit, on every ins
   BruteForce brute(box, units, start);
   const int steps = 25'000;
   for (int k = 0; k < steps; ++k) brute.step();
-  for (const InstructionSet set :
-       {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
-    if (set > best_instruction_set()) continue;
+  for (const InstructionSet set : instruction_sets()) {
     CAPTURE(name(set));
     GrainLoop loop = loop_of(box, units, start, set);
     loop.run(steps);

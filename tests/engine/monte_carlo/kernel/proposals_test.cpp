@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/bed/philox.hpp"
+#include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
@@ -114,6 +115,5 @@ TEST_CASE("every instruction set proposes the same bits") {
       REQUIRE(std::memcmp(own.get(), other.get(), sizeof(ProposalBatch)) == 0);
     }
   };
-  if (__builtin_cpu_supports("avx2")) compare(avx2::proposal_kernels());
-  if (best_instruction_set() == InstructionSet::avx512) compare(avx512::proposal_kernels());
+  for (const InstructionSet set : instruction_sets()) compare(kernels_for(set).proposals);
 }

@@ -100,9 +100,7 @@ TEST_CASE("rejection-free sampling makes the same trajectory on every instructio
   for (const Move& move : moves()) {
     const Packing start = random_packing(WalledBox{5, 4}, 60, 12, 8);
     std::vector<Packing> ends;
-    for (const InstructionSet set :
-         {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
-      if (set > best_instruction_set()) continue;
+    for (const InstructionSet set : instruction_sets()) {
       const auto loop = rejection_free_loop(start, move, set);
       loop->run(500'000);
       CHECK(loop->tally().candidates > 0);
