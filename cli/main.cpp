@@ -12,6 +12,7 @@
 #include "results/export/printable.hpp"
 #include "results/hdf5/at_exit.hpp"
 #include "study/bad_input.hpp"
+#include "study/provenance.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -58,5 +59,6 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   jostle::reserve_standard_fds();
   jostle::close_nothing_at_exit();
+  jostle::keep_command_line(argc, argv);
   return jostle::run_program(argc, argv);
 }

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "engine/number_reading.hpp"
 
 namespace jostle::inline config {
 
@@ -14,7 +15,7 @@ namespace {
 double rounded_to_15_digits(double value) {
   const std::string text = fmt::format("{:.15g}", value);
   double rounded = value;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  read_decimal(text.data(), text.data() + text.size(), rounded);
   return rounded;
 }
 

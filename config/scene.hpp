@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -29,7 +30,14 @@ struct PackingFile {
   std::optional<std::uint64_t> tap;    // a snapshot of the earlier run; absent: its last
   std::optional<std::uint64_t> frame;  // counted from 0; absent: the last
   double overlap = 0;                  // the deepest that is accepted, diameters
-  auto operator<=>(const PackingFile&) const = default;
+  bool operator==(const PackingFile&) const = default;
+  // libc++ before version 18 compares no optional values by <=>.
+  friend bool operator<(const PackingFile& a, const PackingFile& b) {
+    const auto members = [](const PackingFile& file) {
+      return std::tie(file.path, file.point, file.realization, file.tap, file.frame, file.overlap);
+    };
+    return members(a) < members(b);
+  }
 };
 
 using StartChoice =

@@ -13,6 +13,7 @@
 #include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 #include "results/file/results_writer.hpp"
+#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -33,10 +34,10 @@ void take_parts(const ResultsFile& file, std::vector<RealizationSummary>& realiz
 }
 
 /// Tells one published file from the next under the same name.
-std::pair<std::uint64_t, long> version_of(const std::string& path) {
+std::pair<std::uint64_t, std::int64_t> version_of(const std::string& path) {
   struct stat status {};
   ::stat(path.c_str(), &status);
-  return {status.st_ino, status.st_mtim.tv_nsec};
+  return {status.st_ino, change_time(status).nanoseconds};
 }
 
 RunStatus status_of(const ResultsFile& file, Realizations which, const std::string& results_path,

@@ -18,6 +18,7 @@
 #include "results/file/snapshot_statistics.hpp"
 #include "results/file/validate.hpp"
 #include "results/hdf5/read.hpp"
+#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 
@@ -89,9 +90,10 @@ ResultsFile::Impl::Impl(const std::string& name, const std::string& known_as, Ve
 ResultsFile::Impl::Version ResultsFile::Impl::version_of(const std::string& name) {
   struct stat status {};
   if (::stat(name.c_str(), &status) != 0) fail_on_disk(name, "open", errno);
-  return {status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-          static_cast<std::uint64_t>(status.st_mtim.tv_sec),
-          static_cast<std::uint64_t>(status.st_mtim.tv_nsec)};
+  const ChangeTime changed = change_time(status);
+  return {static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino),
+          static_cast<std::uint64_t>(status.st_size), static_cast<std::uint64_t>(changed.seconds),
+          static_cast<std::uint64_t>(changed.nanoseconds)};
 }
 
 const Hdf5Handle& ResultsFile::Impl::file() const {

@@ -19,6 +19,9 @@
 #include <vector>
 
 #include "results/hdf5/descriptor.hpp"
+#include "results/hdf5/system_calls.hpp"
+
+extern char** environ;  // glibc alone declares it
 
 namespace jostle::inline results {
 namespace {
@@ -85,7 +88,7 @@ std::optional<std::string> read_to_end(int pipe) {
 /// does not end.
 std::optional<std::string> output_of(const std::vector<std::string>& words) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  if (!open_pipe(ends)) return std::nullopt;
   const Descriptor from(ends[0]);
   pid_t child = -1;
   {

@@ -1,6 +1,8 @@
 #include "study/available_cpus.hpp"
 
+#if defined(__linux__) && !defined(JOSTLE_PORTABLE)
 #include <sched.h>
+#endif
 
 #include <algorithm>
 #include <charconv>
@@ -56,9 +58,11 @@ bool lists_cpu(std::string_view controllers) {
 }
 
 std::optional<int> affinity() {
+#if defined(__linux__) && !defined(JOSTLE_PORTABLE)
   cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return {};  // more than 1024 CPUs
-  return CPU_COUNT(&set);
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+#endif
+  return {};  // another system, or more than 1024 CPUs
 }
 
 std::optional<int> slurm_cpus() {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <fstream>
+#include <sstream>
+#include <system_error>
 
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "results/export/printable.hpp"
@@ -10,6 +13,13 @@
 
 namespace jostle::inline study {
 namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string>& kept_command_line() {
+  static std::vector<std::string> arguments;
+  return arguments;
+}
 
 bool needs_no_quotes(unsigned char c) {
   return std::isalnum(c) != 0 ||
@@ -48,11 +58,37 @@ std::string shell_word(const std::string& argument) {
 
 }  // namespace
 
+void keep_command_line(int argc, char** argv) {
+  kept_command_line().assign(argv, argv + argc);
+}
+
 std::vector<std::string> command_line() {
+#if defined(__linux__) && !defined(JOSTLE_PORTABLE)
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> arguments;
   for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
-  return arguments;
+  if (!arguments.empty()) return arguments;
+#endif
+  return kept_command_line();
+}
+
+fs::path program_path() {
+#if defined(__linux__) && !defined(JOSTLE_PORTABLE)
+  std::error_code fault;
+  const fs::path program = fs::read_symlink("/proc/self/exe", fault);
+  if (!fault) return program;
+#endif
+  const std::vector<std::string> arguments = command_line();
+  const std::string name = arguments.empty() ? "jostle" : arguments.front();
+  if (name.find('/') == std::string::npos) {
+    const char* const folders = std::getenv("PATH");
+    std::istringstream stream(folders == nullptr ? "" : folders);
+    for (std::string folder; std::getline(stream, folder, ':');) {
+      const fs::path file = fs::path(folder) / name;
+      if (fs::is_regular_file(file)) return fs::canonical(file);
+    }
+  }
+  return fs::canonical(name);
 }
 
 std::string shell_words(const std::vector<std::string>& arguments) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -7,8 +8,14 @@
 
 namespace jostle::inline study {
 
-/// The arguments this process was started with, from /proc.
+/// The arguments this process was started with, from /proc; where there is none, what was kept.
 std::vector<std::string> command_line();
+/// For systems without /proc. Called once, before threads are started.
+void keep_command_line(int argc, char** argv);
+
+/// The file of this program. Where the system does not tell, what its first argument means: a path,
+/// or a name that is looked up along PATH. Throws std::filesystem::filesystem_error.
+std::filesystem::path program_path();
 
 /// Arguments as a shell takes them, quoted where they must be.
 std::string shell_words(const std::vector<std::string>& arguments);

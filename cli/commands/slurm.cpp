@@ -127,7 +127,7 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
               arguments.folder.empty() ? name + ".shards" : without_last_slashes(arguments.folder),
               "--folder"),
           .folder = one_line(fs::current_path().string(), "the folder"),
-          .program = one_line(fs::read_symlink("/proc/self/exe").string(), "the program"),
+          .program = one_line(program_path().string(), "the program"),
           .made_by = shell_words(command_line()),
           .cpus = arguments.cpus,
           .time_limit = time_limit(arguments),

@@ -17,6 +17,8 @@
 #include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 
+extern char** environ;  // glibc alone declares it
+
 namespace jostle::inline cli {
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/number_reading.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline cli {
@@ -34,7 +35,7 @@ std::optional<Seconds> parse_duration(std::string_view text) {
   while (!text.empty()) {
     double number = 0;
     const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed);
+        read_decimal(text.data(), text.data() + text.size(), number, std::chars_format::fixed);
     if (error != std::errc{} || !std::isfinite(number) || std::signbit(number)) return {};
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     if (text.empty()) {  // seconds, unless behind another unit: 1h30 may mean minutes

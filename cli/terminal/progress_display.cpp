@@ -42,29 +42,27 @@ std::string progress_line(const Progress& progress, const WorkAhead& ahead, doub
 ProgressDisplay::ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style)
     : progress_(progress), ahead_(ahead), style_(style) {
   if (style == ProgressStyle::none) return;
-  clock_ = std::jthread([this](std::stop_token token) {
+  clock_.begin([this] {
     try {
-      show_until(token);
+      show_until_end();
     } catch (const std::bad_alloc&) {  // no more lines; the run is told where it needs memory
     }
   });
 }
 
 ProgressDisplay::~ProgressDisplay() {
-  if (!clock_.joinable()) return;
-  clock_.request_stop();
-  clock_.join();
+  if (!clock_.has_begun()) return;
+  clock_.end();
   if (style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
 }
 
-void ProgressDisplay::show_until(std::stop_token token) {
+void ProgressDisplay::show_until_end() {
   const bool live = style_ == ProgressStyle::live;
   const Clock::duration interval = interval_of(style_);
   const auto began = Clock::now();
   auto last_time = began;
   std::uint64_t last_units = progress_.units_done;
-  std::unique_lock lock(mutex_);
-  while (!ended_.wait_for(lock, token, interval, [&] { return token.stop_requested(); })) {
+  while (!clock_.wait(interval)) {
     const auto now = Clock::now();
     const std::uint64_t units = progress_.units_done;
     const std::chrono::duration<double> since = now - last_time;

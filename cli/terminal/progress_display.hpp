@@ -1,13 +1,11 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <cstdio>
-#include <mutex>
 #include <string>
-#include <thread>
 
+#include "cli/terminal/clock_thread.hpp"
 #include "study/run.hpp"
 
 namespace jostle::inline cli {
@@ -26,14 +24,12 @@ class ProgressDisplay {
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
  private:
-  void show_until(std::stop_token token);
+  void show_until_end();
 
   const Progress& progress_;
   WorkAhead ahead_;
   ProgressStyle style_;
-  std::mutex mutex_;
-  std::condition_variable_any ended_;
-  std::jthread clock_;
+  ClockThread clock_;
 };
 
 /// Shows how far the writing of a results file is, which takes its time with many sweep points.

@@ -5,7 +5,7 @@
 namespace jostle::inline cli {
 namespace {
 
-// A signal handler reaches nothing but statics: the only mutable ones of the program.
+// A signal handler reaches nothing but statics.
 std::atomic<bool> stop_asked{false};
 std::atomic<int> asked_by{0};  // a signal number, or time_limit_reached
 constexpr int time_limit_reached = -1;
@@ -33,10 +33,8 @@ StopRequest::StopRequest() {
 }
 
 void StopRequest::stop_after(Seconds limit) {
-  clock_ = std::jthread([this, limit](std::stop_token token) {
-    std::unique_lock lock(mutex_);
-    ended_.wait_for(lock, token, limit, [] { return false; });
-    if (!token.stop_requested()) ask(time_limit_reached);
+  clock_.begin([this, limit] {
+    if (!clock_.wait(limit)) ask(time_limit_reached);
   });
 }
 

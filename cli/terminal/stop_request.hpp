@@ -1,12 +1,10 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <mutex>
 #include <string>
-#include <thread>
 
 #include "cli/reports/durations.hpp"
+#include "cli/terminal/clock_thread.hpp"
 
 namespace jostle::inline cli {
 
@@ -27,9 +25,7 @@ class StopRequest {
   std::string reason() const;
 
  private:
-  std::mutex mutex_;
-  std::condition_variable_any ended_;
-  std::jthread clock_;
+  ClockThread clock_;
 };
 
 }  // namespace jostle::inline cli

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -20,6 +19,7 @@
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
+#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -35,21 +35,6 @@ std::string this_host() {
   std::array<char, 256> name{};
   ::gethostname(name.data(), name.size() - 1);
   return name.data();
-}
-
-/// Field 22 of /proc/PID/stat, clock ticks since boot; 0 where there is no such process, or one
-/// that has ended and that nobody reaps (state Z or X), as in a container. The second field, the
-/// program's name, may hold blanks and brackets: count from its last bracket.
-std::uint64_t start_time_of(long pid) {
-  std::ifstream file(fmt::format("/proc/{}/stat", pid));
-  std::string line;
-  if (!std::getline(file, line)) return 0;
-  std::istringstream rest(line.substr(line.rfind(')') + 1));
-  std::string word;
-  rest >> word;
-  if (word == "Z" || word == "X") return 0;
-  for (int field = 4; field <= 22; ++field) rest >> word;
-  return rest ? std::stoull(word) : 0;
 }
 
 /// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", and "storing" where

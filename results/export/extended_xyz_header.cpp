@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "engine/number_reading.hpp"
 #include "results/export/container_text.hpp"
 #include "results/export/printable.hpp"
 
@@ -263,7 +264,7 @@ std::vector<std::string> words_of(const std::string& line) {
 
 double finite_number(const std::string& word) {
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = read_decimal(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
     refuse("\"{}\" is not a finite number", word);
   return value;

@@ -11,6 +11,7 @@
 
 #include "results/checkpoints/publish.hpp"
 #include "results/error.hpp"
+#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -101,8 +102,9 @@ void InputFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) {
 std::string InputFile::stamp() const {
   struct stat status;
   if (::fstat(file_.get(), &status) != 0) fail_on_disk(path_, "read", errno);
+  const ChangeTime changed = change_time(status);
   return fmt::format("{} {} {} {}.{}", status.st_dev, status.st_ino, status.st_size,
-                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+                     changed.seconds, changed.nanoseconds);
 }
 
 std::string InputFile::rest() {

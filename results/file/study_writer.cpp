@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/number_reading.hpp"
 #include "results/export/container_text.hpp"
 #include "results/file/layout.hpp"
 #include "results/hdf5/write.hpp"
@@ -130,7 +131,7 @@ std::optional<std::vector<double>> numbers_at(const Study& study, const std::str
     const std::string text = value_at(point, pointer);
     const char* const end = text.data() + text.size();
     double number = 0;
-    const auto read = std::from_chars(text.data(), end, number);
+    const auto read = read_decimal(text.data(), end, number);
     if (text.empty() || read.ec != std::errc() || read.ptr != end) return std::nullopt;
     numbers.push_back(number);
   }

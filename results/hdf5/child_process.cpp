@@ -18,6 +18,7 @@
 #include "results/error.hpp"
 #include "results/hdf5/descriptor.hpp"
 #include "results/hdf5/handle.hpp"
+#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -46,7 +47,7 @@ std::string outcome_of(const std::function<std::string()>& work) {
 /// needs less.
 void limit_memory() {
   constexpr rlim_t enough = rlim_t{3} << 29;  // 1.5 GB
-  std::uint64_t pages = 0;
+  std::uint64_t pages = 0;                    // of this process; unknown where there is no /proc
   if (!(std::ifstream("/proc/self/statm") >> pages)) return;
   struct rlimit limit;
   if (::getrlimit(RLIMIT_AS, &limit) != 0) return;
@@ -104,7 +105,7 @@ std::string text_of(const std::string& outcome) {
 
 std::string in_child_process(const std::function<std::string()>& work) {
   std::array<int, 2> ends;
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return work();
+  if (!open_pipe(ends)) return work();
   const Descriptor from_child(ends[0]);
   Descriptor to_parent(ends[1]);
   const pid_t child = ::fork();

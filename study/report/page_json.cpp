@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/number_reading.hpp"
 #include "results/export/printable.hpp"
 
 namespace jostle::inline study {
@@ -43,7 +44,7 @@ Json page_number(double value) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   const std::string text = fmt::format("{:.7g}", value);
   double rounded = 0;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  read_decimal(text.data(), text.data() + text.size(), rounded);
   constexpr double exact = 1e15;
   if (rounded == std::trunc(rounded) && std::abs(rounded) < exact) {
     return static_cast<std::int64_t>(rounded);

@@ -181,9 +181,12 @@ TEST_CASE("A stop that would fold much leaves it in the parts, and goes on to th
   class Stopper : public RunObserver {
    public:
     explicit Stopper(std::atomic<bool>& stop) : stop_(stop) {}
+    ~Stopper() {
+      if (watcher_.joinable()) watcher_.join();
+    }
     void computing(const Progress& progress, const WorkAhead&, std::uint64_t,
                    std::uint64_t) override {
-      watcher_ = std::jthread([this, &progress] {
+      watcher_ = std::thread([this, &progress] {
         while (progress.taps_done == 0) std::this_thread::yield();
         stop_ = true;
       });
@@ -193,7 +196,7 @@ TEST_CASE("A stop that would fold much leaves it in the parts, and goes on to th
 
    private:
     std::atomic<bool>& stop_;
-    std::jthread watcher_;
+    std::thread watcher_;
   } stopper(stop);
   const std::string output = folder / "out.h5";
   {

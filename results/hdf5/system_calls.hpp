@@ -1,0 +1,27 @@
+#pragma once
+
+#include <sys/stat.h>
+
+#include <array>
+#include <cstdint>
+
+// Calls that systems name differently, or that only Linux has.
+namespace jostle::inline results {
+
+/// Makes a pipe, {read end, write end}, that programs started later do not inherit. Returns false
+/// where the system refuses.
+bool open_pipe(std::array<int, 2>& ends);
+
+/// The time of a file's last change since 1970.
+struct ChangeTime {
+  std::int64_t seconds, nanoseconds;
+};
+ChangeTime change_time(const struct stat& status);
+
+/// Tells process `pid` of this host from later ones with its number: the time of its start, in
+/// clock ticks since the system's (field 22 of /proc/PID/stat). 1 for every living process where
+/// there is no /proc. 0 where there is no such process, or one that has ended and that nobody has
+/// reaped; without /proc only a child of this process is seen to have ended so.
+std::uint64_t start_time_of(long pid);
+
+}  // namespace jostle::inline results
