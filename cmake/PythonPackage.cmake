@@ -12,3 +12,7 @@ file(WRITE ${metadata}/entry_points.txt
      "[xarray.backends]\njostle = jostle.xarray_engine:JostleBackendEntrypoint\n")
 install(DIRECTORY python/jostle ${metadata} DESTINATION ${JOSTLE_PYTHON_DIR}
         COMPONENT python PATTERN __pycache__ EXCLUDE)
+# The program looks for the package beside itself, as where it is installed: jostle report --figures.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/lib/python3/dist-packages)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/jostle
+     ${PROJECT_BINARY_DIR}/lib/python3/dist-packages/jostle SYMBOLIC)

@@ -20,7 +20,7 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> inputs;
-  std::string output;
+  std::string output, catalogue;
   FigureFolder figures;
   int columns = 1;
   bool force = false;
@@ -43,6 +43,12 @@ void write_figure_folder(const ReportArguments& arguments) {
   folder.columns = arguments.columns == 2 ? JournalColumns::two : JournalColumns::one;
   folder.force = arguments.force;
   print(write_figures(opened(arguments), folder, provenance_of_this_run("")));
+}
+
+void write_catalogue(const ReportArguments& arguments) {
+  require_text_output("--catalogue", arguments.catalogue, arguments.inputs, arguments.force);
+  write_text(arguments.catalogue, figure_catalogue(opened(arguments), arguments.figures.sweep_point,
+                                                   provenance_of_this_run("")));
 }
 
 void write_page(const ReportArguments& arguments) {
@@ -85,7 +91,7 @@ void add_report(Command& app, int& code) {
   Option figures =
       command.add_option("--figures", a.figures.path,
                          "Write no page but its figures into this folder: SVG and PDF, with their "
-                         "data and gnuplot scripts");
+                         "data and Python scripts");
   figures.file_to_write().excludes(output);
   command
       .add_option("--columns", a.columns,
@@ -93,10 +99,16 @@ void add_report(Command& app, int& code) {
                   "1)")
       .between(1, 2)
       .needs(figures);
+  command.add_option("--sweep-point", a.figures.sweep_point,
+                     "Figures of this one alone: its number, or NAME=VALUE of the sweep");
   command
-      .add_option("--sweep-point", a.figures.sweep_point,
-                  "Figures of this one alone: its number, or NAME=VALUE of the sweep")
-      .needs(figures);
+      .add_option(
+          "--catalogue", a.catalogue,
+          "Write no page but a description of its figures as JSON, all digits, to this file")
+      .file_to_write()
+      .offers_files({"json"})
+      .excludes(output)
+      .excludes(figures);
   add_live(command, a.live);
   command.add_flag("--force", a.force, "Replace files that exist");
   command.add_threads(a.threads);
@@ -105,15 +117,22 @@ void add_report(Command& app, int& code) {
       "  jostle report quickstart.h5                      writes quickstart.html\n"
       "  jostle report low.h5 high.h5 -o both.html         two runs on one page\n"
       "  jostle report quickstart.h5 --figures figures     its figures, for a paper\n"
+      "  jostle report quickstart.h5 --catalogue fig.json  its figures, for another program\n"
       "\n"
       "The page needs nothing but a browser: no network, no other file. It shows what the files\n"
       "hold: curves, and the tables that fit, analyse, structure and cost have stored; make those\n"
       "first. Kept packings can be turned and sliced. What it shows: docs/report.md.");
   command.run([arguments, &code] {
-    if (arguments->figures.path.empty()) {
-      write_page(*arguments);
-    } else {
+    if (!arguments->figures.sweep_point.empty() && arguments->figures.path.empty() &&
+        arguments->catalogue.empty()) {
+      throw BadInput("--sweep-point needs --figures or --catalogue: a page shows all sweep points");
+    }
+    if (!arguments->catalogue.empty()) {
+      write_catalogue(*arguments);
+    } else if (!arguments->figures.path.empty()) {
       write_figure_folder(*arguments);
+    } else {
+      write_page(*arguments);
     }
     code = exit_ok;
   });

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <set>
 
-#include "cli/files/gnuplot.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/python_plot.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/checkpoints/output_path.hpp"
 #include "results/error.hpp"
@@ -26,7 +26,7 @@ struct FigureOfFile {
   std::string origin;  // of which file
 };
 
-constexpr const char* kinds[] = {".dat", ".gp", ".svg", ".pdf"};
+constexpr const char* kinds[] = {".csv", ".json", ".py", ".svg", ".pdf"};
 
 /// The folder of the figures, and what is written into it. What did not exist before is removed
 /// again unless it is kept: a full disk leaves neither an empty folder nor some of the data.
@@ -86,67 +86,92 @@ void require_room_for(const FigureFolder& folder, const std::vector<FigureOfFile
   }
 }
 
-/// Refuses first; then writes data and scripts, and draws.
+/// Refuses first; then writes data, JSON and scripts, and draws.
 void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
                const std::vector<std::string>& inputs) {
   WrittenFigures written(folder.path);
   require_room_for(folder, figures, inputs);
-  std::vector<std::vector<NamedText>> sources;
+  std::vector<Json> described;
   for (const FigureOfFile& one : figures) {
     const std::string& name = one.figure.name;
-    sources.push_back({{name + ".dat", figure_data(one.figure, one.origin)},
-                       {name + ".gp", figure_script(one.figure, folder.columns)}});
-    for (const NamedText& source : sources.back()) {
-      written.write(source.name, source.text);
-    }
+    described.push_back(figure_json(one.figure, one.origin, Digits::all));
+    written.write(name + ".csv", figure_csv(one.figure));
+    written.write(name + ".json", described.back().dump() + "\n");
+    written.write(name + ".py", figure_script(name, folder.columns));
   }
-  written.keep();  // data and scripts are of use without gnuplot
+  written.keep();  // data and scripts are of use without matplotlib
+  const std::vector<PaperFigure> drawn = draw_with_python(described, folder.columns);
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    const std::string& name = figures[i].figure.name;
-    for (const NamedText& one :
-         run_gnuplot(name + ".gp", sources[i], {name + ".svg", name + ".pdf"})) {
-      written.write(one.name, one.text);
-    }
+    written.write(figures[i].figure.name + ".svg", drawn[i].svg);
+    written.write(figures[i].figure.name + ".pdf", drawn[i].pdf);
   }
 }
 
 std::string written_text(const FigureFolder& folder, std::size_t n) {
-  return fmt::format("{}: {}, each as SVG and PDF with its data (.dat) and its script (.gp)\n",
-                     printable_name(folder.path), counted(n, "figure"));
+  return fmt::format(
+      "{}: {}, each as SVG and PDF with its data (.csv), its description (.json) and its script "
+      "(.py)\n",
+      printable_name(folder.path), counted(n, "figure"));
+}
+
+}  // namespace
+
+namespace {
+
+struct FiguresOfFiles {
+  std::vector<FigureOfFile> figures;
+  std::vector<std::string> inputs, left_out;  // left_out: one sentence each
+  bool has_other_points = false;
+};
+
+FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::string& sweep_point,
+                                const Provenance& by) {
+  FiguresOfFiles all;
+  std::set<std::string> words;  // of files, where there are several
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const ResultsFile& file = files[i];
+    all.inputs.push_back(file.path());
+    const std::string name = fs::path(file.path()).filename().string();
+    const auto points = sweep_point.empty() ? std::vector<std::uint32_t>{}
+                                            : chosen_points(file.study(), sweep_point);
+    DrawnFigures drawn = figures_of(file, points, files.size());
+    for (const std::string& one : drawn.left_out) all.left_out.push_back(name + ": " + one);
+    all.has_other_points = all.has_other_points || drawn.has_other_points;
+    std::string word = file_word(fs::path(name).stem().string());
+    if (!words.insert(word).second) word += fmt::format("-file-{}", i + 1);
+    for (Figure& figure : drawn.figures) {
+      if (files.size() > 1) figure.name = word + "-" + figure.name;
+      all.figures.push_back(
+          {std::move(figure), fmt::format("Of {}: {}. Drawn by jostle {} ({})", name,
+                                          study_words(file.study()), by.version, by.git_revision)});
+    }
+  }
+  if (all.figures.empty()) {
+    throw BadInput("the results hold nothing that a figure shows: no taps, and no tables");
+  }
+  return all;
 }
 
 }  // namespace
 
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
                           const Provenance& by) {
-  std::vector<FigureOfFile> figures;
-  std::vector<std::string> inputs;
-  std::string left_out;
-  std::set<std::string> words;  // of files, where there are several
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const ResultsFile& file = files[i];
-    inputs.push_back(file.path());
-    const std::string name = fs::path(file.path()).filename().string();
-    const auto points = folder.sweep_point.empty()
-                            ? std::vector<std::uint32_t>{}
-                            : chosen_points(file.study(), folder.sweep_point);
-    DrawnFigures drawn = figures_of(file, points, files.size());
-    for (const std::string& one : drawn.left_out) left_out += fmt::format("{}: {}\n", name, one);
-    if (drawn.has_other_points) left_out += "--sweep-point draws another one.\n";
-    std::string word = file_word(fs::path(name).stem().string());
-    if (!words.insert(word).second) word += fmt::format("-file-{}", i + 1);
-    for (Figure& figure : drawn.figures) {
-      if (files.size() > 1) figure.name = word + "-" + figure.name;
-      figures.push_back(
-          {std::move(figure), fmt::format("Of {}: {}. Drawn by jostle {} ({})", name,
-                                          study_words(file.study()), by.version, by.git_revision)});
-    }
+  const FiguresOfFiles all = figures_of_files(files, folder.sweep_point, by);
+  write_all(folder, all.figures, all.inputs);
+  std::string text = written_text(folder, all.figures.size());
+  for (const std::string& one : all.left_out) text += one + "\n";
+  if (all.has_other_points) text += "--sweep-point draws another one.\n";
+  return text;
+}
+
+std::string figure_catalogue(std::span<const ResultsFile> files, const std::string& sweep_point,
+                             const Provenance& by) {
+  const FiguresOfFiles all = figures_of_files(files, sweep_point, by);
+  std::vector<Json> figures;
+  for (const FigureOfFile& one : all.figures) {
+    figures.push_back(figure_json(one.figure, one.origin, Digits::all));
   }
-  if (figures.empty()) {
-    throw BadInput("the results hold nothing that a figure shows: no taps, and no tables");
-  }
-  write_all(folder, figures, inputs);
-  return written_text(folder, figures.size()) + left_out;
+  return catalogue_json(figures, all.left_out).dump() + "\n";
 }
 
 std::string write_figures(const FittedCurve& measured, const std::string& input,

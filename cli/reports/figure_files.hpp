@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "results/results_file.hpp"
-#include "study/figures/gnuplot.hpp"
+#include "study/figures/catalogue.hpp"
 #include "study/tables/fits.hpp"
 
 namespace jostle::inline cli {
@@ -18,13 +18,17 @@ struct FigureFolder {
   std::string sweep_point;  // empty: as figures_of() chooses
 };
 
-/// Writes the figures of the files: NAME.dat, NAME.gp, and, drawn by gnuplot, NAME.svg and
-/// NAME.pdf. Data and scripts are there also where gnuplot is not. Returns what was written, for
-/// people. Throws BadInput before anything is written, and ResultsError.
+/// Writes the figures of the files: NAME.csv, NAME.json, NAME.py, and, drawn by matplotlib,
+/// NAME.svg and NAME.pdf. The first three are written also where matplotlib is missing. Returns
+/// what was written, for people. Throws BadInput before anything is written, and ResultsError.
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
                           const Provenance& by);
 
-/// Returns the fits of a measured curve, which `input` holds.
+/// The catalogue of the files' figures as JSON, all digits. `sweep_point`: as of FigureFolder.
+std::string figure_catalogue(std::span<const ResultsFile> files, const std::string& sweep_point,
+                             const Provenance& by);
+
+/// Likewise for the fits of a measured curve, which `input` holds.
 std::string write_figures(const FittedCurve& measured, const std::string& input,
                           const FigureFolder& folder, const Provenance& by);
 

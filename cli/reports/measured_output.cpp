@@ -2,30 +2,30 @@
 
 #include <fmt/format.h>
 
-#include "cli/files/gnuplot.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/files/python_plot.hpp"
 #include "study/figures/figures.hpp"
 #include "study/report/measured_page.hpp"
 
 namespace jostle::inline cli {
 namespace {
 
-/// The figures of the page, drawn by gnuplot.
+/// The figures of the page, drawn by matplotlib.
 std::vector<PageFigure> drawn_figures(const FittedCurve& fitted) {
-  std::vector<PageFigure> drawn;
-  for (const Figure& figure : figures_of(fitted).figures) {
-    const std::vector<NamedText> sources = {
-        {figure.name + ".dat", figure_data(figure, fitted.source.title)},
-        {figure.name + ".gp", figure_script(figure, JournalColumns::two)}};
-    const auto files = run_gnuplot(sources[1].name, sources, {figure.name + ".svg"});
-    PageFigure one{files.front().text, ""};
-    for (const FigurePanel& panel : figure.panels) {
-      one.caption += (one.caption.empty() ? "" : " ") + panel.caption;
-    }
-    drawn.push_back(std::move(one));
+  const std::vector<Figure> figures = figures_of(fitted).figures;
+  std::vector<Json> described;
+  for (const Figure& figure : figures) {
+    described.push_back(figure_json(figure, fitted.source.title, Digits::all));
   }
-  return drawn;
+  std::vector<PageFigure> page;
+  for (PaperFigure& drawn : draw_with_python(described, JournalColumns::two)) {
+    page.push_back({std::move(drawn.svg), ""});
+    for (const FigurePanel& panel : figures[page.size() - 1].panels) {
+      page.back().caption += (page.back().caption.empty() ? "" : " ") + panel.caption;
+    }
+  }
+  return page;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ void add_measured_output(Command& command, MeasuredOutput& output) {
       command
           .add_option("--figures", output.figures.path,
                       "Also draw the measured curve with its fits into this folder: SVG and PDF, "
-                      "with data and gnuplot scripts")
+                      "with data and Python scripts")
           .file_to_write();
   command
       .add_option("--columns", output.columns,

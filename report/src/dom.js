@@ -1,6 +1,6 @@
 // Elements are made of nodes and text alone: nothing of a results file is ever read as markup.
 
-const svgNames = new Set(["svg", "g", "path", "rect", "line", "circle", "text", "title", "desc"]);
+const svgNames = new Set(["svg", "g", "path", "rect", "line", "circle", "text", "tspan", "title", "desc"]);
 
 export function element(name, attributes = {}, ...children) {
   const node = svgNames.has(name)

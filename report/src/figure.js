@@ -1,6 +1,7 @@
 // A plot with its caption, the values behind it, and what saves them.
 import {element, dataTable, save} from "./dom.js";
 import {csv, fileName, number, withError} from "./format.js";
+import {written} from "./typeset.js";
 import {drawn} from "./plot.js";
 import {isDark, onTheme} from "./theme.js";
 
@@ -67,21 +68,11 @@ class Figure {
 
   describe() {
     this.spec = this.make();
-    this.writeCaption();
-  }
-
-  writeCaption() {
     const {title, caption, source} = this.spec;
-    this.title.textContent = title;
-    this.caption.replaceChildren(caption,
+    this.title.replaceChildren(...written(title));
+    this.caption.replaceChildren(...written(caption),
       source ? element("span", {class: "source"}, ` Source: ${source}.`) : "",
-      this.study ? element("span", {class: "source"}, ` ${this.study}.`) : "");
-  }
-
-  /// Of what study it is, so that the caption stands alone.
-  of(study) {
-    this.study = study;
-    this.writeCaption();
+      element("span", {class: "source"}, ` ${this.spec.study}.`));
   }
 
   draw() {
@@ -125,8 +116,8 @@ class Figure {
 
   /// Every value that is drawn: of which series, where, how large, how uncertain.
   rows() {
-    return this.spec.series.filter((one) => !one.isGuide).flatMap((one) =>
-      one.rows.map((row) => [one.name, row.label ?? row.x, row.y, row.error ?? NaN, row.low ?? NaN, row.high ?? NaN]));
+    return this.spec.series.filter((one) => !one.guide).flatMap((one) =>
+      one.rows.map((row) => [one.name, row.label || row.x, row.y, row.error ?? NaN, row.low ?? NaN, row.high ?? NaN]));
   }
 
   saveCsv() {
@@ -149,7 +140,21 @@ class Figure {
   }
 }
 
-/// `make` gives what is drawn: title, caption, source, file, x and y ({label, type}), series.
-export function figure(make) {
-  return new Figure(typeof make === "function" ? make : () => make);
+const ends = {inf: Infinity, "-inf": -Infinity};
+
+function column(series, name) {
+  return series[name]?.map((value) => value === null ? NaN : ends[value] ?? value);
+}
+
+/// A series with rows in the place of its columns.
+function inRows(series) {
+  const [y, error, low, high] = ["y", "error", "low", "high"].map((name) => column(series, name));
+  return {...series, rows: column(series, "x").map((x, i) =>
+    ({x, y: y[i], error: error?.[i], low: low?.[i], high: high?.[i], label: series.labels?.[i]}))};
+}
+
+/// A panel of the catalogue, drawn; of series with a sweep point those that `isShown`.
+export function figure(panel, {file, about}, isShown) {
+  const series = panel.series.map(inRows);
+  return new Figure(() => ({...panel, file, study: `Of ${file}: ${about}`, series: series.filter((one) => one.point === undefined || isShown(one.point))}));
 }

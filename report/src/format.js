@@ -34,7 +34,7 @@ export function withError(value, error) {
     const factor = 10 ** scale;
     return `${withError(value / factor, error / factor)}\u00d710${superscript(scale)}`;
   }
-  const place = Math.max(0, 1 - Math.floor(Math.log10(error)));
+  const place = Math.max(0, 1 - Number(error.toExponential(1).split("e")[1]));
   const inUnits = Math.round(error * 10 ** place);
   if (place === 0) return `${signed(value.toFixed(0))}(${inUnits})`;
   return `${signed(value.toFixed(place))}(${error >= 1 ? error.toFixed(place) : inUnits})`;
@@ -57,41 +57,9 @@ export function duration(seconds) {
   return seconds < 172800 ? `${number(seconds / 3600, 3)} h` : `${number(seconds / 86400, 3)} days`;
 }
 
-const spelled = {s_0_of_line: "S(0) by a line in k", s_0_of_squares: "S(0) by a line in k squared"};
-
-/// Names of the file, as their words.
+/// Names of a scene, as their words.
 export function words(name) {
-  return spelled[name] ?? name.replaceAll("_", " ");
-}
-
-const symbols = {
-  mean_height: "\u27e8Z\u27e9", bottom_fraction: "\u03a6_b", corrected_fraction: "\u27e8\u03a6_c\u27e9",
-};
-
-const controls = {sqrt_epsilon: "\u221a\u03b5", epsilon: "\u03b5", sqrt_delta: "\u221a\u03b4", gamma: "\u03b3", lambda: "\u03bb",
-                  Gamma: "\u0393", amplitude: "A"};
-
-/// Of the strengths of taps.
-export function controlSymbol(name) {
-  return controls[name] ?? words(name);
-}
-
-/// "strength of the taps gamma (diameter)".
-export function controlLabel(name, units) {
-  const symbol = controls[name];
-  return (symbol ? `strength of the taps ${symbol}` : words(name ?? "")) + (!units || units === "1" ? "" : ` (${units})`);
-}
-
-/// Which strength a table has as a quantity.
-export function controlOf(table) {
-  return Object.keys(controls).find((name) => table.has(name)) ?? "";
-}
-
-/// "mean height <Z> (diameter)".
-export function axisLabel(name, units) {
-  const symbol = symbols[name];
-  const unit = !units || units === "1" ? "" : ` (${units})`;
-  return `${words(name)}${symbol ? " " + symbol : ""}${unit}`;
+  return name.replaceAll("_", " ");
 }
 
 /// A cell of CSV.

@@ -1,13 +1,16 @@
-// What a figure's spec looks like: series of rows {x, y, error | low, high} on axes that know taps.
+// Draws a panel of the catalogue (study/figures/catalogue.hpp): series with errors on axes that know taps.
 import * as Plot from "@observablehq/plot";
 import {nice, ticks as ticksOf} from "d3-array";
 import {element} from "./dom.js";
-import {kindColour, markers} from "./colours.js";
 import {number, superscript, withError} from "./format.js";
+import {cutTo, typeset} from "./typeset.js";
 
 // Where tap 0 stands, in decades: to the left of tap 1, behind a break of the axis.
 const zeroPlace = -0.55;
 const narrowTaps = 30;  // with fewer taps the axis is linear
+const dashes = [undefined, "7,4", "2,3", "9,3,2,3"];
+const markers = ["circle", "square", "diamond", "triangle", "star", "cross", "wye"];
+const longestName = 60;
 
 const themes = {
   light: {ink: "#222222", faint: "#d8d8d8", paper: "#ffffff"},
@@ -18,7 +21,7 @@ const themes = {
 function axisOf(axis, values) {
   const finite = values.filter(Number.isFinite);
   const most = Math.max(...finite, 1);
-  if (axis.type === "tap" && most > narrowTaps) {
+  if (axis.scale === "taps" && most > narrowTaps) {
     const ticks = [], minor = [];
     const hasZero = finite.some((value) => value <= 0);
     if (hasZero) ticks.push(zeroPlace);
@@ -33,7 +36,7 @@ function axisOf(axis, values) {
       tickFormat: (place) => place === zeroPlace ? "0" : place < 4 ? String(10 ** place) : `10${superscript(place)}`,
     };
   }
-  if (axis.type === "log") {
+  if (axis.scale === "log") {
     const positive = finite.filter((value) => value > 0);
     const low = Math.min(...positive), high = Math.max(...positive);
     const margin = Math.max((high / low) ** 0.03, 1.02);
@@ -61,16 +64,16 @@ function axisOf(axis, values) {
       },
     };
   }
-  if (axis.type === "names") {
+  if (axis.scale === "names") {
     const names = axis.names;
     return {place: (value) => value, ticks: names.map((_, i) => i), minor: [],
             scale: {type: "linear", domain: [-0.5, names.length - 0.5]}, tickFormat: (i) => names[i]};
   }
   let low = Math.min(...finite), high = Math.max(...finite);
   if (!(low <= high)) [low, high] = [0, 1];
-  if (axis.zero) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
+  if (axis.from_zero) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
   if (low === high) [low, high] = low === 0 ? [0, 1] : [low - Math.abs(low) * 0.1, high + Math.abs(high) * 0.1];
-  const domain = axis.domain ?? nice(low, high, 8);
+  const domain = nice(low, high, 8);
   return {place: (value) => value, scale: {type: "linear", domain}, minor: [], ticks: ticksOf(...domain, axis.ticks ?? 6),
           tickFormat: (value) => number(value, 6)};
 }
@@ -96,8 +99,8 @@ function bounds(row) {
 /// What an axis of y has to hold. On a logarithmic one an error as large as its value would reach down without end,
 /// and a law beside the data, without a band, be of any size.
 function extentOf(series, axis) {
-  const isEven = axis.type !== "log";
-  return series.filter((one) => isEven || one.band !== false).flatMap((one) => one.rows.flatMap((row) => {
+  const isEven = axis.scale !== "log";
+  return series.filter((one) => isEven || !one.no_band).flatMap((one) => one.rows.flatMap((row) => {
     const [low, high] = bounds(row);
     return isEven || low > row.y / 10 ? [row.y, low, high] : [row.y, high];
   }));
@@ -114,45 +117,40 @@ function placed(series, xAxis, yAxis) {
     .map((one) => ({...one, rows: thinned(one.rows, xAxis.isTaps)}));
 }
 
-const breaks = (rows) => rows.filter((at) => at.row.x > 0 || !("x" in at.row));
-
 function marksOf(one, colour, xAxis, ink) {
   const marks = [];
   const along = {x: "x", y: "y"};
-  const connected = xAxis.hasBreak ? breaks(one.rows) : one.rows;
+  const connected = xAxis.hasBreak ? one.rows.filter((at) => at.row.x > 0) : one.rows;
+  const dash = dashes[one.dash % dashes.length];
   const alone = xAxis.hasBreak ? one.rows.filter((at) => at.row.x <= 0) : [];
-  const kind = one.mark ?? "line";
   const spread = one.rows.filter((at) => at.low < at.high || !Number.isFinite(at.low));
   const hasErrors = spread.length > 0;
   const bottom = (at) => Number.isFinite(at.low) ? at.low : at.y;
   const ruled = (rows) => rows.filter((at) => Number.isFinite(at.high));
-  if (kind === "line") {
-    if (hasErrors && one.band !== false) {
+  if (one.mark === "line") {
+    if (hasErrors && !one.no_band) {
       const banded = connected.filter((at) => Number.isFinite(at.low) && Number.isFinite(at.high));
       marks.push(Plot.areaY(banded, {x: "x", y1: "low", y2: "high", fill: colour, fillOpacity: 0.2}));
     }
-    marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: one.width ?? 1.8, strokeDasharray: one.dash,
-                                     strokeLinejoin: "round", clip: one.band === false, sort: one.sorted === false ? null : undefined}));
-    if (alone.length > 0 && !one.isGuide) {
+    marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: 1.8, strokeDasharray: dash, strokeLinejoin: "round",
+                                     clip: one.no_band}));
+    if (alone.length > 0 && !one.guide) {
       marks.push(Plot.ruleX(ruled(alone), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.2}));
       marks.push(Plot.dot(alone, {...along, fill: colour, r: 3.2}));
     }
     if (connected.length === 1) marks.push(Plot.dot(connected, {...along, fill: colour, r: 3.2}));
   } else {
-    if (kind !== "dots") {
+    if (one.mark !== "points") {
       marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: 1.2, strokeOpacity: 0.75,
-                                       strokeDasharray: one.dash, curve: kind === "dots+steps" ? "step-after" : "linear"}));
+                                       strokeDasharray: dash, curve: one.mark === "steps" ? "step-after" : "linear"}));
     }
     if (hasErrors) {
       marks.push(Plot.ruleX(ruled(one.rows), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.1}));
     }
     marks.push(Plot.dot(one.rows, {...along, stroke: colour, fill: one.hollow ? "none" : colour, fillOpacity: 0.85,
-                                   r: one.rows.length > 120 ? 1.8 : 3, symbol: one.symbol ?? markers[one.i % markers.length]}));
+                                   r: one.rows.length > 120 ? 1.8 : 3, symbol: markers[one.symbol % markers.length]}));
   }
-  if (one.arrows) {
-    marks.push(Plot.text(connected.slice(0, 1), {...along, text: () => one.arrows, fill: ink, dy: -10, fontSize: 11}));
-  }
-  if (one.labels) {
+  if (one.labelled) {
     marks.push(Plot.text(one.rows, {...along, text: (at) => at.row.label, dy: -9, fontSize: 10.5, fill: ink,
                                     stroke: one.paper, strokeWidth: 3}));
   }
@@ -161,38 +159,37 @@ function marksOf(one, colour, xAxis, ink) {
 
 function hoverText(at, spec) {
   const {row, series} = at;
-  const where = row.label && !series.hideLabels ? row.label : `${spec.x.short ?? spec.x.label}: ${number(row.x, 5)}`;
+  const where = row.label || `${spec.x.label}: ${number(row.x, 5)}`;
   const interval = Number.isFinite(row.low) && Number.isFinite(row.high) && !Number.isFinite(row.error)
     ? ` [${number(row.low)}, ${number(row.high)}]` : "";
-  return [series.name, where, `${spec.y.short ?? spec.y.label}: ${withError(row.y, row.error)}${interval}`]
+  return [series.name, where, `${spec.y.label}: ${withError(row.y, row.error)}${interval}`]
     .filter(Boolean).join("\n");
 }
 
 /// The names of the series above the plot, in as many lines as they need.
 function legend(series, width, colours, theme) {
-  const named = series.filter((one) => one.name && !one.noLegend);
-  if (named.length < 2 && !named.some((one) => one.alwaysNamed)) return {height: 0, node: null};
+  const named = series.filter((one) => one.name);
+  if (named.length < 2) return {height: 0, node: null};
   const group = element("g", {"aria-hidden": "true", "font-size": 12, "text-anchor": "start", class: "legend"});
   let x = 4, y = 12;
   for (const one of named) {
-    const most = Math.min(60, Math.floor((width - 36) / 6.8));
-    const text = one.name.length > most ? `${one.name.slice(0, most - 1)}\u2026` : one.name;
+    const text = cutTo(one.name, Math.min(longestName, Math.floor((width - 36) / 6.8)));
     const length = 30 + 6.6 * text.length;
     if (x > 4 && x + length > width) {
       x = 4;
       y += 18;
     }
     const colour = colours.get(one);
-    if ((one.mark ?? "line") !== "dots") {
+    if (one.mark !== "points") {
       group.append(element("line", {x1: x, x2: x + 18, y1: y - 4, y2: y - 4, stroke: colour, "stroke-width": 2.4,
-                                    "stroke-dasharray": one.dash}));
+                                    "stroke-dasharray": dashes[one.dash % dashes.length]}));
     }
-    if ((one.mark ?? "line") !== "line") {
-      group.append(element("path", {d: symbolPath(one.symbol ?? markers[series.indexOf(one) % markers.length]),
+    if (one.mark !== "line") {
+      group.append(element("path", {d: paths[markers[one.symbol % markers.length]],
                                     transform: `translate(${x + 9},${y - 4})`, fill: one.hollow ? theme.paper : colour,
                                     stroke: colour}));
     }
-    group.append(element("text", {x: x + 23, y, fill: theme.ink}, text));
+    group.append(element("text", {x: x + 23, y, fill: theme.ink}, typeset(text)));
     x += length;
   }
   return {height: y + 10, node: group};
@@ -203,26 +200,23 @@ const paths = {
   diamond: "M0,-4.4L3,0L0,4.4L-3,0z", star: "M0,-4.5L1.1,-1.4L4.3,-1.4L1.7,.6L2.6,3.6L0,1.8L-2.6,3.6L-1.7,.6L-4.3,-1.4L-1.1,-1.4z",
   cross: "M-1.3,-4h2.6v2.7h2.7v2.6h-2.7v2.7h-2.6v-2.7h-2.7v-2.6h2.7z", wye: "M-1,4v-4l-3,-2l1,-1.6l3,1.9l3,-1.9l1,1.6l-3,2v4z",
 };
-function symbolPath(symbol) {
-  return paths[symbol] ?? paths.circle;
-}
 
 /// The SVG of a spec; `still`: to be saved, without what answers to a pointer.
 export function drawn(spec, {width, dark, still = false}) {
   const theme = dark ? themes.dark : themes.light;
   const narrow = width < 420;
-  const height = Math.round(spec.height ?? Math.min(Math.max(width * 0.58, 240), 400));
+  const hasNames = spec.x.scale === "names";
+  const height = Math.round(Math.min(Math.max(width * 0.58, 240), 400));
   const all = spec.series.flatMap((one) => one.rows);
-  const xAxis = axisOf(narrow ? {...spec.x, ticks: 5} : spec.x, [...all.map((row) => row.x), ...(spec.rules ?? []).map((rule) => rule.x ?? NaN)]);
-  const yAxis = axisOf(spec.y, extentOf(spec.series, spec.y));
+  const xAxis = axisOf(narrow ? {...spec.x, ticks: 5} : spec.x, [...all.map((row) => row.x), ...spec.rules.map((rule) => rule.x ?? NaN)]);
+  const yAxis = axisOf(spec.y, [...extentOf(spec.series, spec.y), ...spec.rules.map((rule) => rule.y ?? NaN)]);
   const series = placed(spec.series, xAxis, yAxis);
-  const colours = new Map(series.map((one, i) => [one, one.ink ? theme.ink
-    : typeof one.colour === "function" ? one.colour(dark) : kindColour(one.kind ?? i, dark)]));
+  const colours = new Map(series.map((one) => [one, dark ? one.colour.dark : one.colour.light]));
   const key = legend(series, width, colours, theme);
   const marks = [];
   const grid = {stroke: theme.faint, strokeOpacity: 0.7};
   marks.push(Plot.gridX(xAxis.ticks, grid), Plot.gridY(yAxis.ticks, grid));
-  for (const rule of spec.rules ?? []) {
+  for (const rule of spec.rules) {
     const mark = "x" in rule ? Plot.ruleX([xAxis.place(rule.x)], {stroke: theme.ink, strokeOpacity: 0.45, strokeDasharray: "3,3"})
                              : Plot.ruleY([yAxis.place(rule.y)], {stroke: theme.ink, strokeOpacity: 0.45, strokeDasharray: "3,3"});
     marks.push(mark);
@@ -230,16 +224,16 @@ export function drawn(spec, {width, dark, still = false}) {
   for (const one of series) marks.push(...marksOf({...one, paper: theme.paper}, colours.get(one), xAxis, theme.ink));
   const text = {fill: theme.ink, color: theme.ink, fontSize: 12};
   marks.push(Plot.axisX(xAxis.ticks, {...text, tickFormat: xAxis.tickFormat, label: null, tickSize: 6,
-                                      tickRotate: spec.x.rotate}));
+                                      tickRotate: hasNames ? -22 : undefined}));
   marks.push(Plot.axisY(yAxis.ticks, {...text, tickFormat: yAxis.tickFormat, label: null, tickSize: 6}));
   if (xAxis.minor.length > 0) marks.push(Plot.axisX(xAxis.minor, {tickSize: 3, tickFormat: () => "", label: null, color: theme.ink}));
   if (yAxis.minor.length > 0) marks.push(Plot.axisY(yAxis.minor, {tickSize: 3, tickFormat: () => "", label: null, color: theme.ink}));
   if (!still) {
-    const rows = series.filter((one) => !one.isGuide).flatMap((one) => one.rows);
+    const rows = series.filter((one) => !one.guide).flatMap((one) => one.rows);
     marks.push(Plot.tip(rows, Plot.pointer({x: "x", y: "y", title: (at) => hoverText(at, spec), fill: theme.paper,
                                             stroke: theme.faint, textColor: theme.ink, fontSize: 12, pathFilter: null})));
   }
-  const marginBottom = spec.marginBottom ?? 44;
+  const marginBottom = hasNames ? 84 : 44;
   const marginLeft = 34 + 6.7 * Math.max(3, ...yAxis.ticks.map((value) => String(yAxis.tickFormat(value)).length));
   const svg = Plot.plot({
     width, height: height + key.height, marginLeft, marginRight: 14, marginTop: key.height + 10,
@@ -250,9 +244,9 @@ export function drawn(spec, {width, dark, still = false}) {
   if (still) svg.insertBefore(element("rect", {width: "100%", height: "100%", fill: theme.paper}), svg.firstChild);
   const total = height + key.height, middle = marginLeft + (width - marginLeft - 14) / 2;
   svg.append(
-    element("text", {x: middle, y: total - 6, "text-anchor": "middle", fill: theme.ink, "font-size": 12.5}, spec.x.label),
+    element("text", {x: middle, y: total - 6, "text-anchor": "middle", fill: theme.ink, "font-size": 12.5}, typeset(spec.x.label)),
     element("text", {transform: `translate(13,${key.height + 10 + (height - 54) / 2}) rotate(-90)`, "text-anchor": "middle",
-                     fill: theme.ink, "font-size": 12.5}, spec.y.label));
+                     fill: theme.ink, "font-size": 12.5}, typeset(spec.y.label)));
   if (xAxis.hasBreak) {
     const at = svg.scale("x").apply((zeroPlace) / 2), base = total - marginBottom;
     svg.append(element("path", {d: `M${at - 5},${base + 5}l4,-10M${at + 1},${base + 5}l4,-10`, stroke: theme.ink,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/figures/builders.hpp"
 
 namespace jostle::inline study {
@@ -41,11 +42,22 @@ FigurePanel fluctuations(const TableView& table) {
           })};
 }
 
+std::string collapse_text(const TableView& table) {
+  const double after = table.value("collapse_relative"),
+               before = table.value("unscaled_collapse_relative");
+  if (!std::isfinite(after) || !std::isfinite(before)) {
+    return " Curves whose fit does not limit the scales are missing.";
+  }
+  return finite_text(" The curves differ by {:.2g} of their values, and by {:.2g} before scaling.",
+                     after, before);
+}
+
 FigurePanel scaled_ageing(const TableView& table) {
   return {.title = fmt::format("Ageing of {}, scaled", words(table.path().back())),
           .caption =
               "A/A∞ against t/τ, with the scales of fits that share one B; the curves fall "
-              "on one where ageing is a change of scales alone.",
+              "on one where ageing is a change of scales alone." +
+              collapse_text(table),
           .source = "Philippe & Bideau 2001, eq. 6",
           .x = {"t / τ(t_W)", AxisKind::logarithmic},
           .y = {"A / A_∞(t_W)"},
@@ -151,7 +163,7 @@ void add_steady(const DrawnFile& file, Figures& into) {
                        .drawn = Drawn::joined_points,
                        .rows = rows_of(table.axis("block_length"), table.values("block_error"),
                                        table.values("block_error_error"))}}},
-          into);
+          into, table.name());
     }
   }
 }
@@ -164,7 +176,7 @@ void add_ageing(const DrawnFile& file, Figures& into) {
       for (FigurePanel& panel :
            std::vector<FigurePanel>{measured_ageing(table), fluctuations(table),
                                     scaled_ageing(table), covariance_ratio(table)}) {
-        add_panel(file, point, std::move(panel), into);
+        add_panel(file, point, std::move(panel), into, table.name());
       }
     }
   }
@@ -199,14 +211,16 @@ void add_spectra(const DrawnFile& file, Figures& into) {
                                 .drawn = Drawn::points,
                                 .rows = rows_of(table.axis("frequency"), table.values("density"),
                                                 table.values("density_error")),
-                                .symbol = panel.series.size()});
+                                .symbol = panel.series.size(),
+                                .point = point.number});
         std::vector<FigureRow> line = slope_line(table);
         if (line.empty()) continue;
         panel.series.push_back({.name = "",
                                 .colour = point.colour,
                                 .rows = std::move(line),
                                 .dash = 1,
-                                .is_guide = true});
+                                .is_guide = true,
+                                .point = point.number});
       }
     }
     add_panel(file, std::nullopt, std::move(panel), into);
@@ -225,7 +239,7 @@ void add_cost(const DrawnFile& file, Figures& into) {
                .x = {"core time of a tap (s)", AxisKind::logarithmic},
                .y = {"|bias| + error" + unit_text(table.units("bias")), AxisKind::logarithmic},
                .series = settings_of(table)},
-              into);
+              into, table.name());
   }
 }
 

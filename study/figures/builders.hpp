@@ -32,10 +32,21 @@ void add_structure(const DrawnFile& file, Figures& into);
 void add_engine(const DrawnFile& file, Figures& into);
 void add_cost(const DrawnFile& file, Figures& into);
 
-/// The figure of one panel; its name says the sweep point where the file has several and it shows
-/// one.
+/// Adds the figure of one panel; its name contains the sweep point where the file has several and
+/// it shows one. `subject`: the table that it draws, or the observable of several.
 void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
-               Figures& into);
+               Figures& into, const std::string& subject = "");
+
+/// "stretched exponential" of "kww".
+std::string law_name(const std::string& model);
+std::string law_name(const TableView& table);
+
+/// The laws fitted to one curve, without those that draw the curve of another under another name.
+struct FittedLaws {
+  std::string observable;
+  std::vector<TableView> laws;
+};
+std::vector<FittedLaws> fitted_laws(const std::vector<TableView>& made, std::uint32_t point);
 
 /// One of the values, or none.
 inline double at(const std::vector<double>& values, std::size_t i) {

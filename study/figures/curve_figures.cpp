@@ -35,7 +35,7 @@ std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string
   std::vector<FigureSeries> series;
   for (const ShownPoint& point : file.shown_points()) {
     const DrawnCurve& curve = *file.curve(point.number);
-    FigureSeries one{.name = point.label, .colour = point.colour};
+    FigureSeries one{.name = point.label, .colour = point.colour, .point = point.number};
     for (const DrawnColumn& column : curve.columns) {
       if (column.label.name != name) continue;
       const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
@@ -83,7 +83,7 @@ void add_spread(const DrawnFile& file, Figures& into) {
         {.title = "Spread of " + words(name),
          .caption =
              fmt::format("Standard deviation of {} over realizations at each tap (population "
-                         "deviation, 1/M).",
+                         "deviation, 1/M). The error of the mean is σ/√(M−1).",
                          words(name)),
          .source = "Rosato et al. 2010",
          .x = file.tap_axis(),
@@ -114,7 +114,8 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
            .colour = point.colour,
            .drawn = Drawn::joined_points,
            .rows = rows_of(as_numbers(kept.taps), kept.coordination, kept.coordination_error),
-           .symbol = series.size()});
+           .symbol = series.size(),
+           .point = point.number});
     }
   }
   if (!series.empty()) {
@@ -126,7 +127,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
                .x = file.tap_axis(),
                .y = {"mean coordination N_c"},
                .series = std::move(series)},
-              into);
+              into, "coordination");
   }
   if (!file.made_of("structure", "layers").empty()) return;  // they have n(z), with errors
   std::vector<std::uint32_t> points;
@@ -153,7 +154,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
                               .colour = colour_of(k, kept.heights.size()),
                               .rows = rows_of(heights, kept.heights[k].n)});
     }
-    add_panel(file, point, std::move(panel), into);
+    add_panel(file, point, std::move(panel), into, "heights");
   }
 }
 

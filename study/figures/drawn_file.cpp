@@ -37,27 +37,39 @@ std::string viridis(double share) {
 
 }  // namespace
 
-std::string kind_colour(std::size_t i) {
-  static constexpr const char* kinds[] = {"#0072b2", "#d55e00", "#009e73", "#b0578d",
-                                          "#b07800", "#3a93c4", "#555555", "#7a5195"};
-  return kinds[i % std::size(kinds)];
+FigureColour ink_colour() {
+  return {"#222222", "#dedede"};
 }
 
-std::string order_colour(std::size_t i, std::size_t n) {
+FigureColour kind_colour(std::size_t i) {
+  static constexpr std::array<std::array<const char*, 2>, 8> kinds{{{"#0072b2", "#56b4e9"},
+                                                                    {"#d55e00", "#f0803c"},
+                                                                    {"#009e73", "#2cc295"},
+                                                                    {"#b0578d", "#e29ac4"},
+                                                                    {"#b07800", "#e6b23c"},
+                                                                    {"#3a93c4", "#9ad4f5"},
+                                                                    {"#555555", "#b8b8b8"},
+                                                                    {"#7a5195", "#b79be0"}}};
+  return {kinds[i % kinds.size()][0], kinds[i % kinds.size()][1]};
+}
+
+FigureColour order_colour(std::size_t i, std::size_t n) {
   const double share = n < 2 ? 0.5 : static_cast<double>(i) / static_cast<double>(n - 1);
-  return viridis(0.02 + 0.78 * share);  // the lightest would not stand out from paper
+  // Without the lightest on paper and the darkest on a dark page: they would not be visible.
+  return {viridis(0.02 + 0.78 * share), viridis(0.28 + 0.68 * share)};
 }
 
-std::string colour_of(std::size_t i, std::size_t n) {
+FigureColour colour_of(std::size_t i, std::size_t n) {
   return n <= 4 ? kind_colour(i) : order_colour(i, n);
 }
 
 DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
-                     const std::vector<std::uint32_t>& points)
+                     const std::vector<std::uint32_t>& points, DrawnPoints drawn)
     : curves_(drawn_curves(file, room, points, left_out_)),
       snapshots_(drawn_snapshots(file, points, left_out_)),
-      kept_(drawn_tables(file, room, points, left_out_)),
+      kept_(study::drawn_tables(file, room, points, left_out_)),
       n_realizations_(file.study().realizations),
+      drawn_points_(drawn),
       changes_strength_(changes_strength(file)) {
   for (const StudyPoint& point : file.study().points) labels_.push_back(point.label);
   for (const DrawnTable& one : kept_) tables_.emplace_back(one);
@@ -100,7 +112,8 @@ std::string DrawnFile::label(std::uint32_t point) const {
 
 std::vector<ShownPoint> DrawnFile::shown_points() const {
   std::vector<ShownPoint> shown;
-  for (const std::size_t i : evenly_spread(curves_.size(), most_shown)) {
+  const std::size_t most = drawn_points_ == DrawnPoints::few ? most_shown : curves_.size();
+  for (const std::size_t i : evenly_spread(curves_.size(), std::max<std::size_t>(1, most))) {
     const std::uint32_t point = curves_[i].point;
     shown.push_back({point, labels_.size() > 1 ? label(point) : "", colour_of(i, curves_.size())});
   }
@@ -111,7 +124,7 @@ std::vector<std::uint32_t> DrawnFile::chosen(std::vector<std::uint32_t> numbers)
   std::ranges::sort(numbers);
   const auto repeated = std::ranges::unique(numbers);
   numbers.erase(repeated.begin(), repeated.end());
-  return spread(numbers, most_shown);
+  return drawn_points_ == DrawnPoints::few ? spread(numbers, most_shown) : numbers;
 }
 
 const DrawnCurve* DrawnFile::curve(std::uint32_t point) const {
@@ -148,6 +161,9 @@ std::string sentence(std::string text) {
 std::string unit_text(const std::string& units) {
   if (units.empty() || units == "1") return "";
   std::string text = units;
+  if (const std::size_t end = text.find(")^"); text.starts_with('(') && end != std::string::npos) {
+    text = text.substr(1, end - 1) + text.substr(end + 1);  // "(diameter)^2"
+  }
   for (const auto& [power, sign] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
     for (std::size_t at = 0; (at = text.find(power)) != std::string::npos;) {
       text.replace(at, 2, sign);

@@ -14,18 +14,22 @@ namespace jostle::inline study {
 /// A sweep point in a figure with several.
 struct ShownPoint {
   std::uint32_t number;
-  std::string label;   // empty where the file has but one
-  std::string colour;  // the same in every figure
+  std::string label;    // empty where the file has but one
+  FigureColour colour;  // the same in every figure
 };
 
-inline constexpr std::size_t most_shown = 8;  // sweep points in one figure
+inline constexpr std::size_t most_shown = 8;  // sweep points in one figure on paper
+
+/// Sweep points that are drawn: of more than most_shown so many, evenly spread; or all, which a
+/// page switches on and off.
+enum class DrawnPoints { few, all };
 
 /// One results file, as far as it is drawn: a chapter of the page.
 class DrawnFile {
  public:
-  /// `points`: those that are wanted; none: of more than eight, eight evenly spread.
+  /// `points`: the sweep points that are wanted; none: all that there is room for.
   DrawnFile(const ResultsFile& file, const DrawnRoom& room,
-            const std::vector<std::uint32_t>& points);
+            const std::vector<std::uint32_t>& points, DrawnPoints drawn);
   /// Tables that no results file holds, as fits of a measured curve.
   explicit DrawnFile(std::vector<DrawnTable> tables);
   DrawnFile(const DrawnFile&) = delete;  // its tables look into it
@@ -34,6 +38,7 @@ class DrawnFile {
   const std::vector<DrawnCurve>& curves() const { return curves_; }
   const std::vector<DrawnSnapshots>& snapshots() const { return snapshots_; }
   const std::vector<TableView>& tables() const { return tables_; }
+  const std::vector<DrawnTable>& drawn_tables() const { return kept_; }
   /// Tables of a kind, as "ageing" of "analysis", but for refused ones; in the order of the file.
   std::vector<TableView> made_of(const std::string& group, const std::string& kind) const;
   /// The same of "fits", whose first word is an observable.
@@ -49,7 +54,9 @@ class DrawnFile {
 
   std::uint32_t n_realizations() const { return n_realizations_; }
   /// Whether there are more sweep points than figures show.
-  bool has_other_points() const { return curves_.size() > most_shown; }
+  bool has_other_points() const {
+    return drawn_points_ == DrawnPoints::few && curves_.size() > most_shown;
+  }
   std::size_t n_points() const { return labels_.size(); }
   /// What a sweep point is called: its swept values; of a study of cost its setting.
   std::string label(std::uint32_t point) const;
@@ -64,6 +71,7 @@ class DrawnFile {
   std::vector<DrawnTable> kept_;
   std::vector<TableView> tables_;
   std::uint32_t n_realizations_ = 0;
+  DrawnPoints drawn_points_ = DrawnPoints::few;
   bool changes_strength_ = false;
 };
 

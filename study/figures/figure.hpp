@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -25,7 +26,7 @@ struct FigureAxis {
   std::vector<std::string> names{};  // of AxisKind::names, at 0, 1, 2, ...
 };
 
-/// A value, with its standard error or the ends of its interval; NaN where there is none.
+/// A value with its standard error or the ends of its interval; NaN where there is none.
 struct FigureRow {
   double x = no_value, y = no_value;
   double error = no_value;
@@ -36,16 +37,21 @@ struct FigureRow {
 /// `stepped_points`: each value holds up to the next.
 enum class Drawn { line, points, joined_points, stepped_points };
 
-/// "#rrggbb", of those that people with any colour vision tell apart: Okabe & Ito's for the i-th
-/// of several kinds, viridis for the i-th of n that have an order.
-std::string kind_colour(std::size_t i);
-std::string order_colour(std::size_t i, std::size_t n);
-/// Of few that have an order, those of kinds.
-std::string colour_of(std::size_t i, std::size_t n);
+/// A colour on white paper and the one that replaces it on a dark page, both "#rrggbb". People with
+/// any colour vision can distinguish the colours: Okabe & Ito's for the i-th of several kinds,
+/// viridis for the i-th of n that have an order.
+struct FigureColour {
+  std::string light{}, dark{};
+};
+FigureColour ink_colour();
+FigureColour kind_colour(std::size_t i);
+FigureColour order_colour(std::size_t i, std::size_t n);
+/// Few that have an order get the colours of kinds.
+FigureColour colour_of(std::size_t i, std::size_t n);
 
 struct FigureSeries {
   std::string name{};  // empty: not in the key
-  std::string colour{};
+  FigureColour colour{};
   Drawn drawn = Drawn::line;
   std::vector<FigureRow> rows{};
   std::size_t dash = 0;  // 0: solid
@@ -54,6 +60,7 @@ struct FigureSeries {
   bool has_band = true;   // of the errors of a line
   bool is_guide = false;  // a line for the eye: no value of the file
   bool has_labels = false;
+  std::optional<std::uint32_t> point{};  // the sweep point, where a figure has several
 };
 
 /// A dashed line at a place of one axis.
@@ -72,7 +79,10 @@ struct FigurePanel {
 /// One panel, or several over one x axis.
 struct Figure {
   std::string name;  // of its files: lower-case letters, digits and '-'
-  std::vector<FigurePanel> panels;
+  std::vector<FigurePanel> panels{};
+  std::string section{};                 // of the page: "compaction", "ageing", "voronoi", ...
+  std::optional<std::uint32_t> point{};  // where it shows one sweep point
+  std::string subject{};                 // the table that it draws, or the observable of several
 };
 
 }  // namespace jostle::inline study

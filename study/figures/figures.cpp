@@ -51,13 +51,13 @@ std::string file_word(const std::string& text) {
 }
 
 void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
-               Figures& into) {
+               Figures& into, const std::string& subject) {
   if (!has_values(panel)) return;
   const std::string number =
       point && file.n_points() > 1 ? fmt::format("-point-{:04}", *point) : "";
   const std::string name = file_word(panel.title) + number;
   if (!number.empty()) panel.caption += fmt::format(" Sweep point {}.", file.label(*point));
-  into.push_back({name, {}});
+  into.push_back({.name = name, .point = point, .subject = subject});
   into.back().panels.push_back(std::move(panel));
 }
 
@@ -71,15 +71,41 @@ std::vector<std::uint32_t> points_of(const DrawnFile& file, const std::vector<Ta
 
 DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t>& points,
                         std::size_t n_files) {
-  const DrawnFile drawn(file, DrawnRoom::of_one_in(n_files), points);
+  const DrawnFile drawn(file, DrawnRoom::of_one_in(n_files), points, DrawnPoints::few);
+  return {figures_of(drawn), drawn.left_out(), drawn.has_other_points()};
+}
+
+std::vector<Figure> figures_of(const DrawnFile& file) {
+  struct Section {
+    const char* name;
+    void (*add)(const DrawnFile&, Figures&);
+  };
+  constexpr Section sections[] = {{"compaction", add_compaction},
+                                  {"spread", add_spread},
+                                  {"fits", add_fits},
+                                  {"steady", add_steady},
+                                  {"ageing", add_ageing},
+                                  {"spectra", add_spectra},
+                                  {"hysteresis", add_hysteresis},
+                                  {"sweep", add_sweeps},
+                                  {"ordering", add_ordering},
+                                  {"motion", add_motion},
+                                  {"volumes", add_volumes},
+                                  {"memory", add_memory},
+                                  {"snapshots", add_snapshots},
+                                  {"structure", add_structure},
+                                  {"engine", add_engine},
+                                  {"cost", add_cost}};
   Figures figures;
-  for (const auto add : {add_compaction, add_spread, add_fits, add_steady, add_ageing, add_spectra,
-                         add_hysteresis, add_sweeps, add_ordering, add_motion, add_volumes,
-                         add_memory, add_snapshots, add_structure, add_engine, add_cost}) {
-    add(drawn, figures);
+  for (const Section& section : sections) {
+    const std::size_t n_before = figures.size();
+    section.add(file, figures);
+    for (std::size_t i = n_before; i < figures.size(); ++i) {
+      if (figures[i].section.empty()) figures[i].section = section.name;
+    }
   }
   name_apart(figures);
-  return {std::move(figures), drawn.left_out(), drawn.has_other_points()};
+  return figures;
 }
 
 DrawnFigures figures_of(const FittedCurve& measured) {
@@ -95,11 +121,7 @@ DrawnFigures figures_of(const FittedCurve& measured) {
                                                       : "values");
     tables.push_back({"fits", thinned(table, thinning)});
   }
-  const DrawnFile drawn(std::move(tables));
-  Figures figures;
-  add_fits(drawn, figures);
-  name_apart(figures);
-  return {std::move(figures), {}, false};
+  return {figures_of(DrawnFile(std::move(tables))), {}, false};
 }
 
 }  // namespace jostle::inline study

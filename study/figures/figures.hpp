@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "results/results_file.hpp"
+#include "study/figures/drawn_file.hpp"
 #include "study/figures/figure.hpp"
 #include "study/tables/fits.hpp"
 
@@ -24,6 +25,9 @@ struct DrawnFigures {
 };
 DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t>& points,
                         std::size_t n_files);
+
+/// The figures of what is drawn of a file: the catalogue. Each says which section it belongs to.
+std::vector<Figure> figures_of(const DrawnFile& file);
 
 /// The figures of the fits of a measured curve, which no results file holds: data with the fitted
 /// laws, and residuals.

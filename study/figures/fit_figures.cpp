@@ -9,16 +9,6 @@
 namespace jostle::inline study {
 namespace {
 
-std::string law_name(const TableView& table) {
-  static const std::map<std::string, std::string> names{
-      {"inverse_log", "inverse logarithm"},
-      {"inverse_log_height", "inverse logarithm, eq. 4"},
-      {"two_exponentials", "two exponentials"},
-      {"kww", "stretched exponential"}};
-  const auto found = names.find(table.path().back());
-  return found == names.end() ? words(table.path().back()) : found->second;
-}
-
 /// Measured t may have any unit; wide ranges are those of relaxation.
 FigureAxis t_axis(const TableView& table) {
   if (table.note("measured").empty()) return {"taps t", AxisKind::taps};
@@ -48,14 +38,16 @@ std::string data_caption(const TableView& table, const std::string& range) {
 FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& observable) {
   const TableView& first = laws.front();
   std::string range = first.note("range");
-  std::ranges::replace(range, ':', '-');
+  if (const std::size_t colon = range.find(':'); colon != std::string::npos) {
+    range.replace(colon, 1, " to ");
+  }
   FigurePanel panel{
       .title = "Fits of " + words(observable),
       .caption = data_caption(first, range),
       .x = t_axis(first),
       .y = {axis_label(observable, "")},
       .series = {{.name = "data",
-                  .colour = "#222222",
+                  .colour = ink_colour(),
                   .drawn = Drawn::points,
                   .rows = rows_of(first.axis("t"), first.values("x"), first.values("x_error"))}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {
@@ -76,9 +68,12 @@ FigurePanel residual_panel(const std::vector<TableView>& laws, const std::string
       std::ranges::any_of(laws.front().values("x_error"), [](double error) { return error > 0; });
   FigurePanel panel{
       .title = "Residuals of " + words(observable),
-      .caption = scaled ? "Data less law, in standard errors of the mean." : "Data less law.",
+      .caption =
+          scaled ? "Data minus law, in standard errors of the mean. Neighbouring points are not "
+                   "independent: a trend matters, a single point does not."
+                 : "Data minus law.",
       .x = t_axis(laws.front()),
-      .y = {scaled ? "residual / error" : "residual"},
+      .y = {scaled ? "(data − law) / error" : "data − law"},
       .rules = {{.y = 0}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {
     std::vector<double> residuals = laws[i].values("x");
@@ -98,27 +93,44 @@ FigurePanel residual_panel(const std::vector<TableView>& laws, const std::string
 
 }  // namespace
 
+std::string law_name(const std::string& model) {
+  static const std::map<std::string, std::string> names{
+      {"inverse_log", "inverse logarithm"},
+      {"inverse_log_height", "inverse logarithm, eq. 4"},
+      {"two_exponentials", "two exponentials"},
+      {"kww", "stretched exponential"}};
+  const auto found = names.find(model);
+  return found == names.end() ? words(model) : found->second;
+}
+
+std::string law_name(const TableView& table) {
+  return law_name(table.path().back());
+}
+
+std::vector<FittedLaws> fitted_laws(const std::vector<TableView>& made, std::uint32_t point) {
+  std::vector<FittedLaws> curves;
+  for (const TableView& table : made) {
+    if (table.point() != point) continue;
+    const std::string& observable = table.path().front();
+    auto curve = std::ranges::find(curves, observable, &FittedLaws::observable);
+    if (curve == curves.end()) curve = curves.insert(curve, {observable, {}});
+    const bool is_known = std::ranges::any_of(curve->laws, [&](const TableView& law) {
+      return law.note("restated_model") == table.path().back();  // the same curve
+    });
+    if (!is_known) curve->laws.push_back(table);
+  }
+  return curves;
+}
+
 void add_fits(const DrawnFile& file, Figures& into) {
   std::vector<TableView> made;
   for (const TableView& table : file.made_of("fits")) {
     if (table.has("fitted")) made.push_back(table);
   }
   for (const std::uint32_t point : points_of(file, made)) {
-    std::vector<std::string> observables;
-    std::map<std::string, std::vector<TableView>> laws;
-    for (const TableView& table : made) {
-      if (table.point() != point) continue;
-      const std::string& observable = table.path().front();
-      if (!laws.contains(observable)) observables.push_back(observable);
-      const bool known = std::ranges::any_of(laws[observable], [&](const TableView& law) {
-        return law.note("restated_model") == table.path().back();  // the same curve
-      });
-      if (known) continue;
-      laws[observable].push_back(table);
-    }
-    for (const std::string& observable : observables) {
-      add_panel(file, point, data_panel(laws[observable], observable), into);
-      into.back().panels.push_back(residual_panel(laws[observable], observable));
+    for (const FittedLaws& curve : fitted_laws(made, point)) {
+      add_panel(file, point, data_panel(curve.laws, curve.observable), into, curve.observable);
+      into.back().panels.push_back(residual_panel(curve.laws, curve.observable));
     }
   }
 }

@@ -103,7 +103,8 @@ void add_ordering(const DrawnFile& file, Figures& into) {
         FigureSeries one{.name = point.label,
                          .colour = point.colour,
                          .drawn = Drawn::stepped_points,
-                         .symbol = panel.series.size()};
+                         .symbol = panel.series.size(),
+                         .point = point.number};
         const std::vector<double> taps = table.axis("tap"), share = table.values("survival"),
                                   low = table.values("survival_low_95"),
                                   high = table.values("survival_high_95");
@@ -119,14 +120,14 @@ void add_ordering(const DrawnFile& file, Figures& into) {
 
 void add_volumes(const DrawnFile& file, Figures& into) {
   for (const TableView& table : file.made_of("analysis", "volumes")) {
-    add_panel(file, std::nullopt, compactivity(table), into);
-    add_panel(file, std::nullopt, variances(table), into);
+    add_panel(file, std::nullopt, compactivity(table), into, table.name());
+    add_panel(file, std::nullopt, variances(table), into, table.name());
   }
 }
 
 void add_memory(const DrawnFile& file, Figures& into) {
   for (const TableView& table : file.made_of("analysis", "memory"))
-    add_panel(file, std::nullopt, response(table), into);
+    add_panel(file, std::nullopt, response(table), into, table.name());
 }
 
 }  // namespace jostle::inline study

@@ -292,7 +292,7 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
     panel.series.push_back(std::move(one));
   }
   FigureSeries published{.name = "published",
-                         .colour = "#222222",
+                         .colour = ink_colour(),
                          .drawn = Drawn::points,
                          .symbol = 4,
                          .hollow = true};
@@ -309,6 +309,7 @@ void add_structure(const DrawnFile& file, Figures& into) {
   for (const Part& part : parts()) {
     const std::vector<TableView> made = file.made_of("structure", part.name);
     for (const std::uint32_t point : points_of(file, made)) {
+      const std::size_t n_before = into.size();
       const auto own = std::ranges::find_if(
           made, [&](const TableView& table) { return table.point() == point; });
       if (own == made.end()) continue;
@@ -318,6 +319,7 @@ void add_structure(const DrawnFile& file, Figures& into) {
       }
       for (const PartPlot& plot : part.plots) add_plot(file, *own, plot, into);
       add_trends(file, *own, part, into);
+      for (std::size_t i = n_before; i < into.size(); ++i) into[i].section = part.name;
     }
   }
 }

@@ -68,7 +68,7 @@ void add_hysteresis(const DrawnFile& file, Figures& into) {
   for (const std::uint32_t point : points_of(file, made)) {
     for (const TableView& table : made) {
       if (table.point() != point || table.axis("step").empty()) continue;
-      add_panel(file, point, loop_panel(table), into);
+      add_panel(file, point, loop_panel(table), into, table.name());
     }
   }
 }
@@ -103,7 +103,7 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
         if (std::isfinite(place)) panel.rules.push_back({.x = place});
       }
     }
-    add_panel(file, std::nullopt, std::move(panel), into);
+    add_panel(file, std::nullopt, std::move(panel), into, table.name());
   }
 }
 

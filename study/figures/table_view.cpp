@@ -66,6 +66,12 @@ const Quantity* TableView::either(const std::string& name) const {
   return quantity != nullptr ? quantity : found_axis(name);
 }
 
+std::vector<std::string> TableView::quantities() const {
+  std::vector<std::string> names;
+  for (const Quantity& one : drawn_->table.quantities) names.push_back(one.name);
+  return names;
+}
+
 bool TableView::has_axis(const std::string& name) const {
   return found_axis(name) != nullptr;
 }

@@ -26,6 +26,7 @@ class TableView {
   /// What was asked for, or else the last word of its path.
   std::string observable() const;
 
+  std::vector<std::string> quantities() const;  // their names
   bool has(const std::string& quantity) const { return found(quantity) != nullptr; }
   bool has_axis(const std::string& name) const;
   std::vector<double> axis(const std::string& name) const;

@@ -1,63 +1,50 @@
 #include "study/report/page_data.hpp"
 
-#include "results/file/layout.hpp"
+#include <algorithm>
+
+#include "study/figures/catalogue.hpp"
+#include "study/figures/figures.hpp"
 #include "study/report/page_json.hpp"
 #include "study/report/page_packings.hpp"
 #include "study/report/page_run.hpp"
+#include "study/report/sections/sections.hpp"
+#include "study/report/thinning.hpp"
 
 namespace jostle::inline study {
 namespace {
 
-Json page_curve(const DrawnCurve& curve) {
-  Json columns = Json::array();
-  for (const DrawnColumn& column : curve.columns) {
-    columns.push_back({{"name", page_text(column.label.name)},
-                       {"kind", column.is_observable ? "observable" : "engine"},
-                       {"shown", shown_names[static_cast<std::size_t>(column.label.shown)]},
-                       {"units", page_text(column.label.units)},
-                       {"long_name", page_text(column.label.long_name)},
-                       {"source", page_text(column.label.source)},
-                       {"mean", page_numbers(column.mean)},
-                       {"error", page_numbers(column.error)},
-                       {"sigma", page_numbers(column.sigma)},
-                       {"count", column.count}});
+/// The sweep points of curves that show several; the page switches them on and off.
+Json curve_points(const DrawnFile& drawn) {
+  Json points = Json::array();
+  const std::vector<ShownPoint> all = drawn.shown_points();
+  const std::vector<std::size_t> usual = evenly_spread(all.size(), most_shown);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    points.push_back({{"number", all[i].number},
+                      {"label", page_text(drawn.label(all[i].number))},
+                      {"colour", colour_json(all[i].colour)},
+                      {"shown", std::ranges::find(usual, i) != usual.end()}});
   }
-  return {{"point", curve.point}, {"taps", curve.taps}, {"columns", columns}};
-}
-
-Json page_snapshots(const DrawnSnapshots& kept) {
-  Json heights = Json::array();
-  for (const DrawnHeights& one : kept.heights) {
-    heights.push_back({{"tap", one.tap}, {"n", page_numbers(one.n)}});
-  }
-  return {{"point", kept.point},
-          {"taps", kept.taps},
-          {"coordination", page_numbers(kept.coordination)},
-          {"coordination_error", page_numbers(kept.coordination_error)},
-          {"bin_width", kept.bin_width},
-          {"heights", heights}};
+  return points;
 }
 
 }  // namespace
 
 Json page_data(const ResultsFile& file, const std::string& digest, const PageRoom& room,
                int threads) {
-  std::vector<std::string> left_out;
-  Json data = page_run(file, digest, left_out);
-  Json curves = Json::array(), snapshots = Json::array(), tables = Json::array();
-  for (const DrawnCurve& one : drawn_curves(file, room.drawn, {}, left_out)) {
-    curves.push_back(page_curve(one));
+  const DrawnFile drawn(file, room.drawn, {}, DrawnPoints::all);
+  std::vector<std::string> left_out = drawn.left_out();
+  Json data = page_run(file, drawn, digest, left_out);
+  const std::vector<Figure> figures = figures_of(drawn);
+  Json described = Json::array();
+  for (const Figure& figure : figures) {
+    described.push_back(figure_json(figure, "", Digits::seven));
   }
-  for (const DrawnSnapshots& one : drawn_snapshots(file, {}, left_out)) {
-    snapshots.push_back(page_snapshots(one));
-  }
-  for (const DrawnTable& one : drawn_tables(file, room.drawn, {}, left_out)) {
-    tables.push_back(page_table(one.table, one.group));
-  }
-  data["curves"] = curves;
-  data["snapshots"] = snapshots;
-  data["tables"] = tables;
+  data["curve_points"] = curve_points(drawn);
+  data["figures"] = described;
   data["packings"] = page_packings(file, room.packing_bytes, threads, left_out);
+  data["sections"] = page_sections(drawn, figures,
+                                   {.has_grains = common_unit(file.study()) != "trials",
+                                    .has_packings = !data["packings"].empty()});
   Json texts = Json::array();
   for (const std::string& text : left_out) texts.push_back(page_text(text));
   data["left_out"] = texts;

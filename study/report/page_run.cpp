@@ -60,7 +60,7 @@ Json page_provenance(const Provenance& by) {
           {"started", page_text(by.started)}};
 }
 
-Json page_points(const Study& study, const std::vector<Tally>& tallies) {
+Json page_points(const Study& study, const DrawnFile& drawn, const std::vector<Tally>& tallies) {
   Json points = Json::array();
   for (const std::size_t p : evenly_spread(study.points.size(), most_named_points)) {
     const StudyPoint& point = study.points[p];
@@ -69,7 +69,7 @@ Json page_points(const Study& study, const std::vector<Tally>& tallies) {
       values[page_text(pointer).text()] = page_text(value);
     }
     points.push_back({{"number", p},
-                      {"label", page_text(point.label)},
+                      {"label", page_text(drawn.label(static_cast<std::uint32_t>(p)))},
                       {"values", values},
                       {"spheres", point.n_spheres},
                       {"taps", point.taps},
@@ -97,7 +97,7 @@ Json page_scene(const ResultsFile& file, std::vector<std::string>& left_out) {
 
 }  // namespace
 
-Json page_run(const ResultsFile& file, const std::string& digest,
+Json page_run(const ResultsFile& file, const DrawnFile& drawn, const std::string& digest,
               std::vector<std::string>& left_out) {
   const Study& study = file.study();
   std::vector<Tally> tallies(study.points.size());
@@ -130,7 +130,7 @@ Json page_run(const ResultsFile& file, const std::string& digest,
           {"failures", failures},
           {"processes", processes},
           {"n_points", study.points.size()},
-          {"points", page_points(study, tallies)},
+          {"points", page_points(study, drawn, tallies)},
           {"scene", page_scene(file, left_out)}};
 }
 

@@ -1,10 +1,13 @@
 """The figures of jostle report --figures: which there are, that their data are those of the file to
 the digit, what hostile texts do in them, and what they may be written to."""
 
+import csv
+import json
 import os
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
 
@@ -13,9 +16,10 @@ import numpy
 
 from crafted_test import SEAL, sealed
 from report_test import EVERYTHING, HOSTILE
-from support import BAD_INPUT, BROKEN, SHIM, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, SHIM, SOURCE, TINY, Case, changed
 
-KINDS = ("dat", "gp", "svg", "pdf")
+PYTHON = sys.executable  # has what the tests need
+KINDS = ("csv", "json", "py", "svg", "pdf")
 ALL_POINTS = {
     "mean-height", "bottom-fraction", "spread-of-mean-height", "spread-of-bottom-fraction",
     "sweeps", "acceptance", "spectrum-of-mean-height", "mean-height-against-strength-of-the-taps",
@@ -28,20 +32,23 @@ ONE_POINT = {
     "fcc-surroundings-by-height", "free-volumes", "local-packing-fractions", "faces-of-the-cells"}
 
 
-def blocks(text):
-    """The series of a .dat: [(name, names of columns, rows of texts)]."""
-    found = []
-    for block in text.split("\n\n")[1:]:
-        lines = block.strip("\n").split("\n")
-        if len(lines) < 2:
-            continue
-        found.append((lines[0].removeprefix("# "), lines[1].removeprefix("# ").split("\t"),
-                      [line.split("\t") for line in lines[2:]]))
-    return found
+def series_of(path):
+    """The series of a .csv: [(name, names of columns, rows of texts)]; of several panels one after another."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    found = {}
+    for panel, name, *cells in rows:
+        found.setdefault((panel, name), []).append(cells)
+    return [(name, head[2:], cells) for (_, name), cells in found.items()]
 
 
 def column(rows, k):
-    return numpy.array([float(row[k]) for row in rows])
+    return numpy.array([float(row[k] or "nan") for row in rows])
+
+
+def shown_text(path):
+    """What an SVG shows, without the pieces that it is set in."""
+    return "".join(xml.etree.ElementTree.parse(path).getroot().itertext())
 
 
 class Figures(Case):
@@ -53,7 +60,7 @@ class Figures(Case):
         return {path.stem for path in (self.folder / folder).iterdir()}
 
     def data(self, name, folder="figures"):
-        return blocks((self.folder / folder / f"{name}.dat").read_text())
+        return series_of(self.folder / folder / f"{name}.csv")
 
     def assert_drawn(self, folder="figures", width=86):
         for name in self.names(folder):
@@ -62,9 +69,9 @@ class Figures(Case):
                 files = {kind: self.folder / folder / f"{name}.{kind}" for kind in KINDS}
                 root = xml.etree.ElementTree.parse(files["svg"]).getroot()
                 self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
-                self.assertAlmostEqual(float(root.get("width")) / 96 * 25.4, width, delta=0.2)
+                self.assertAlmostEqual(float(root.get("width").removesuffix("pt")) / 72 * 25.4, width, delta=0.2)
                 tags = {element.tag.split("}")[1] for element in root.iter()}
-                self.assertFalse(tags & {"script", "img", "image", "a", "foreignObject", "b"})
+                self.assertFalse(tags & {"script", "img", "image", "a", "foreignObject", "b", "iframe"})
                 self.assertTrue(files["pdf"].read_bytes().startswith(b"%PDF"))
         self.assertEqual({path.suffix[1:] for path in (self.folder / folder).iterdir()}, set(KINDS))
 
@@ -81,6 +88,7 @@ class Everything(Figures):
                     look(file)
         self.one_sweep_point_and_two_columns()
         self.a_script_draws_by_itself()
+        self.the_catalogue_is_the_same()
 
     def all_is_drawn(self, text):
         names = self.names()
@@ -92,14 +100,15 @@ class Everything(Figures):
         self.assert_drawn()
 
     def curves(self, file):
-        first = (self.folder / "figures/mean-height.dat").read_text().split("\n")[0]
-        self.assertRegex(first, r"^# Of everything\.h5: 48 spheres in .* diameters; 3 realizations a sweep "
+        figure = json.loads((self.folder / "figures/mean-height.json").read_text())
+        self.assertRegex(figure["origin"], r"^Of everything\.h5: 48 spheres in .* diameters; 3 realizations a sweep "
                                 r"point\. Drawn by jostle ")
         series = self.data("mean-height")
         self.assertEqual([name for name, _, _ in series],
                          ["dilate = 0.02", "dilate = 0.05", "dilate = 0.1"])
         for point, (_, columns, rows) in enumerate(series):
-            self.assertEqual(columns, ["taps t", "mean height ⟨Z⟩ (diameter)", "standard error"])
+            self.assertEqual(columns, ["taps t", "mean height ⟨Z⟩ (diameter)", "standard error",
+                                       "low", "high", "label"])
             stored = file[f"ensemble/point_{point:04}"]
             taps = column(rows, 0).astype(int)
             self.assertEqual((taps[0], taps[-1]), (0, 60))
@@ -149,11 +158,24 @@ class Everything(Figures):
     def a_script_draws_by_itself(self):
         alone = self.folder / "alone"
         alone.mkdir()
-        for kind in ("dat", "gp"):
+        for kind in ("json", "py"):
             shutil.copy(self.folder / "figures" / f"fits-of-bottom-fraction-point-0000.{kind}", alone)
-        subprocess.run(["gnuplot", "fits-of-bottom-fraction-point-0000.gp"], cwd=alone, check=True)
-        name = "fits-of-bottom-fraction-point-0000.svg"
-        self.assertEqual((alone / name).read_bytes(), (self.folder / "figures" / name).read_bytes())
+        subprocess.run([PYTHON, "fits-of-bottom-fraction-point-0000.py"], cwd=alone, check=True,
+                       env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
+        for kind in ("svg", "pdf"):
+            name = f"fits-of-bottom-fraction-point-0000.{kind}"
+            self.assertEqual((alone / name).read_bytes(), (self.folder / "figures" / name).read_bytes())
+
+    def the_catalogue_is_the_same(self):
+        self.jostle("report", "everything.h5", "--catalogue", "figures.json")
+        catalogue = json.loads((self.folder / "figures.json").read_text())
+        self.assertEqual(catalogue["format"], 1)
+        described = {figure["name"]: figure for figure in catalogue["figures"]}
+        self.assertEqual(set(described), self.names())
+        for name, figure in described.items():
+            self.assertEqual(figure, json.loads((self.folder / f"figures/{name}.json").read_text()))
+        done = self.jostle("report", "everything.h5", "--catalogue", "figures.json", expect=BAD_INPUT)
+        self.assertIn("exists", done.stderr)
 
 
 class Output(Figures):
@@ -178,13 +200,13 @@ class Output(Figures):
 
     def test_nothing_is_overwritten_without_force(self):
         self.figures("tiny.h5")
-        script = self.folder / "figures/mean-height.gp"
+        script = self.folder / "figures/mean-height.py"
         script.write_text("my own\n")
         done = self.figures("tiny.h5", expect=BAD_INPUT)
         self.assertIn("exists and is kept", done.stderr)
         self.assertEqual(script.read_text(), "my own\n")
         self.figures("tiny.h5", "--force")
-        self.assertIn("mean-height.svg", script.read_text())
+        self.assertIn("mean-height.json", script.read_text())
         (self.folder / "figures/sweeps.pdf").unlink()
         (self.folder / "figures/sweeps.pdf").symlink_to(self.folder / "tiny.h5")
         results = (self.folder / "tiny.h5").read_bytes()
@@ -213,35 +235,41 @@ class Output(Figures):
         self.jostle("report", "tiny.h5", "--figures", "full", environment=full, expect=BROKEN)
         self.assertEqual(self.files(), sorted([*before, "full", "full/own.txt"]))
 
-    def test_without_gnuplot_data_and_scripts_are_written(self):
-        done = self.figures("tiny.h5", environment={"PATH": str(self.folder)}, expect=BROKEN)
-        self.assertIn("apt-get install gnuplot-nox", done.stderr)
-        self.assertEqual({path.suffix for path in (self.folder / "figures").iterdir()}, {".dat", ".gp"})
+    def test_without_matplotlib_data_and_scripts_are_written(self):
+        (self.folder / "without/matplotlib").mkdir(parents=True)
+        (self.folder / "without/matplotlib/__init__.py").write_text(
+            "raise ModuleNotFoundError(\"No module named 'matplotlib'\")\n")
+        done = self.figures("tiny.h5", environment={"PYTHONPATH": str(self.folder / "without")}, expect=BROKEN)
+        self.assertIn("matplotlib", done.stderr)
+        self.assertIn("apt-get install python3-matplotlib", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertEqual({path.suffix for path in (self.folder / "figures").iterdir()}, {".csv", ".json", ".py"})
         self.assertEqual(len(self.names()), 6)
 
-    def test_a_gnuplot_that_fails_is_told_of(self):
-        fake = self.folder / "gnuplot"
-        fake.write_text("#!/bin/sh\necho 'unknown terminal' >&2\nexit 1\n")
+    def test_a_python_that_fails_is_reported(self):
+        fake = self.folder / "python3"
+        fake.write_text("#!/bin/sh\necho 'no room for pictures' >&2\nexit 1\n")
         fake.chmod(0o755)
         done = self.figures("tiny.h5", environment={"PATH": f"{self.folder}:{os.environ['PATH']}"},
                             expect=BROKEN)
-        self.assertIn("unknown terminal", done.stderr)
-        self.assertIn("pdfcairo", done.stderr)
+        self.assertIn("no room for pictures", done.stderr)
 
     def test_settings_of_the_user_change_nothing(self):
         self.figures("tiny.h5")
-        (self.folder / ".gnuplot").write_text("set title 'mine'\n")
-        self.figures("tiny.h5", folder="again", environment={"HOME": str(self.folder)})
+        (self.folder / "matplotlibrc").write_text("axes.facecolor: red\nfont.size: 40\nbackend: tkagg\n")
+        self.figures("tiny.h5", folder="again", environment={"MPLCONFIGDIR": str(self.folder),
+                                                             "MATPLOTLIBRC": str(self.folder)})
         for name in self.names():
             self.assertEqual((self.folder / f"figures/{name}.svg").read_bytes(),
                              (self.folder / f"again/{name}.svg").read_bytes())
 
 
 class Hostile(Figures):
-    LABEL = HOSTILE + "'\\n$x `touch /tmp/jostle-hostile` @HOME {/=99 A}_2^3 %d\\"
+    LABEL = HOSTILE + "'\\n$x^2$ \\frac{1}{2} `touch /tmp/jostle-hostile` @HOME {/=99 A}_2^3 %d\"\"\"\\"
 
     def test_texts_of_a_forged_file_are_texts(self):
-        self.write(changed(EVERYTHING, sweep={"/protocol/0/tap/dilate": [0.02, 0.05]}))
+        self.write(changed(EVERYTHING, sweep={"/protocol/0/tap/dilate": [0.02, 0.05]},
+                           structure={"profile": {}, "layers": {}}))
         self.run_scene("-o", "forged.h5")
         path = self.folder / "forged.h5"
         path.write_bytes(path.read_bytes()[:-SEAL])
@@ -261,14 +289,14 @@ class Hostile(Figures):
         self.figures("a`b'$(x)<b>.h5")
         self.assert_drawn()
         self.assertFalse(os.path.exists("/tmp/jostle-hostile"))
-        self.assertEqual(len(self.data("mean-height")), 2)
-        words = "".join(xml.etree.ElementTree.parse(self.folder / "figures/mean-height.svg").getroot()
-                        .itertext())
-        self.assertIn('</script><script>document', words)
-        for script in (self.folder / "figures").glob("*.gp"):
-            outside = re.sub(r"'(?:[^'\n]|'')*'", "''", script.read_text())
-            code = [line for line in outside.split("\n") if not line.startswith("#")]
-            self.assertNotRegex("\n".join(code), r"script|touch|`|HOME")
+        figure = json.loads((self.folder / "figures/mean-height.json").read_text())
+        self.assertEqual(len(figure["panels"][0]["series"]), 2)
+        self.assertIn('</script><script>document', shown_text(self.folder / "figures/mean-height.svg"))
+        for script in (self.folder / "figures").glob("*.py"):
+            self.assertNotRegex(script.read_text(), r"<script|touch|`|HOME|frac\{")
+        for table in (self.folder / "figures").glob("*.csv"):
+            with open(table, encoding="utf-8", newline="") as file:
+                self.assertEqual({len(row) for row in csv.reader(file)}, {8})
 
 
 if __name__ == "__main__":

@@ -234,12 +234,13 @@ class Files(Case):
                 done = self.jostle("fit", name, *option, "--model", "inverse_log", "--figures", folder)
                 self.assertIn("1 figure, each as SVG and PDF", done.stdout)
                 self.assertEqual({path.name for path in folder.iterdir()},
-                                 {f"fits-of-x.{kind}" for kind in ("dat", "gp", "svg", "pdf")})
-                text = (folder / "fits-of-x.dat").read_text()
+                                 {f"fits-of-x.{kind}" for kind in ("csv", "json", "py", "svg", "pdf")})
+                text = (folder / "fits-of-x.json").read_text()
                 self.assertIn(caption, text)
                 self.assertIn("inverse logarithm", text)
-                self.assertIn("# t\tX", text)
                 self.assertNotIn("taps", text)
+                head = (folder / "fits-of-x.csv").read_text().splitlines()[0]
+                self.assertTrue(head.startswith("panel,series,t,X | "), head)
                 again = self.jostle("fit", name, *option, "--figures", folder, expect=BAD_INPUT)
                 self.assertIn("exists and is kept", again.stderr)
 

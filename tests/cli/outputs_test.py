@@ -186,7 +186,7 @@ class Sources(Case):
         r"H5Fcreate|H5F_ACC_RDWR|H5F_ACC_TRUNC|output\.open\()")
     LOOKS = "output_path("
     MAY = {
-        "cli/files/gnuplot.cpp": "in a scratch folder of its own, O_EXCL",
+        "cli/files/python_plot.cpp": "in a scratch folder of its own, O_EXCL",
         "cli/files/keep_tables.cpp": LOOKS,
         "cli/manual/main.cpp": "makes the manual pages when jostle is built",
         "results/checkpoints/lock.cpp": LOOKS,

@@ -1,14 +1,22 @@
 """Figures show the numbers that they are made of."""
 
+import copy
+import json
+import os
+import pathlib
 import unittest
+import xml.etree.ElementTree
 
 import jostle
 import numpy as np
+from jostle.plot.drawing import typeset
+from jostle.plot.values import number, with_error
 from jostle.student import factor, half_width
 from matplotlib import pyplot
 
 from support import TINY, Case, changed, made
 
+SOURCE = pathlib.Path(os.environ["SOURCE"])
 BED = changed(TINY, name="bed", realizations=4, sweep=None,
               protocol=[{"tap": {"dilate": 0.05}, "count": 64}], snapshots={"taps": [0, 64]},
               fits=[{"observable": "mean_height", "model": "inverse_log"}],
@@ -167,6 +175,76 @@ class Student(unittest.TestCase):
         self.assertEqual(factor(float("inf")), 1)
         self.assertTrue(np.isnan(factor(0)))
         np.testing.assert_allclose(half_width([[1.0, 2.0]], [1, 2]), [[factor(1), 2 * factor(2)]])
+
+
+HOSTILE = "</script><b onclick=alert(1)> $x^2$ \\frac{1}{2} {a}_b ^2 %d \"'` \\"
+
+
+class Catalogue(Case):
+    def test_every_figure_is_drawn_with_its_numbers(self):
+        figures = jostle.plot.figures(self.open(made(BED)))
+        self.assertLessEqual({"mean-height", "fits-of-mean-height", "spectrum-of-mean-height",
+                              "packing-fraction-by-height"}, set(figures))
+        for name, figure in figures.items():
+            for columns, width in ((1, 86), (2, 178)):
+                with self.subTest(figure=name, columns=columns):
+                    drawn = jostle.plot.draw(figure, columns=columns)
+                    self.assertEqual(len(drawn.axes), len(figure["panels"]))
+                    self.assertAlmostEqual(drawn.get_size_inches()[0] * 25.4, width, places=6)
+                    self.assert_inside(drawn)
+        stored = self.open(made(BED)).points[0]
+        series = figures["mean-height"]["panels"][0]["series"][0]
+        taps = np.array(series["x"], int)
+        self.assertEqual((taps[0], taps[-1]), (0, 64))
+        np.testing.assert_array_equal(series["y"], stored.mean["mean_height"][taps])
+        ax = jostle.plot.draw(figures["mean-height"]).axes[0]
+        line = max(ax.get_lines(), key=lambda one: len(one.get_xdata()))
+        np.testing.assert_array_equal(line.get_ydata(), stored.mean["mean_height"][taps[1:]])
+
+    def assert_inside(self, drawn):
+        """No text leaves the figure, and the legend is above the axes."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        renderer = FigureCanvasAgg(drawn).get_renderer()
+        drawn.draw(renderer)
+        frame = drawn.bbox
+        for ax in drawn.axes:
+            box = ax.get_tightbbox(renderer)
+            self.assertGreaterEqual(min(box.x0 - frame.x0, box.y0 - frame.y0, frame.y1 - box.y1), -1)
+            self.assertLessEqual(box.x1, frame.x1 + 8)
+            if ax.get_legend():
+                self.assertGreaterEqual(ax.get_legend().get_window_extent(renderer).y0, ax.bbox.y1 - 1)
+
+    def test_texts_are_texts(self):
+        figure = copy.deepcopy(jostle.plot.figures(self.open(made(BED)))["fits-of-mean-height"])
+        for panel in figure["panels"]:
+            panel["x"]["label"] = panel["y"]["label"] = HOSTILE
+            for series in panel["series"]:
+                series["name"] = HOSTILE
+        jostle.plot.save(jostle.plot.draw(figure, columns=2), self.folder / "hostile")
+        root = xml.etree.ElementTree.parse(self.folder / "hostile.svg").getroot()
+        self.assertGreater("".join(root.itertext()).count(HOSTILE[:40]), 4)
+        self.assertFalse({"script", "b", "image"} & {element.tag.split("}")[1] for element in root.iter()})
+
+    def test_symbols_have_subscripts_and_names_have_none(self):
+        self.assertEqual(typeset("A(t, t_W) of Φ_b"), r"A(t, t$_{W}$) of Φ$_{b}$")
+        for text in ("max_step = 0.1", "a_bc", "x__y", "_a"):
+            self.assertEqual(typeset(text), text)
+
+    def test_files_are_the_same_on_every_day(self):
+        figure = jostle.plot.figures(self.open(made(BED)))["mean-height"]
+        for name in ("one", "two"):
+            jostle.plot.save(jostle.plot.draw(figure), self.folder / name)
+        for kind in ("svg", "pdf"):
+            self.assertEqual((self.folder / f"one.{kind}").read_bytes(), (self.folder / f"two.{kind}").read_bytes())
+
+
+class Values(unittest.TestCase):
+    def test_numbers_are_shown_as_the_shared_vectors_say(self):
+        vectors = json.loads((SOURCE / "tests/data/value_texts.json").read_text())
+        for value, digits, text in vectors["numbers"]:
+            self.assertEqual(number(float(value), digits), text)
+        for value, error, text in vectors["with_error"]:
+            self.assertEqual(with_error(float(value), float(error)), text)
 
 
 if __name__ == "__main__":

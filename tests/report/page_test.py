@@ -16,12 +16,12 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 
 from browser import WIDE, Browser  # noqa: E402
-from pages import DRAWN_TWICE, make_pages  # noqa: E402
+from pages import CATALOGUED, make_pages  # noqa: E402
 from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 from selenium.webdriver.support.ui import Select  # noqa: E402
-from support import Case  # noqa: E402
+from support import SOURCE, Case  # noqa: E402
 
 SECTIONS = {"run", "compaction", "spread", "packing", "fits", "steady", "ageing", "spectra", "sweep",
             "snapshots", "profile", "sides", "layers", "coordination", "pair_correlation", "order",
@@ -111,48 +111,52 @@ class Sections(Open):
 
 
 class SameFigures(Open):
-    """The page and jostle report --figures are written in two languages: they show the same."""
+    """The page draws the catalogue, as jostle report --catalogue describes it: every figure, and no other."""
 
-    def test_every_figure_of_the_page_is_one_of_the_folder_with_the_same_values(self):
-        for name in DRAWN_TWICE:
+    def test_every_figure_of_the_page_is_one_of_the_catalogue_and_the_reverse(self):
+        for name in CATALOGUED:
             BROWSER.open(FOLDER / f"{name}.html")
-            folder = figures_of(FOLDER / f"{name}-figures")
+            catalogue = panels_of(FOLDER / f"{name}-figures.json")
             shown = BROWSER.run("""
                 return [...document.querySelectorAll("figure")].map(({figure}) => ({
-                  title: figure.spec.title,
-                  rows: figure.spec.series.filter((one) => !one.isGuide)
-                    .flatMap((one) => one.rows.map((row) => [row.x, row.y])),
+                  title: figure.spec.title, caption: figure.spec.caption, source: figure.spec.source,
+                  labels: [figure.spec.x.label, figure.spec.y.label], names: figure.spec.series.map((one) => one.name),
+                  rows: figure.spec.series.flatMap((one) => one.rows.map((row) => [row.x, row.y, row.error ?? null])),
                 }));""")
             self.assertGreater(len(shown), 3)
             for one in shown:
                 with self.subTest(page=name, figure=one["title"]):
-                    own = numpy.array(folder.pop(one["title"]), dtype=float)
+                    own = catalogue.pop(one["title"])
+                    for key in ("caption", "source"):
+                        self.assertEqual(one[key], own[key])
+                    self.assertEqual(one["labels"], [own["x"]["label"], own["y"]["label"]])
+                    self.assertEqual(one["names"], [series["name"] for series in own["series"]])
                     rows = numpy.array(one["rows"], dtype=float)  # null: not a number
-                    own, rows = (each[numpy.isfinite(each).all(axis=1)] for each in (own, rows))
+                    stored = numpy.array([row for series in own["series"] for row in zip(
+                        series["x"], series["y"], series.get("error", [None] * len(series["x"])))], dtype=float)
                     # The page has 7 digits, and residuals are small differences.
                     small = 1e-4 if one["title"].startswith("Residuals") else 1e-12
-                    numpy.testing.assert_allclose(own, rows, rtol=1e-5, atol=small)
-            self.assertEqual(set(folder), set(), "not on the page")
+                    numpy.testing.assert_allclose(rows, stored, rtol=1e-5, atol=small)
+            self.assertEqual(set(catalogue), set(), "not on the page")
 
 
-def figures_of(folder):
-    """{title: [(x, y)]} of the .dat files, of the first sweep point where they show one."""
-    found = {}
-    for path in folder.glob("*.dat"):
-        if re.search(r"-point-\d+$", path.stem) and not path.stem.endswith("-point-0000"):
-            continue
-        text = path.read_text()
-        head = text.split("\n\n")[0]
-        titles = [line[2:].split(". ")[0] for line in head.split("\n#\n")[1:]]
-        series = [block.split("\n") for block in text.split("\n\n")[1:]]
-        series = [[line for line in block if line] for block in series]
-        series = [block for block in series if block and block[0] != "# line to guide the eye"]
-        for title in titles:
-            # Of two panels the second has no errors: its blocks have fewer columns.
-            own = [block for block in series if len(titles) == 1 or
-                   ("residual" in block[1]) == title.startswith("Residuals")]
-            found[title] = [[float(cell) for cell in row.split("\t")[:2]] for block in own for row in block[2:]]
-    return found
+def panels_of(path):
+    """{title: panel} of a catalogue, of the first sweep point where a figure shows one."""
+    return {panel["title"]: panel for figure in json.loads(path.read_text())["figures"]
+            if figure.get("point", 0) == 0 for panel in figure["panels"]}
+
+
+class Values(Open):
+    name = "plain"
+
+    def test_numbers_are_shown_as_the_shared_vectors_say(self):
+        vectors = json.loads((SOURCE / "tests/data/value_texts.json").read_text())
+        for kind, function in (("numbers", "number"), ("with_error", "withError"), ("counts", "count"), ("durations", "duration")):
+            shown = BROWSER.run(f"""
+                const ends = {{nan: NaN, inf: Infinity, "-inf": -Infinity}};
+                return arguments[0].map((one) => jostle.format.{function}(...one.slice(0, -1).map((value) => ends[value] ?? value)));""",
+                                vectors[kind])
+            self.assertEqual(shown, [one[-1] for one in vectors[kind]])
 
 
 class Spread(Open):

@@ -38,7 +38,7 @@ MARKUP = changed(WHOLE, name="hostile", description=HOSTILE, realizations=2,
                  sweep={"/protocol/0/tap/dilate": [0.02, 0.05]})
 SCENES = {"whole": WHOLE, "plain": PLAIN, "loop": LOOP, "grains": GRAINS, "states": STATES,
           "memory": MEMORY, "hostile": MARKUP}
-DRAWN_TWICE = ("whole", "loop", "grains", "states", "memory", "cost")
+CATALOGUED = ("whole", "loop", "grains", "states", "memory", "cost")
 
 
 def make_pages(case):
@@ -52,8 +52,8 @@ def make_pages(case):
     case.jostle("cost", "cost.json", "--replicates", 2, "--taps", 2, "-o", "cost.h5")
     for name in (*SCENES, "cost", "spread"):
         case.jostle("report", f"{name}.h5")
-    for name in DRAWN_TWICE:
-        case.jostle("report", f"{name}.h5", "--figures", f"{name}-figures")
+    for name in CATALOGUED:
+        case.jostle("report", f"{name}.h5", "--catalogue", f"{name}-figures.json")
     case.jostle("report", "plain.h5", "loop.h5", "-o", "two.html")
 
 

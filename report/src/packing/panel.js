@@ -1,9 +1,8 @@
 // A kept packing to turn, slice and colour.
-import {chooser, dataTable, element, section} from "../section.js";
-import {save} from "../dom.js";
+import {chooser, dataTable, element, save} from "../dom.js";
 import {count, fileName, number, plural} from "../format.js";
-import {centresOf, colourings, coloursOf, frameOf, keyOf, possible, tally} from "../packing/packing.js";
-import {View} from "../packing/view.js";
+import {centresOf, colourings, coloursOf, frameOf, keyOf, possible, tally} from "./packing.js";
+import {View} from "./view.js";
 import {isDark, onTheme} from "../theme.js";
 
 class PackingPanel {
@@ -208,8 +207,6 @@ class PackingPanel {
   }
 }
 
-export function packingSection(chapter) {
-  if (chapter.run.packings.length === 0) return null;
-  return section(chapter, "packing", "A packing", "Drag to turn; pinch, or click and scroll, to magnify; arrow keys and + \u2212 do the same.",
-    new PackingPanel(chapter).node);
+export function packingPanel(chapter) {
+  return new PackingPanel(chapter).node;
 }

@@ -1,6 +1,7 @@
 // What was run, by whom, how far it is.
-import {element, section, dataTable} from "../section.js";
-import {count, duration, number, plural, words} from "../format.js";
+import {section} from "./blocks.js";
+import {dataTable, element} from "./dom.js";
+import {count, duration, number, words} from "./format.js";
 
 /// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max step 0.1)".
 function inWords(value) {
