@@ -2,11 +2,14 @@
 import dataclasses
 import pathlib
 import re
-import subprocess
-import tempfile
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+
+from jostle import plot  # noqa: E402
 
 NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?"
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0578d", "#b07800", "#3a93c4", "#555555", "#7a5195")
 
 
 @dataclasses.dataclass
@@ -67,51 +70,25 @@ def curves_of(table, picture):
                     ("y" not in picture.log or y[1] > 0)]) for name, points in found]
 
 
-ZERO = 0.5  # where a logarithmic axis of taps shows tap 0
+def series(name, index, points, **look):
+    """A series of the catalogue (docs/catalogue.md)."""
+    colour = {"light": COLOURS[index % len(COLOURS)], "dark": COLOURS[index % len(COLOURS)]}
+    x, y, low, high = (list(column) for column in zip(*points))
+    return {"name": name, "colour": colour, "mark": "joined", "dash": 0, "symbol": index, "x": x, "y": y,
+            "low": low, "high": high, **look}
 
 
-def x_range(points, picture):
-    """(least, greatest) of the axis, a little beyond all points."""
-    places = [x for x, *_ in points] + [x for x, _ in picture.paper]
-    if "x" in picture.log:
-        places = [x if x > 0 else ZERO for x in places]
-        return min(places) / 1.3, max(places) * 1.3
-    margin = 0.03 * (max(places) - min(places))
-    return min(places) - margin, max(places) + margin
-
-
-def script(curves, picture, target):
-    """Of gnuplot."""
-    points = [point for _, drawn in curves for point in drawn]
-    logarithmic = "x" in picture.log
-    place = f"($1 > 0 ? $1 : {ZERO})" if logarithmic else "1"
-    settings = [f"set logscale {axis}" for axis in picture.log]
-    if logarithmic and min(x for x, *_ in points) == 0:
-        settings.append(f'set xtics add ("0" {ZERO})')
-    if "y" in picture.log:
-        settings.append("set format y '10^{%L}'")
-    low, high = x_range(points, picture)
-    drawn, blocks = [], []
-    for k, (name, curve) in enumerate(curves):
-        blocks.append(f"$curve{k} << END\n" + "\n".join(
-            " ".join(f"{number:.8g}" for number in point) for point in curve) + "\nEND")
-        style = f"lc rgb '{COLOURS[k % len(COLOURS)]}' lw 1"
-        title = re.sub(r"['\"{}\\]", "", name)
-        drawn += [f"$curve{k} using {place}:2 with lines {style} notitle",
-                  f"$curve{k} using {place}:2:3:4 with yerrorbars pt 7 ps 0.4 {style} "
-                  f"title '{title}' noenhanced"]
+def figure(curves, picture):
+    """The picture as a figure of the catalogue."""
+    places = [x for _, points in curves for x, *_ in points]
+    scale = "linear" if "x" not in picture.log else "taps" if min(places) <= 0 else "log"
+    drawn = [series(name, k, points) for k, (name, points) in enumerate(curves)]
     if picture.paper:
-        blocks.append("$paper << END\n" + "\n".join(f"{x} {y}" for x, y in picture.paper) +
-                      "\nEND")
-        drawn.append(f"$paper using {place}:2 with points pt 6 ps 1 lc rgb '#000000' "
-                     "title 'the paper'")
-    return "\n".join(
-        ["set terminal svg size 480,320 font 'sans,11' background '#ffffff'",
-         f"set output '{target}'", "set key above left Left reverse samplen 1.5 width 1 maxcols 3",
-         "set border 3", "set tics nomirror", "" if "y" in picture.log else "set offsets 0, 0, graph 0.05, graph 0.05",
-         f"set xrange [{low:.6g}:{high:.6g}]", f"set xlabel '{picture.x}' noenhanced",
-         f"set ylabel '{picture.y}' noenhanced", *settings, *blocks,
-         "plot " + ", \\\n     ".join(drawn)]) + "\n"
+        drawn.append({**series("the paper", 0, [(x, y, y, y) for x, y in picture.paper]),
+                      "mark": "points", "hollow": True, "colour": {"light": "#000000", "dark": "#ffffff"}})
+    return {"name": "picture", "panels": [{
+        "title": "", "caption": "", "source": "", "x": {"label": picture.x, "scale": scale},
+        "y": {"label": picture.y, "scale": "log" if "y" in picture.log else "linear"}, "rules": [], "series": drawn}]}
 
 
 def draw(section, picture, target):
@@ -124,8 +101,5 @@ def draw(section, picture, target):
     if not curves:
         return False
     target.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        drawn = pathlib.Path(folder) / "picture.svg"
-        subprocess.run(["gnuplot"], input=script(curves, picture, drawn), text=True, check=True)
-        target.write_bytes(drawn.read_bytes())
+    plot.save(plot.draw(figure(curves, picture), columns=1.5), target.with_suffix(""), kinds=("svg",))
     return True
