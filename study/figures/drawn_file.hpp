@@ -38,7 +38,6 @@ class DrawnFile {
   const std::vector<DrawnCurve>& curves() const { return curves_; }
   const std::vector<DrawnSnapshots>& snapshots() const { return snapshots_; }
   const std::vector<TableView>& tables() const { return tables_; }
-  const std::vector<DrawnTable>& drawn_tables() const { return kept_; }
   /// Tables of a kind, as "ageing" of "analysis", but for refused ones; in the order of the file.
   std::vector<TableView> made_of(const std::string& group, const std::string& kind) const;
   /// The same of "fits", whose first word is an observable.

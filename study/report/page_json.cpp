@@ -9,36 +9,6 @@
 #include "results/export/printable.hpp"
 
 namespace jostle::inline study {
-namespace {
-
-Json page_texts(std::span<const std::string> texts) {
-  Json list = Json::array();
-  for (const std::string& text : texts) list.push_back(page_text(text));
-  return list;
-}
-
-Json page_values(const std::vector<double>& values) {
-  return page_numbers(values);
-}
-Json page_values(const std::vector<std::uint64_t>& values) {
-  return values;
-}
-Json page_values(const std::vector<std::string>& values) {
-  return page_texts(values);
-}
-
-Json page_quantity(const Quantity& quantity) {
-  return {{"name", page_text(quantity.name)},
-          {"axes", page_texts(quantity.axes)},
-          {"units", page_text(quantity.units)},
-          {"long_name", page_text(quantity.long_name)},
-          {"source", page_text(quantity.source)},
-          {"values",
-           std::visit([](const auto& values) { return page_values(values); }, quantity.values)}};
-}
-
-}  // namespace
-
 Json page_number(double value) {
   if (std::isnan(value)) return nullptr;
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -93,18 +63,6 @@ std::string base64(std::span<const std::uint8_t> bytes) {
     }
   }
   return text;
-}
-
-Json page_table(const Table& table, std::string_view group) {
-  Json axes = Json::array(), quantities = Json::array(), notes = Json::object();
-  for (const Quantity& axis : table.axes) axes.push_back(page_quantity(axis));
-  for (const Quantity& quantity : table.quantities) quantities.push_back(page_quantity(quantity));
-  for (const auto& [key, note] : table.notes) notes[page_text(key).text()] = page_text(note);
-  return {{"group", group},
-          {"name", page_text(table.name)},
-          {"axes", axes},
-          {"quantities", quantities},
-          {"notes", notes}};
 }
 
 std::string script_text(const Json& value) {

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "config/json/json.hpp"
-#include "ensemble/analysis/table.hpp"
 
 // How numbers and texts of a results file stand in a page.
 namespace jostle::inline study {
@@ -24,8 +23,6 @@ Json page_value(const Json& value);
 
 /// Base64 (RFC 4648, padded).
 std::string base64(std::span<const std::uint8_t> bytes);
-
-Json page_table(const Table& table, std::string_view group);
 
 /// JSON on one line that may stand between <script> and </script>: no character of it begins a tag,
 /// an entity or a comment, and none ends a line.

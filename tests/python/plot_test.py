@@ -13,6 +13,7 @@ from jostle.plot.drawing import typeset
 from jostle.plot.values import number, with_error
 from jostle.student import factor, half_width
 from matplotlib import pyplot
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from support import TINY, Case, changed, made
 
@@ -203,7 +204,6 @@ class Catalogue(Case):
 
     def assert_inside(self, drawn):
         """No text leaves the figure, and the legend is above the axes."""
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
         renderer = FigureCanvasAgg(drawn).get_renderer()
         drawn.draw(renderer)
         frame = drawn.bbox
@@ -220,7 +220,11 @@ class Catalogue(Case):
             panel["x"]["label"] = panel["y"]["label"] = HOSTILE
             for series in panel["series"]:
                 series["name"] = HOSTILE
-        jostle.plot.save(jostle.plot.draw(figure, columns=2), self.folder / "hostile")
+        for columns in (1, 2):
+            drawn = jostle.plot.draw(figure, columns=columns)
+            renderer = FigureCanvasAgg(drawn).get_renderer()
+            self.assertLessEqual(drawn.axes[0].get_legend().get_window_extent(renderer).x1, drawn.bbox.x1)
+        jostle.plot.save(drawn, self.folder / "hostile")
         root = xml.etree.ElementTree.parse(self.folder / "hostile.svg").getroot()
         self.assertGreater("".join(root.itertext()).count(HOSTILE[:40]), 4)
         self.assertFalse({"script", "b", "image"} & {element.tag.split("}")[1] for element in root.iter()})

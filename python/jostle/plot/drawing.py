@@ -30,7 +30,7 @@ TAP_ZERO = 0.28    # where a logarithmic axis of taps shows tap 0
 NARROW_TAPS = 30   # with no tap beyond, the axis of taps is linear
 DASHES: list[Any] = ["solid", (0, (4, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1.2, 1.5))]
 SYMBOLS = "osD^vPX*"
-LONGEST_NAME = 60
+LONGEST_NAMES = (60, 44, 32, 22, 14)  # letters in a legend: as many as there is room for
 FONTS = ("Arial", "Helvetica", "Liberation Sans", "Nimbus Sans", "DejaVu Sans")
 
 Description = dict[str, Any]
@@ -231,7 +231,7 @@ def _draw_panel(ax: Axes, panel: Description, x_scale: str, width: float) -> Non
     rules = panel.get("rules", [])
     xs = np.concatenate([one.x for one in series] + [np.array([rule["x"] for rule in rules if "x" in rule], dtype=float)])
     if any(one.about.get("labelled") for one in series) and x_scale == "log" and len(xs):
-        xs = np.append(xs, [xs.min() / 1.3, xs.max() * 1.3])  # room for the labels at the ends
+        xs = np.append(xs, [xs.min() / 2, xs.max() * 2])  # room for the labels at the ends
     low, high = _with_margin(xs, panel["x"], x_scale)
     bottom, top = _extent(series, panel["y"], y_scale, [rule["y"] for rule in rules if "y" in rule])
     has_zero = x_scale == "taps" and any(one.zero.any() for one in series)
@@ -260,8 +260,8 @@ def _draw_panel(ax: Axes, panel: Description, x_scale: str, width: float) -> Non
     ax.set_ylabel(typeset(panel["y"]["label"]))
 
 
-def _cut(name: str) -> str:
-    return name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "\u2026"
+def _cut(name: str, longest: int = LONGEST_NAMES[0]) -> str:
+    return name if len(name) <= longest else name[:longest - 1] + "\u2026"
 
 
 def _legend_entries(panel: Description) -> tuple[list[Line2D], list[str]]:
@@ -275,16 +275,17 @@ def _legend_entries(panel: Description) -> tuple[list[Line2D], list[str]]:
         look = {"color": series["colour"]["light"]} if is_line else _look(series)
         dash = "none" if series["mark"] == "points" else DASHES[series["dash"] % len(DASHES)]
         handles.append(Line2D([], [], linestyle=dash, linewidth=1.1 if is_line else 0.8, **look))
-    return handles, [typeset(_cut(series["name"])) for series in named]
+    return handles, [series["name"] for series in named]
 
 
 def _add_legend(ax: Axes, handles: list[Line2D], names: list[str], width: float, renderer: Any) -> float:
     """Above the axes, in as many columns as there is room for; the height that it takes, mm."""
-    for columns in range(min(len(handles), 6), 0, -1):
+    layouts = [(LONGEST_NAMES[0], columns) for columns in range(min(len(handles), 6), 0, -1)]
+    for most, columns in layouts + [(most, 1) for most in LONGEST_NAMES[1:]]:
         rows = math.ceil(len(handles) / columns)
         order = [row * columns + column for column in range(columns) for row in range(rows) if row * columns + column < len(handles)]
-        legend = ax.legend([handles[i] for i in order], [names[i] for i in order], loc="lower left", bbox_to_anchor=(0, 1), ncol=columns,
-                           borderaxespad=0.2, borderpad=0, handlelength=2, columnspacing=1.2, labelspacing=0.25)
+        legend = ax.legend([handles[i] for i in order], [typeset(_cut(names[i], most)) for i in order], loc="lower left",
+                           bbox_to_anchor=(0, 1), ncol=columns, borderaxespad=0.2, borderpad=0, handlelength=2, columnspacing=1.2, labelspacing=0.25)
         box = legend.get_window_extent(renderer)
         if box.width <= width * MM * ax.figure.dpi:
             break
