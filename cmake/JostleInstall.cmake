@@ -6,7 +6,7 @@ get_property(libraries GLOBAL PROPERTY jostle_libraries)
 
 install(TARGETS jostle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT jostle)
 install(DIRECTORY config/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle COMPONENT jostle)
-install(FILES config/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle COMPONENT jostle)
+install(FILES ${JOSTLE_SCHEMA} DESTINATION ${CMAKE_INSTALL_DATADIR}/jostle COMPONENT jostle)
 install(DIRECTORY ${JOSTLE_MANUAL}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT jostle)
 install(FILES ${JOSTLE_MANUAL}/bash/jostle COMPONENT jostle
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
@@ -41,7 +41,7 @@ if(SKBUILD)
   install(TARGETS jostle RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR} COMPONENT wheel)
   install(DIRECTORY ${JOSTLE_MANUAL}/man1 DESTINATION ${SKBUILD_DATA_DIR}/share/man COMPONENT wheel)
   install(DIRECTORY config/scenes DESTINATION ${SKBUILD_DATA_DIR}/share/jostle COMPONENT wheel)
-  install(FILES config/scene.schema.json DESTINATION ${SKBUILD_DATA_DIR}/share/jostle COMPONENT wheel)
+  install(FILES ${JOSTLE_SCHEMA} DESTINATION ${SKBUILD_DATA_DIR}/share/jostle COMPONENT wheel)
   install(FILES ${JOSTLE_MANUAL}/bash/jostle COMPONENT wheel
           DESTINATION ${SKBUILD_DATA_DIR}/share/bash-completion/completions)
   install(FILES ${JOSTLE_MANUAL}/zsh/_jostle COMPONENT wheel

@@ -16,6 +16,7 @@ set(JOSTLE_PUBLIC_HEADERS
     engine/discrete_element/discrete_element.hpp
     engine/dynamics.hpp
     engine/engines.hpp
+    engine/fields.hpp
     engine/instruction_set.hpp
     engine/monte_carlo/monte_carlo.hpp
     engine/monte_carlo/moves.hpp

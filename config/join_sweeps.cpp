@@ -65,9 +65,7 @@ void add_rows(SweepAxis& axis, const SweepAxis& more) {
 
 }  // namespace
 
-ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) {
-  ParsedScene first = checked_scene(resolved_scene);
-  const ParsedScene other = checked_scene(other_resolved);
+ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other) {
   if (!first.scene) return first;
   if (!other.scene) return other;
   ParsedScene refused;
@@ -78,10 +76,11 @@ ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved) 
     refused.faults = {{"", "differs in " + differ + ": only the values of a sweep may"}};
   }
   if (!refused.faults.empty()) return refused;
-  for (std::size_t i = 0; i < first.scene->sweep.size(); ++i) {
-    add_rows(first.scene->sweep[i], other.scene->sweep[i]);
+  Scene joined = *first.scene;
+  for (std::size_t i = 0; i < joined.sweep.size(); ++i) {
+    add_rows(joined.sweep[i], other.scene->sweep[i]);
   }
-  return checked_scene(resolved(*first.scene));
+  return checked_scene(resolved(joined));
 }
 
 }  // namespace jostle::inline config

@@ -30,7 +30,7 @@ std::uint64_t raised(std::uint64_t sweeps, double factor) {
 
 /// What of an engine's settings a ladder varies.
 struct Written {
-  Json operator()(const MonteCarlo& engine) const { return written(engine.relax); }
+  Json operator()(const MonteCarlo& engine) const { return written_part(engine.relax); }
   Json operator()(const DiscreteElement& engine) const { return written_engine(engine); }
 };
 
@@ -376,8 +376,9 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
   for (const PilotSetting& setting : settings) {
     axis.columns[0].second.push_back(std::visit(Written{}, setting.engine));
     axis.columns[1].second.push_back(setting.n_spheres);
-    axis.columns[2].second.push_back(written(setting.container));
-    if (starts_differ) axis.columns[3].second.push_back(written(setting.start));
+    axis.columns[2].second.push_back(written_value(OneOf<Container>{}, setting.container));
+    if (starts_differ)
+      axis.columns[3].second.push_back(written_value(OneOf<StartChoice>{}, setting.start));
   }
   out.sweep = {axis};
   return out;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cassert>
 #include <map>
 
 #include "config/grids.hpp"
@@ -67,13 +66,16 @@ std::size_t n_sweep_points(const Scene& scene) {
 }
 
 std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load) {
-  const Json base = resolved(scene);
+  return make_plans(scene, point_scenes(scene), load);
+}
+
+std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& points,
+                             const PackingLoader& load) {
   StartMaker make_start_of(load);
   std::vector<Plan> plans;
+  auto scene_of_point = points.begin();
   for (const SweepPoint& point : sweep_points(scene.sweep)) {
-    std::vector<Fault> faults;
-    const Scene here = scene_at(base, point, faults);
-    assert(faults.empty());  // parse_scene tried every point
+    const Scene& here = *scene_of_point++;
     Plan plan;
     plan.label = point_label(point);
     for (const auto& [pointer, value] : point.values) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
@@ -124,13 +125,15 @@ void compare_sweeps(const Scene& was, const Scene& is, std::vector<Fault>& fault
 }
 
 /// Compares taps, snapshots and motion of every sweep point, and notes the first that changed.
-void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& faults) {
-  const Json base_was = resolved(was), base_is = resolved(is);
+void compare_points(const ParsedScene& was, const Scene& is, const std::vector<Scene>& points,
+                    std::vector<Fault>& faults) {
+  std::map<std::uint64_t, const Scene*> found;
+  auto scene = points.begin();
+  for (const SweepPoint& point : sweep_points(is.sweep)) found[point_id(point)] = &*scene++;
   bool same_taps = true, same_snapshots = true, same_motion = true;
-  for (const SweepPoint& point : sweep_points(was.sweep)) {
-    std::vector<Fault> ignored;  // both scenes were checked
-    const Scene before = scene_at(base_was, point, ignored),
-                after = scene_at(base_is, point, ignored);
+  scene = was.points.begin();
+  for (const SweepPoint& point : sweep_points(was.scene->sweep)) {
+    const Scene &before = *scene++, &after = *found.at(point_id(point));
     const std::string where =
         point.values.empty() ? "" : fmt::format(" (at the sweep point {})", point_label(point));
     const auto taps = changed_taps(before.protocol, after.protocol);
@@ -148,33 +151,32 @@ void compare_points(const Scene& was, const Scene& is, std::vector<Fault>& fault
 
 }  // namespace
 
-std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resolved) {
-  const ParsedScene was = checked_scene(old_resolved), is = checked_scene(new_resolved);
+std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
+                                 const std::vector<Scene>& points) {
   if (!was.scene) {
     return {{"", "the scene of the stored run is no scene for this version of the program: " +
                      was.faults.front().pointer + ": " + was.faults.front().message}};
   }
-  if (!is.scene) return is.faults;
   std::vector<Fault> faults;
-  if (is.scene->realizations < was.scene->realizations) {
+  if (scene.realizations < was.scene->realizations) {
     faults.push_back(
         {"/realizations", fmt::format("were {}, are {}: realizations can be added, not taken away",
-                                      was.scene->realizations, is.scene->realizations)});
+                                      was.scene->realizations, scene.realizations)});
   }
-  Json before = resolved(*was.scene), after = resolved(*is.scene);
-  for (Json* scene : {&before, &after}) {
+  Json before = resolved(*was.scene), after = resolved(scene);
+  for (Json* one : {&before, &after}) {
     for (const char* free : {"name", "description", "realizations", "protocol", "sweep", "until",
                              "fits", "analyse", "structure"}) {
-      scene->erase(free);
+      one->erase(free);
     }
-    (*scene)["snapshots"].erase("taps");
-    if (!scene->contains("motion")) continue;
-    for (const char* grid : {"origins", "lags"}) (*scene)["motion"].erase(grid);
+    (*one)["snapshots"].erase("taps");
+    if (!one->contains("motion")) continue;
+    for (const char* grid : {"origins", "lags"}) (*one)["motion"].erase(grid);
   }
   compare(before, after, "", faults);
   const std::size_t before_sweeps = faults.size();
-  compare_sweeps(*was.scene, *is.scene, faults);
-  if (faults.size() == before_sweeps) compare_points(*was.scene, *is.scene, faults);
+  compare_sweeps(*was.scene, scene, faults);
+  if (faults.size() == before_sweeps) compare_points(was, scene, points, faults);
   return faults;
 }
 

@@ -7,12 +7,14 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "config/fault.hpp"
 #include "config/json/json.hpp"
+#include "engine/fields.hpp"
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/target_precision.hpp"
@@ -38,10 +40,23 @@ struct PackingFile {
     };
     return members(a) < members(b);
   }
+
+  static constexpr About about{
+      "file",
+      "Results of an earlier run (.h5, .hdf5) or extended XYZ (.xyz, .extxyz); a path from the "
+      "folder of the scene",
+      "Packing from a file"};
 };
 
-using StartChoice =
-    std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, PackingFile>;
+/// The starts of the engine, with a file in the place of the packing that it holds.
+template <class Variant>
+struct ChosenStart;
+template <class... Starts>
+struct ChosenStart<std::variant<Starts...>> {
+  using Type = std::variant<
+      std::conditional_t<std::is_same_v<Starts, GivenPacking>, PackingFile, Starts>...>;
+};
+using StartChoice = ChosenStart<Start>::Type;
 
 /// Strengths from `from` to `to`, both included, `step` apart; downwards where from > to. With
 /// square_root the three are square roots, and a tap's strength is their square: [PB]'s control
@@ -94,6 +109,23 @@ struct MotionChoice {
   std::vector<double> overlap_lengths = {0.1, 0.3};  // diameters, ascending
   std::uint32_t layers = 5;
   bool operator==(const MotionChoice&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("origins", &MotionChoice::origins, TapNumbers{},
+              "Taps that displacements are counted from, the waiting times, at most 1000; 0 is the "
+              "start. Each keeps the centres of all spheres, 24 bytes per sphere. Default: 0 and "
+              "two per decade"),
+        field(
+            "lags", &MotionChoice::lags, TapNumbers{},
+            "Taps after an origin at which they are measured, at most 1000, the first at least 1. "
+            "Default: ten per decade"),
+        field("overlap_lengths", &MotionChoice::overlap_lengths,
+              list_of(Number{above(0, 100)}, 1, most_overlap_lengths, "lengths in diameters", true),
+              "Lengths a in diameters: the overlap is the fraction of spheres that moved less"),
+        field("layers", &MotionChoice::layers, Whole{1, most_motion_layers},
+              "Layers of equal numbers of spheres, by height at the origin")};
+  }
 };
 
 /// Values that vary together: one list of values a pointer, all of one length. An axis with one
@@ -124,7 +156,23 @@ struct AnalysisRequest {
   std::string observable;
   Settings settings;
   bool operator==(const AnalysisRequest&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("observable", &AnalysisRequest::observable, Text{}, "One that the scene observes",
+              {.required = "the name of an observable of this scene"}),
+        inlined(&AnalysisRequest::settings)};
+  }
 };
+
+/// The list of analyses of one kind, under the name of the kind.
+template <class Part, class Settings>
+constexpr auto asked_for(std::vector<AnalysisRequest<Settings>> Part::*member,
+                         bool unless_empty = false) {
+  return field(Settings::about.name, member,
+               list_of(Object<AnalysisRequest<Settings>>{}, 0, 100, "analyses"),
+               Settings::about.text, {.unless_default = unless_empty});
+}
 
 /// What a run ends with, at every sweep point. docs/analysis.md.
 struct Analyses {
@@ -137,6 +185,15 @@ struct Analyses {
   std::vector<AnalysisRequest<VolumesSettings>> volumes;    // likewise
   std::vector<AnalysisRequest<MemorySettings>> memory;      // likewise
   bool operator==(const Analyses&) const = default;
+
+  /// Later kinds are written only where there are any, so that runs of earlier versions can be
+  /// resumed.
+  static constexpr auto fields() {
+    return std::tuple{asked_for(&Analyses::steady),        asked_for(&Analyses::spectrum),
+                      asked_for(&Analyses::ageing),        asked_for(&Analyses::hysteresis),
+                      asked_for(&Analyses::sweep),         asked_for(&Analyses::ordering, true),
+                      asked_for(&Analyses::volumes, true), asked_for(&Analyses::memory, true)};
+  }
   bool empty() const { return *this == Analyses{}; }
 };
 
@@ -154,7 +211,8 @@ struct Scene {
   std::optional<Relaxation> relax_start;  // absent: a random settle as `relax`, else none
   std::optional<DiscreteElement> grains;  // they move by these, not by Monte Carlo
 
-  std::vector<Observable> observables;
+  std::vector<Observable> observables{MeanHeight{}, BottomFraction{}, CorrectedFraction{},
+                                      BulkFraction{}};
   SnapshotChoice snapshots;
   std::optional<MotionChoice> motion;
   std::vector<SweepAxis> sweep;
@@ -171,6 +229,7 @@ EngineSettings engine_of(const Scene& scene);
 /// A scene, or every fault that keeps the text from being one.
 struct ParsedScene {
   std::optional<Scene> scene;
+  std::vector<Scene> points;  // of each sweep point, in their order; without a sweep the scene
   std::vector<Fault> faults;  // empty if and only if there is a scene
 };
 
@@ -209,22 +268,30 @@ std::size_t n_sweep_points(const Scene& scene);
 /// Reads the centres of a saved packing. May throw; make_plans lets it pass.
 using PackingLoader = std::function<std::vector<Vec3>(const PackingFile&)>;
 
-/// One plan a sweep point, in the order of the sweep (first axis slowest). Calls `load` once for
-/// every distinct file. Throws StartError where a file does not hold as many spheres as the scene.
+/// The scene of every sweep point, in the order of the sweep (first axis slowest); of a scene that
+/// was parsed, ParsedScene has them.
+std::vector<Scene> point_scenes(const Scene& scene);
+
+/// One plan per sweep point, of their scenes. Calls `load` once for every distinct file. Throws
+/// StartError where a file does not hold as many spheres as the scene.
+std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& points,
+                             const PackingLoader& load);
+/// Makes the scenes of the points, too.
 std::vector<Plan> make_plans(const Scene& scene, const PackingLoader& load);
 
-/// The JSON Schema (draft-07) of scenes, as shipped in config/scene.schema.json.
-std::string_view scene_schema();
+/// The JSON Schema (draft-07) of scenes, which the build writes to scene.schema.json.
+std::string scene_schema();
 
-/// Why a run of the scene `old_resolved` cannot be resumed as `new_resolved` (both as resolved()
-/// gives them): one fault for everything that changed, but for more taps at the end, snapshots of
-/// those, more realizations, more values of what is swept, other limits of `until`, fits, analyses
-/// and measured structure, and another name or description.
-std::vector<Fault> resume_faults(const Json& old_resolved, const Json& new_resolved);
+/// Why a run of the scene `was` cannot be resumed as another, given with the scenes of its points:
+/// one fault for everything that changed, but for more taps at the end, snapshots of those, more
+/// realizations, more values of what is swept, other limits of `until`, fits, analyses and measured
+/// structure, and another name or description.
+std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
+                                 const std::vector<Scene>& points);
 
-/// One scene of two (both as resolved() gives them) that differ in the values of their sweep alone,
-/// and maybe in name and description, which are the first one's: every axis with the values of
-/// both, the first one's first. Faults where anything else differs.
-ParsedScene join_sweeps(const Json& resolved_scene, const Json& other_resolved);
+/// One scene of two that differ in the values of their sweep alone, and maybe in name and
+/// description, which are the first one's: every axis with the values of both, the first one's
+/// first. Faults where anything else differs, and those of either.
+ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other);
 
 }  // namespace jostle::inline config

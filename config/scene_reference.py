@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Writes docs/scene-reference.md from the schema; --check only tells whether it is what this makes."""
+"""Writes docs/scene-reference.md from the schema on standard input; --check only compares the two."""
 
 import json
 import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SCHEMA = json.loads((ROOT / "config/scene.schema.json").read_text())
+SCHEMA = json.load(sys.stdin)
 PAGE = ROOT / "docs/scene-reference.md"
 HEAD = """# Scene reference
 
 Every key of a scene, as the schema has it (`jostle schema`); [scene.md](scene.md) explains what they mean
-and go with. Made of config/scene.schema.json by `./dev scene-reference`. In a path, `[]` is an element of a
+and go with. `./dev scene-reference` makes this page of the schema. In a path, `[]` is an element of a
 list. A key that is neither required nor has a default may be absent, and is then not there: "required in
 its form" is one of those that make one of several forms of its object.
 """
@@ -37,7 +37,7 @@ def variants(schema):
 
 
 def number(value):
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:g}" if isinstance(value, float) and value < 2**63 else str(int(value))
 
 
 def limits(schema):

@@ -49,6 +49,36 @@ std::string location(const Json& written_sweep, const std::string& pointer) {
   return pointer_to(pointer_to("/sweep/zip", group), pointer);
 }
 
+/// Whether a point has grains where the scene has trials, whose `relax` is not for them.
+bool has_grains(const SweepPoint& point) {
+  return std::ranges::any_of(point.values, [](const auto& set) {
+    const auto& [pointer, value] = set;
+    return pointer == "/engine" && (value.is_object() ? value.contains("discrete_element")
+                                                      : value == Json("discrete_element"));
+  });
+}
+
+/// The scene of one point, without a sweep: the values put into the resolved scene. Notes in
+/// `faults` what makes it no scene; pointers are those of that scene.
+Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults) {
+  const bool leave_trials = has_grains(point);
+  Json changed = Json::object();  // without the sweep, which may be longer than all the rest
+  for (const auto& [key, part] : resolved_scene.members()) {
+    const bool of_trials = key == "relax" || key == "relax_start";
+    if (key != "sweep" && !(of_trials && leave_trials)) changed[key] = part;
+  }
+  for (const auto& [pointer, value] : point.values) {
+    if (pointer == "/engine") {
+      changed["engine"] = value;  // a resolved scene of Monte Carlo does not name it
+    } else if (Json* place = changed.find_pointer(pointer)) {
+      *place = value;
+    }
+  }
+  Scene scene = read_scene(Reader{changed, "", faults});
+  check_consistency(scene, faults);
+  return scene;
+}
+
 class SweepCheck {
  public:
   SweepCheck(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults)
@@ -64,15 +94,17 @@ class SweepCheck {
     if (!resolved_.contains("engine")) may_be_swept_["engine"] = "monte_carlo";
   }
 
-  void operator()() {
+  /// The scenes of the points, in their order; nothing where the sweep itself is at fault.
+  std::vector<Scene> operator()() {
     for (const SweepAxis& axis : scene_.sweep) {
       for (const auto& [pointer, values] : axis.columns) check_pointer(pointer);
     }
-    if (faults_.size() > base_faults_.size() || !points_are_few()) return;
+    if (faults_.size() > base_faults_.size() || !points_are_few()) return {};
     const std::vector<SweepPoint> points = sweep_points(scene_.sweep);
     check_amounts(points.size());
-    check_points(points);
+    std::vector<Scene> scenes = read_points(points);
     points_differ(points);
+    return scenes;
   }
 
  private:
@@ -137,7 +169,7 @@ class SweepCheck {
           most_snapshots_in_all);
   }
 
-  void check_points(const std::vector<SweepPoint>& points) {
+  std::vector<Scene> read_points(const std::vector<SweepPoint>& points) {
     struct Found {
       Fault fault;
       std::size_t n_points = 0;
@@ -145,9 +177,11 @@ class SweepCheck {
     };
     std::vector<Found> found;
     std::map<std::pair<std::string, std::string>, std::size_t> known;
+    std::vector<Scene> scenes;
+    scenes.reserve(points.size());
     for (const SweepPoint& point : points) {
       std::vector<Fault> faults;
-      scene_at(resolved_, point, faults);
+      scenes.push_back(scene_at(resolved_, point, faults));
       for (Fault& fault : faults) {
         const bool of_value = move_to_sweep(fault, point);
         if (!of_value && !base_faults_.empty()) continue;
@@ -165,6 +199,7 @@ class SweepCheck {
       }
       faults_.push_back({fault.pointer, fault.message + where});
     }
+    return scenes;
   }
 
   /// Points a fault of a swept value to where the sweep lists it; false for any other fault.
@@ -258,40 +293,20 @@ std::string point_label(const SweepPoint& point) {
   return joined(parts, ", ");
 }
 
-namespace {
-
-/// Whether a point has grains where the scene has trials, whose `relax` is not for them.
-bool has_grains(const SweepPoint& point) {
-  return std::ranges::any_of(point.values, [](const auto& set) {
-    const auto& [pointer, value] = set;
-    return pointer == "/engine" && (value.is_object() ? value.contains("discrete_element")
-                                                      : value == Json("discrete_element"));
-  });
+std::vector<Scene> read_sweep_points(const Scene& scene, const Json& written_sweep,
+                                     std::vector<Fault>& faults) {
+  if (scene.sweep.empty()) return {scene};
+  return SweepCheck{scene, written_sweep, faults}();
 }
 
-}  // namespace
-
-Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults) {
-  const bool leave_trials = has_grains(point);
-  Json changed = Json::object();  // without the sweep, which may be longer than all the rest
-  for (const auto& [key, part] : resolved_scene.members()) {
-    const bool of_trials = key == "relax" || key == "relax_start";
-    if (key != "sweep" && !(of_trials && leave_trials)) changed[key] = part;
-  }
-  for (const auto& [pointer, value] : point.values) {
-    if (pointer == "/engine") {
-      changed["engine"] = value;  // a resolved scene of Monte Carlo does not name it
-    } else if (Json* place = changed.find_pointer(pointer)) {
-      *place = value;
-    }
-  }
-  Scene scene = read_scene(Reader{changed, "", faults});
-  check_consistency(scene, faults);
-  return scene;
-}
-
-void check_sweep(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults) {
-  SweepCheck{scene, written_sweep, faults}();
+std::vector<Scene> point_scenes(const Scene& scene) {
+  if (scene.sweep.empty()) return {scene};
+  const Json base = resolved(scene);
+  std::vector<Scene> scenes;
+  std::vector<Fault> none;  // of a scene that was checked
+  for (const SweepPoint& point : sweep_points(scene.sweep))
+    scenes.push_back(scene_at(base, point, none));
+  return scenes;
 }
 
 }  // namespace jostle::inline config

@@ -30,13 +30,12 @@ std::string short_name(const std::string& pointer);
 /// "dilate = 0.02, spheres = 512": for people.
 std::string point_label(const SweepPoint& point);
 
-/// The scene of one point, without a sweep: the values put into the resolved scene. Notes in
-/// `faults` what makes it no scene; pointers are those of that scene.
-Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<Fault>& faults);
-
-/// Notes every fault of a sweep: pointers that lead nowhere, points that are no scenes, equal
-/// points. `written_sweep` is the sweep as the file has it, `faults` what was found before. A fault
-/// of a swept value points to where the sweep lists it; one that several points have is noted once.
-void check_sweep(const Scene& scene, const Json& written_sweep, std::vector<Fault>& faults);
+/// The scene of every point, none of which has a sweep, in their order; of a scene without a sweep
+/// itself. Notes every fault of the sweep: pointers that lead nowhere, points that are no scenes,
+/// equal points. `written_sweep` is the sweep as the file has it, `faults` what was found before. A
+/// fault of a swept value points to where the sweep lists it; one that several points have is noted
+/// once.
+std::vector<Scene> read_sweep_points(const Scene& scene, const Json& written_sweep,
+                                     std::vector<Fault>& faults);
 
 }  // namespace jostle::inline config

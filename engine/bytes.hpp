@@ -67,10 +67,10 @@ class ByteReader {
   /// An enumerator from 0 up to `last`.
   template <class Enum>
   Enum get_enum(Enum last) {
-    using Number = std::underlying_type_t<Enum>;
-    static_assert(std::is_unsigned_v<Number>);
-    const auto value = get<Number>();
-    if (value > static_cast<Number>(last)) throw std::out_of_range("no such name");
+    using Underlying = std::underlying_type_t<Enum>;
+    static_assert(std::is_unsigned_v<Underlying>);
+    const auto value = get<Underlying>();
+    if (value > static_cast<Underlying>(last)) throw std::out_of_range("no such name");
     return static_cast<Enum>(value);
   }
   template <class T>

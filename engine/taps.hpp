@@ -8,26 +8,49 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
+#include "engine/fields.hpp"
 
 // The excitation of one tap. Strengths are dimensionless or in diameters.
 namespace jostle::inline engine {
+
+/// The strength of a dilation.
+inline constexpr Strength dilation_strength{between(0, 10), "", true};
 
 /// z -> z (1 + epsilon). Philippe & Bideau 2001, sec. II.
 struct Dilate {
   double epsilon = 0.02;
   bool operator==(const Dilate&) const = default;
+
+  static constexpr About about{"dilate", "epsilon: z -> z (1 + epsilon)"};
+  static constexpr auto fields() {
+    return std::tuple{field("", &Dilate::epsilon, dilation_strength, "", {.examples = "[0.02]"})};
+  }
 };
 
 /// (z - 1/2) -> (z - 1/2)(1 + delta): a sphere on the floor stays. Rosato et al. 2010, fig. 2.
 struct DilateFloorHeld {
   double delta = 0.025;
   bool operator==(const DilateFloorHeld&) const = default;
+
+  static constexpr About about{
+      "dilate_floor_held",
+      "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("", &DilateFloorHeld::delta, dilation_strength, "", {.examples = "[0.025]"})};
+  }
 };
 
 /// z -> z + gamma. Rosato et al. 2010, sec. II.
 struct Lift {
   double gamma = 0.25;
   bool operator==(const Lift&) const = default;
+
+  static constexpr About about{"lift", "gamma: z -> z + gamma, diameters"};
+  static constexpr auto fields() {
+    return std::tuple{field("", &Lift::gamma, Strength{between(0, 100), "diameters"}, "",
+                            {.examples = "[0.25]"})};
+  }
 };
 
 /// z -> z (1 + lambda), then each centre, in random order, is offset laterally by a vector uniform
@@ -38,11 +61,34 @@ struct Shake {
   double lateral_radius = 0.05;
   std::uint32_t retries = 10;
   bool operator==(const Shake&) const = default;
+
+  static constexpr About about{
+      "shake", "z -> z (1 + lambda), then random lateral offsets that never overlap"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("lambda", &Shake::lambda, dilation_strength),
+        field("lateral_radius", &Shake::lateral_radius, Number{between(0, 1), "diameters"},
+              "Radius of the disc of the lateral offsets"),
+        field("retries", &Shake::retries, Whole{0, 1000},
+              "How often an offset that would overlap is drawn again before it is dropped")};
+  }
 };
 
 /// What the strength of a floor's motion a sin(2 pi f t) is: its amplitude a, in diameters, or its
 /// acceleration Gamma = a (2 pi f)^2 / g.
 enum class FloorStrength : std::uint32_t { amplitude, acceleration };
+inline constexpr NameTable<FloorStrength, 2> floor_strengths{
+    {{"amplitude", FloorStrength::amplitude}, {"acceleration", FloorStrength::acceleration}}};
+
+/// The fields that all taps share which move the floor.
+template <class Tap>
+constexpr auto floor_fields() {
+  return std::tuple{keyed_number<Tap, FloorStrength, 2>(
+                        &Tap::strength, &Tap::kind, floor_strengths,
+                        {Number{between(0, 100), "diameters"}, Number{between(0, 100)}},
+                        {"a", "Gamma = a (2 pi f)^2 / g, in place of the amplitude"}),
+                    field("frequency", &Tap::frequency, Number{between(1e-3, 1e6), "Hz"})};
+}
 
 /// The floor rises and falls as a sin(2 pi f t) for half a period, then rests: Rosato et al. 2010,
 /// sec. III. Discrete elements only.
@@ -51,6 +97,12 @@ struct HalfSine {
   double frequency = 7.5;  // f, Hz
   FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const HalfSine&) const = default;
+
+  static constexpr About about{
+      "half_sine",
+      "The floor moves as a sin(2 pi f t) for half a period: amplitude a in diameters, frequency f "
+      "in Hz. Discrete elements"};
+  static constexpr auto fields() { return floor_fields<HalfSine>(); }
 };
 
 /// Whole periods of a vibration, at most.
@@ -64,6 +116,14 @@ struct Vibration {
   std::uint64_t cycles = 10;
   FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const Vibration&) const = default;
+
+  static constexpr About about{
+      "vibration", "The floor moves as a sin(2 pi f t) for whole periods. Discrete elements"};
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        floor_fields<Vibration>(),
+        std::tuple{field("cycles", &Vibration::cycles, Whole{1, most_cycles}, "Whole periods")});
+  }
 };
 
 using Tap = std::variant<Dilate, DilateFloorHeld, Lift, Shake, HalfSine, Vibration>;

@@ -9,6 +9,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/engines.hpp"
+#include "engine/fields.hpp"
 #include "engine/starts/starts.hpp"
 #include "engine/taps.hpp"
 #include "ensemble/motion/motion.hpp"
@@ -54,6 +55,8 @@ struct Snapshots {
 /// all points (those of point id 0), so that points are compared on paired packings. The trials
 /// after taps always draw the point's own.
 enum class Streams { independent, matched };
+inline constexpr NameTable<Streams, 2> stream_kinds{
+    {{"independent", Streams::independent}, {"matched", Streams::matched}}};
 
 /// All that one sweep point of a study needs: what is simulated, what is measured, which numbers
 /// are drawn. Realizations differ only in their index.

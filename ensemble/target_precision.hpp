@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/fields.hpp"
+
 // How many realizations a target precision needs.
 namespace jostle::inline ensemble {
 
@@ -12,6 +14,9 @@ namespace jostle::inline ensemble {
 /// 1/M^(1/2), or their population deviation sigma, which does not shrink: Rosato et al. 2010 add
 /// realizations until sigma(N_T; gamma) <= 0.001.
 enum class Spread { standard_error, sigma };
+inline constexpr NameTable<Spread, 2> spread_names{
+    {{"standard_error", Spread::standard_error}, {"sigma", Spread::sigma}}};
+inline constexpr Number spread_number{above(0, 1e6)};
 
 struct SpreadTarget {
   std::string observable;
@@ -19,6 +24,20 @@ struct SpreadTarget {
   Spread spread = Spread::standard_error;
   double at_most = 0;  // in units of the observable
   bool operator==(const SpreadTarget&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("observable", &SpreadTarget::observable, Text{}, "One that the scene observes",
+              {.required = "the name of an observable of this scene"}),
+        field("taps", &SpreadTarget::taps, TapNumbers{},
+              "Where the spread must be small; none: at the last tap"),
+        keyed_number<SpreadTarget, Spread, 2>(
+            &SpreadTarget::at_most, &SpreadTarget::spread, spread_names,
+            {spread_number, spread_number},
+            {"Of the mean over realizations, at most",
+             "Population deviation of realizations, at most. It does not shrink with their number"},
+            true)};
+  }
 };
 
 /// Realizations are added until every target is met at every sweep point, or there are `at_most`.
@@ -26,6 +45,16 @@ struct TargetPrecision {
   std::vector<SpreadTarget> targets;  // empty: as many as the scene says, and no more
   std::uint32_t at_most = 0;
   bool operator==(const TargetPrecision&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("targets", &TargetPrecision::targets,
+              list_of(Object<SpreadTarget>{}, 1, 100, "targets"), "",
+              {.required = "a list of observables and how small their spread must be"}),
+        field("at_most", &TargetPrecision::at_most, Whole{1, 1'000'000},
+              "Realizations of every sweep point",
+              {.required = "the largest number of realizations"})};
+  }
 };
 
 /// The spread of one observable at one tap and sweep point.

@@ -6,6 +6,7 @@
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/bed/window.hpp"
+#include "engine/fields.hpp"
 #include "structure/density/layers.hpp"
 #include "structure/measurement.hpp"
 #include "structure/order/structure_factor.hpp"
@@ -16,12 +17,26 @@
 // Lengths in diameters.
 namespace jostle::inline structure {
 
+inline constexpr Range bin_width_range = between(0.001, 10);  // of heights and distances, diameters
+
 /// Packing fraction against height, and how it thins out upwards.
 struct ProfileSettings {
   double bin_width = 0.1;
   double smoothing = 2 * sphere_radius;  // of the smoothed profile and the gradient; 0 for none
   std::optional<HeightWindow> gradient = std::nullopt;  // absent: as gradient_range() has it
   bool operator==(const ProfileSettings&) const = default;
+
+  static constexpr About about{"profile", "Packing fraction against height, its gradient, eq. 7"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("bin_width", &ProfileSettings::bin_width, Number{bin_width_range, "diameters"},
+              "Width of a bin"),
+        field("smoothing", &ProfileSettings::smoothing, Number{between(0, 10)},
+              "Boxcar of the smoothed profile and the gradient, diameters; 0 for none"),
+        field("gradient", &ProfileSettings::gradient, height_bounds,
+              "Heights of the gradient; absent: 2.5 to 11 between walls, to 13 with periodic "
+              "sides")};
+  }
 };
 
 /// Packing fraction from side to side and from the walls inwards.
@@ -30,6 +45,17 @@ struct SidesSettings {
   std::optional<HeightWindow> heights = std::nullopt;  // absent: as transverse_window() has it
   double reach = 7 * sphere_radius;                    // of "lateral"
   bool operator==(const SidesSettings&) const = default;
+
+  static constexpr About about{"sides",
+                               "Packing fraction from side to side, from the walls, from the axis"};
+  static constexpr auto fields() {
+    return std::tuple{field("bin_width", &SidesSettings::bin_width,
+                            Number{bin_width_range, "diameters"}, "Width of a bin"),
+                      field("reach", &SidesSettings::reach, Number{above(0, 1e6), "diameters"},
+                            "Of what is lateral, from a wall"),
+                      field("heights", &SidesSettings::heights, height_bounds,
+                            "Low and high; absent: 2 to 0.8 of 2<Z>")};
+  }
 };
 
 /// Centres against height, and layers that grow from the floor.
@@ -37,24 +63,55 @@ struct LayersSettings {
   double bin_width = 0.1;
   LayerRule rule{};
   bool operator==(const LayersSettings&) const = default;
+
+  static constexpr About about{"layers", "n(z) and the layers grown from the floor"};
+  static constexpr auto fields() {
+    return std::tuple{field("bin_width", &LayersSettings::bin_width,
+                            Number{bin_width_range, "diameters"}, "Of n(z)"),
+                      inlined(&LayersSettings::rule)};
+  }
 };
 
 struct CoordinationSettings {
   double cut = 1.05;  // of the neighbours that are counted sphere by sphere
   double largest_cut = 1.5, step = 0.01;
   bool operator==(const CoordinationSettings&) const = default;
+
+  static constexpr About about{"coordination", "Neighbours within a cut, and against the cut"};
+  static constexpr auto fields() {
+    return std::tuple{field("cut", &CoordinationSettings::cut, Number{between(1, 3), "diameters"},
+                            "Distance of the centres of neighbours, at most"),
+                      field("largest_cut", &CoordinationSettings::largest_cut,
+                            Number{between(1, 3), "diameters"}, "Of the curve from 1"),
+                      field("step", &CoordinationSettings::step,
+                            Number{between(0.001, 1), "diameters"}, "Of the curve")};
+  }
 };
 
 struct PairsSettings {
   std::optional<double> r_max = std::nullopt;  // default: widest_pairs() of the container
   double bin_width = 0.02;
   bool operator==(const PairsSettings&) const = default;
+
+  static constexpr About about{"pair_correlation", "g(r), corrected for floor, surface and sides"};
+  static constexpr auto fields() {
+    return std::tuple{field("bin_width", &PairsSettings::bin_width,
+                            Number{between(0.001, 1), "diameters"}, "Width of a bin"),
+                      field("r_max", &PairsSettings::r_max, Number{between(1, 20)},
+                            "Diameters. Default: 4, at most half a period")};
+  }
 };
 
 /// Bond order and crystalline spheres.
 struct OrderSettings {
   double bin_width = 1;  // of heights
   bool operator==(const OrderSettings&) const = default;
+
+  static constexpr About about{"order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
+  static constexpr auto fields() {
+    return std::tuple{field("bin_width", &OrderSettings::bin_width,
+                            Number{between(0.1, 1000), "diameters"}, "Of heights")};
+  }
 };
 
 /// Gaps between neighbours, contacts, rattlers.
@@ -65,6 +122,23 @@ struct GapsSettings {
   std::optional<std::uint64_t> least_contacts = std::nullopt;
   HeightWindow window{0.01, 0.2};  // gaps whose exponent is sought
   bool operator==(const GapsSettings&) const = default;
+
+  static constexpr About about{"gaps",
+                               "Gaps between neighbours and their exponent, contacts, rattlers, "
+                               "against the gap that counts as a contact"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("largest", &GapsSettings::largest, Number{between(0.01, 2), "diameters"},
+              "Gap that is counted"),
+        field("tolerance", &GapsSettings::tolerance, Number{between(0, 0.2)},
+              "Gap up to which spheres touch, diameters: of the single values"),
+        field("least_contacts", &GapsSettings::least_contacts, Whole{1, 12},
+              "Of a sphere that is no rattler. Default: 3 in beds, which have weight; 4 in a fully "
+              "periodic box, which has none"),
+        field("window", &GapsSettings::window, Bounds{above(0, 1e6), between(0, 1e6)},
+              "Gaps whose exponent is sought, diameters; low below high, and above 0, which has no "
+              "logarithm")};
+  }
 };
 
 struct VoronoiSettings {
@@ -72,12 +146,30 @@ struct VoronoiSettings {
   double bin_width = 0.02;   // of free volumes, in volumes of a sphere
   bool cut_cells = false;    // whether cells that floor, sides or lid cut are counted too
   bool operator==(const VoronoiSettings&) const = default;
+
+  static constexpr About about{"voronoi",
+                               "Faces, volumes and free volumes of cells, local packing fractions"};
+  static constexpr auto fields() {
+    return std::tuple{field("least_area", &VoronoiSettings::least_area, Number{between(0, 0.1)},
+                            "Of a face that counts, in surfaces of its cell"),
+                      field("bin_width", &VoronoiSettings::bin_width, Number{between(0.001, 1)},
+                            "Of free volumes, in volumes of a sphere"),
+                      field("cut_cells", &VoronoiSettings::cut_cells, Flag{},
+                            "Whether cells that floor, sides or lid cut are counted too")};
+  }
 };
 
 /// Volumes of clusters of cells.
 struct ClustersSettings {
   std::uint64_t largest = 64;  // cells
   bool operator==(const ClustersSettings&) const = default;
+
+  static constexpr About about{"clusters",
+                               "Volumes of clusters of Voronoi cells against their number"};
+  static constexpr auto fields() {
+    return std::tuple{field("largest", &ClustersSettings::largest, Whole{1, 10'000},
+                            "Cells of the largest cluster")};
+  }
 };
 
 struct PoresSettings {
@@ -86,6 +178,20 @@ struct PoresSettings {
   double tolerance = 0.02;                 // of tetrahedral and octahedral sites, in xi
   double tail_from = 0.15;                 // of v: where the exponential tail begins
   bool operator==(const PoresSettings&) const = default;
+
+  static constexpr About about{"pores",
+                               "Sizes of pores, sites of close packing, the exponential tail"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("bin_width", &PoresSettings::bin_width, Number{between(0.001, 0.5)}, "Of xi"),
+        field("largest", &PoresSettings::largest, Number{between(0.5, 10)}, "xi of the last bin"),
+        field("merge", &PoresSettings::merge, Number{between(0, 0.1), "diameters"},
+              "Vertices so close are one pore"),
+        field("tolerance", &PoresSettings::tolerance, Number{between(0, 0.1)},
+              "Of tetrahedral and octahedral sites, in xi"),
+        field("tail_from", &PoresSettings::tail_from, Number{between(0, 100)},
+              "v at which the tail begins")};
+  }
 };
 
 /// P0(sigma).
@@ -93,12 +199,29 @@ struct VoidSettings {
   double largest = 2, step = 0.05;  // of sigma
   std::uint64_t points = 100'000;   // a packing
   bool operator==(const VoidSettings&) const = default;
+
+  static constexpr About about{"void_probability", "P0(sigma) beside Gotoh's"};
+  static constexpr auto fields() {
+    return std::tuple{field("largest", &VoidSettings::largest, Number{between(0.1, 5)}, "sigma"),
+                      field("step", &VoidSettings::step, Number{between(0.001, 1)}, "Of sigma"),
+                      field("points", &VoidSettings::points, Whole{100, 1'000'000'000},
+                            "Random points per packing")};
+  }
 };
 
 struct HolesSettings {
   BondLengths bonds{};
   bool operator==(const HolesSettings&) const = default;
+
+  static constexpr About about{"holes", "Bernal's canonical holes"};
+  static constexpr auto fields() { return std::tuple{inlined(&HolesSettings::bonds)}; }
 };
+
+/// The field of a part, which has the part's name.
+template <class Part, class Settings>
+constexpr auto measured(std::optional<Settings> Part::*member) {
+  return field(Settings::about.name, member, Object<Settings>{}, Settings::about.text);
+}
 
 /// What is measured: the parts that have settings, nothing else.
 struct StructureSettings {
@@ -118,6 +241,26 @@ struct StructureSettings {
   std::optional<VoidSettings> void_probability = std::nullopt;
   std::optional<HolesSettings> holes = std::nullopt;
   bool operator==(const StructureSettings&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("region", &StructureSettings::region, Object<Region>{},
+              "Where spheres, cells, pores and holes are counted; absent: heights 1 to 10 but at "
+              "most 2<Z> - 1, 1 away from walls; all of a fully periodic box"),
+        measured(&StructureSettings::profile),
+        measured(&StructureSettings::sides),
+        measured(&StructureSettings::layers),
+        measured(&StructureSettings::coordination),
+        measured(&StructureSettings::pair_correlation),
+        measured(&StructureSettings::order),
+        measured(&StructureSettings::gaps),
+        measured(&StructureSettings::structure_factor),
+        measured(&StructureSettings::voronoi),
+        measured(&StructureSettings::clusters),
+        measured(&StructureSettings::pores),
+        measured(&StructureSettings::void_probability),
+        measured(&StructureSettings::holes)};
+  }
   bool empty() const { return *this == StructureSettings{}; }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 #include <utility>
 
 #include "engine/bed/slab.hpp"
@@ -15,15 +16,15 @@ namespace {
 
 struct Label {
   Column operator()(const MeanHeight&) const {
-    return {"mean_height", "diameter", "mean height of the sphere centres <Z>",
-            "Philippe & Bideau 2001, sec. II"};
+    return {std::string(MeanHeight::about.name), "diameter",
+            "mean height of the sphere centres <Z>", "Philippe & Bideau 2001, sec. II"};
   }
   Column operator()(const BottomFraction&) const {
-    return {"bottom_fraction", "1", "solids fraction Phi_b between the floor and 2 d",
-            "Philippe & Bideau 2001, sec. III"};
+    return {std::string(BottomFraction::about.name), "1",
+            "solids fraction Phi_b between the floor and 2 d", "Philippe & Bideau 2001, sec. III"};
   }
   Column operator()(const CorrectedFraction&) const {
-    return {"corrected_fraction", "1",
+    return {std::string(CorrectedFraction::about.name), "1",
             "solids fraction <Phi_c> of most of the packing, corrected for the floor",
             "Philippe & Bideau 2001, sec. III"};
   }
@@ -32,15 +33,17 @@ struct Label {
             "Rosato et al. 2010, sec. II"};
   }
   Column operator()(const CrystallineFraction&) const {
-    return {"crystalline_fraction", "1", "fraction of fcc and hcp spheres in the bulk",
+    return {std::string(CrystallineFraction::about.name), "1",
+            "fraction of fcc and hcp spheres in the bulk",
             "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
   }
   Column operator()(const GrownLayers&) const {
-    return {"grown_layers", "1", "ordered layers from the floor up to the first that is not",
+    return {std::string(GrownLayers::about.name), "1",
+            "ordered layers from the floor up to the first that is not",
             "Rosato et al. 2010, fig. 6"};
   }
   Column operator()(const OrderedHeight&) const {
-    return {"ordered_height", "diameter",
+    return {std::string(OrderedHeight::about.name), "diameter",
             "height up to which half of the spheres, layer by layer, are fcc or hcp",
             "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
   }
@@ -112,6 +115,14 @@ std::optional<std::string> observable_fault(const Observable& observable,
 
 Column label(const Observable& observable) {
   return std::visit(Label{}, observable);
+}
+
+std::string_view observable_symbol(std::string_view name) {
+  std::string_view symbol;
+  [&]<class... Observables>(std::type_identity<std::variant<Observables...>>) {
+    ((Observables::about.name == name ? void(symbol = Observables::about.symbol) : void()), ...);
+  }(std::type_identity<Observable>{});
+  return symbol;
 }
 
 Observer::Observer(const std::vector<Observable>& observables, const Packing& start)

@@ -2,12 +2,15 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <variant>
 #include <vector>
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/window.hpp"
 #include "engine/column.hpp"
+#include "engine/fields.hpp"
 
 // What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
 // list of them is all that is computed.
@@ -16,11 +19,20 @@ namespace jostle::inline structure {
 /// <Z>, mean height of the centres, diameters. Philippe & Bideau 2001.
 struct MeanHeight {
   bool operator==(const MeanHeight&) const = default;
+
+  static constexpr About about{
+      .name = "mean_height", .text = "<Z>, mean height of the centres, diameters", .symbol = "⟨Z⟩"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 /// Phi_b, solids fraction between z = 0 and 4 R = 2 diameters. Philippe & Bideau 2001, sec. III.
 struct BottomFraction {
   bool operator==(const BottomFraction&) const = default;
+
+  static constexpr About about{.name = "bottom_fraction",
+                               .text = "Phi_b, solids fraction between the floor and 2 diameters",
+                               .symbol = "Φ_b"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 /// <Phi_c>, solids fraction from the floor to h = `depth` x 2<Z> ("approximately 90 %" of the
@@ -32,6 +44,14 @@ struct BottomFraction {
 struct CorrectedFraction {
   double depth = 0.9;
   bool operator==(const CorrectedFraction&) const = default;
+
+  static constexpr About about{
+      .name = "corrected_fraction",
+      .text = "<Phi_c>, solids fraction up to depth x 2<Z>, corrected at the floor by 16/11",
+      .symbol = "⟨Φ_c⟩"};
+  static constexpr auto fields() {
+    return std::tuple{field("depth", &CorrectedFraction::depth, Number{above(0, 1)})};
+  }
 };
 
 /// Solids fraction between two heights, or two height quantiles of the starting packing.
@@ -42,23 +62,52 @@ struct BulkFraction {
   Window window = QuantileWindow{};
   double taper = 0;
   bool operator==(const BulkFraction&) const = default;
+
+  static constexpr About about{.name = "bulk_fraction",
+                               .text = "Solids fraction between two heights or height quantiles"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field(
+            "name", &BulkFraction::name,
+            Text{"a-z", "a-z0-9_", 64,
+                 "expected lower-case letters, digits and underscores, a letter first, at most 64 "
+                 "of them"}),
+        alternative(&BulkFraction::window),
+        field("taper", &BulkFraction::taper, Number{between(0, 10)},
+              "Over what height the window's edges rise and fall, diameters; 0: sharp. A layer "
+              "spacing, 0.8165, takes every layer of a close-packed bed wholly or not at all",
+              {.unless_default = true})};
+  }
 };
 
 /// Share of fcc and hcp spheres in the bulk (bulk_of() in measure.hpp): what structure's part
 /// "order" gives as fcc + hcp where no region is set. In [0, 1]; NaN where no sphere lies there.
 struct CrystallineFraction {
   bool operator==(const CrystallineFraction&) const = default;
+
+  static constexpr About about{"crystalline_fraction",
+                               "Fraction of fcc and hcp spheres in the bulk"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 /// Number of ordered layers from the floor up: structure's `grown_layers`, by the same rule with
 /// its default settings (density/layers.hpp).
 struct GrownLayers {
   bool operator==(const GrownLayers&) const = default;
+
+  static constexpr About about{"grown_layers",
+                               "Ordered layers from the floor up to the first that is not"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 /// Height of the ordered front, diameters: structure's `ordered_height` (order/ordered_front.hpp).
 struct OrderedHeight {
   bool operator==(const OrderedHeight&) const = default;
+
+  static constexpr About about{
+      "ordered_height",
+      "Height up to which half of the spheres, layer by layer, are fcc or hcp, diameters"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction,
@@ -70,6 +119,9 @@ std::optional<std::string> observable_fault(const Observable& observable,
 
 /// How an observable is stored; its name is also that in scenes.
 Column label(const Observable& observable);
+
+/// The symbol on axes of the observable that is stored under the name; empty where it has none.
+std::string_view observable_symbol(std::string_view name);
 
 /// The observables of a scene with their windows resolved once, on the starting packing.
 class Observer {

@@ -29,18 +29,17 @@ std::optional<Study> joined_study(std::span<const std::string> inputs) {
   if (inputs.empty() || have_one_scene(inputs)) return std::nullopt;
   std::vector<ResultsFile> files;
   for (const std::string& input : inputs) files.emplace_back(input);
-  Json scene = stored_scene(files.front());
-  ParsedScene joined;
+  ParsedScene joined = checked_scene(stored_scene(files.front()));
   for (const ResultsFile& file : std::span(files).subspan(1)) {
-    joined = join_sweeps(scene, stored_scene(file));
+    joined = join_sweeps(joined, checked_scene(stored_scene(file)));
     if (!joined.scene) {
       throw ResultsError(file.path(),
                          fmt::format("cannot be merged with {}: {}", files.front().path(),
                                      fault_lines(joined.faults)));
     }
-    scene = resolved(*joined.scene);
   }
-  Study study{scene.dump(2), scene.dump(2), files.front().study().realizations, {}};
+  const std::string scene = resolved(*joined.scene).dump(2);
+  Study study{scene, scene, files.front().study().realizations, {}};
   std::unordered_map<std::uint64_t, const StudyPoint*> held;
   for (const ResultsFile& file : files) {
     for (const StudyPoint& point : file.study().points) held[point.id] = &point;

@@ -75,7 +75,7 @@ void write_schema(const fs::path& path, bool force) {
         path.string()));
     return;
   }
-  write_text(path.string(), std::string(scene_schema()));
+  write_text(path.string(), scene_schema());
 }
 
 int write_new_scene(const NewArguments& arguments) {

@@ -12,7 +12,6 @@ void add_schema(Command& app, int& code) {
       "and \"$schema\": \"scene.schema.json\" in a scene lets an editor complete and check it.");
   command.run([&code] {
     print_exactly(scene_schema());
-    if (!scene_schema().ends_with('\n')) print_exactly("\n");
     code = exit_ok;
   });
 }

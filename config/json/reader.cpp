@@ -6,19 +6,10 @@
 #include <cmath>
 
 #include "config/json/suggestion.hpp"
-#include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
 
 namespace {
-
-std::string allowed(Range range) {
-  if (range.low_included && range.high_included) {
-    return finite_text("from {} to {}", range.low, range.high);
-  }
-  return finite_text("{} {} and {} {}", range.low_included ? "at least" : "above", range.low,
-                     range.high_included ? "at most" : "below", range.high);
-}
 
 // What the settings of a choice are when only its name is written.
 const Json no_settings = Json::object();
@@ -94,20 +85,6 @@ std::optional<Reader> Reader::find(const std::string& key) const {
   return Reader{*member, pointer_to(pointer_, key), *faults_};
 }
 
-std::optional<double> Reader::number(Range range) const {
-  if (!value().is_number()) {
-    wrong_type(fmt::format("a number {}", allowed(range)));
-    return std::nullopt;
-  }
-  const auto number = value().number();
-  const bool low_enough = range.high_included ? number <= range.high : number < range.high;
-  const bool high_enough = range.low_included ? number >= range.low : number > range.low;
-  if (low_enough && high_enough) return number;
-  fault(fmt::format("{} is out of range: expected a number {}", canonical_text(value()),
-                    allowed(range)));
-  return std::nullopt;
-}
-
 std::optional<std::uint64_t> Reader::whole_number(std::uint64_t least, std::uint64_t most) const {
   const std::string expected = fmt::format("a whole number from {} to {}", least, most);
   if (!value().is_number()) {
@@ -171,14 +148,6 @@ std::optional<Choice> Reader::named_choice(const std::vector<std::string>& names
   const auto name = one_of(names);
   if (!name) return std::nullopt;
   return Choice{*name, Reader{no_settings, pointer_, *faults_}};
-}
-
-void Reader::read(const std::string& key, double& into, Range range) const {
-  if (const auto member = find(key)) into = member->number(range).value_or(into);
-}
-
-void Reader::read_flag(const std::string& key, bool& into) const {
-  if (const auto member = find(key)) into = member->boolean().value_or(into);
 }
 
 }  // namespace jostle::inline config

@@ -12,21 +12,6 @@
 
 namespace jostle::inline config {
 
-/// The numbers a key may take.
-struct Range {
-  double low = 0, high = 0;
-  bool low_included = true, high_included = true;
-};
-constexpr Range between(double low, double high) {
-  return {low, high};
-}
-constexpr Range above(double low, double high) {
-  return {low, high, false, true};
-}
-constexpr Range strictly_between(double low, double high) {
-  return {low, high, false, false};
-}
-
 /// A choice as scenes write it: {"name": settings}, or "name" alone where every setting has a
 /// default (settings are then an empty object).
 struct Choice;
@@ -41,6 +26,8 @@ class Reader {
   const Json& value() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
   void fault(std::string message) const { faults_->push_back({pointer_, std::move(message)}); }
+  /// Notes that the value is something else than what is expected.
+  void wrong_type(std::string_view expected) const;
   /// Notes that a key is missing; `what` says what it should hold.
   void missing(std::string_view key, std::string_view what) const;
   /// Whether no fault was noted at this value or below it.
@@ -53,8 +40,8 @@ class Reader {
   Reader element(std::size_t index) const;
   std::optional<Reader> find(const std::string& key) const;
 
-  /// The value itself; nothing, and a fault, where it is of another type or out of range.
-  std::optional<double> number(Range range) const;
+  /// The value itself; nothing, and a fault, where it is of another type or out of range. Numbers
+  /// are read by their form (config/fields/values.hpp).
   std::optional<std::uint64_t> whole_number(std::uint64_t least, std::uint64_t most) const;
   std::optional<bool> boolean() const;
   std::optional<std::string> text() const;
@@ -77,26 +64,7 @@ class Reader {
   /// "name" or {"name": settings}.
   std::optional<Choice> named_choice(const std::vector<std::string>& names) const;
 
-  /// A member of this object; `into` keeps its value where the key is absent or faulty.
-  void read(const std::string& key, double& into, Range range) const;
-  template <std::unsigned_integral Whole>
-  void read_whole(const std::string& key, Whole& into, std::uint64_t least,
-                  std::uint64_t most) const {
-    static_assert(!std::same_as<Whole, bool>);
-    if (const auto member = find(key)) {
-      if (const auto whole = member->whole_number(least, most)) into = static_cast<Whole>(*whole);
-    }
-  }
-  void read_flag(const std::string& key, bool& into) const;
-  /// A member that names an enumerator; `names` is a table of (name, enumerator).
-  template <class Names, class Enum>
-  void read_name(const std::string& key, Enum& into, const Names& names) const {
-    if (const auto member = find(key)) into = member->named(names).value_or(into);
-  }
-
  private:
-  void wrong_type(std::string_view expected) const;
-
   const Json* value_;
   std::string pointer_;
   std::vector<Fault>* faults_;

@@ -28,7 +28,7 @@ class AnalysisCheck {
   }
 
   template <class Settings>
-  void operator()(const std::string& kind, const std::vector<AnalysisRequest<Settings>>& requests) {
+  void operator()(std::string_view kind, const std::vector<AnalysisRequest<Settings>>& requests) {
     for (std::size_t i = 0; i < requests.size(); ++i) {
       const std::string place = fmt::format("/analyse/{}/{}", kind, i);
       const std::string& name = requests[i].observable;
@@ -184,14 +184,35 @@ std::vector<std::string> made_of(const Scene& scene, const std::string& observab
 
 void check_analyses(const Scene& scene, std::vector<Fault>& faults) {
   AnalysisCheck check(scene, faults);
-  check("steady", scene.analyse.steady);
-  check("spectrum", scene.analyse.spectrum);
-  check("ageing", scene.analyse.ageing);
-  check("hysteresis", scene.analyse.hysteresis);
-  check("ordering", scene.analyse.ordering);
-  check("sweep", scene.analyse.sweep);
-  check("volumes", scene.analyse.volumes);
-  check("memory", scene.analyse.memory);
+  std::apply([&](const auto&... kind) { (check(kind.key, scene.analyse.*kind.member), ...); },
+             Analyses::fields());
+}
+
+void check_until(const Scene& scene, std::vector<Fault>& faults) {
+  for (const char* part : {"/until", "/observe", "/protocol", "/realizations"}) {
+    if (!sound(faults, part)) return;
+  }
+  if (scene.until.targets.empty()) return;
+  if (scene.until.at_most < scene.realizations) {
+    faults.push_back({"/until/at_most", fmt::format("{} is below the {} realizations to begin with",
+                                                    scene.until.at_most, scene.realizations)});
+  }
+  std::vector<std::string> observed;
+  for (const Observable& observable : scene.observables) observed.push_back(label(observable).name);
+  const std::uint64_t taps = total_taps(scene.protocol);
+  for (std::size_t i = 0; i < scene.until.targets.size(); ++i) {
+    const SpreadTarget& target = scene.until.targets[i];
+    const std::string place = fmt::format("/until/targets/{}", i);
+    if (std::ranges::find(observed, target.observable) == observed.end()) {
+      faults.push_back({place + "/observable",
+                        fmt::format("\"{}\" is not observed (observed: {}).{}", target.observable,
+                                    listed(observed), did_you_mean(target.observable, observed))});
+    }
+    if (!target.taps.empty() && target.taps.back() > taps) {
+      faults.push_back({place + "/taps", fmt::format("tap {} is beyond the last tap, {}",
+                                                     target.taps.back(), taps)});
+    }
+  }
 }
 
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults) {

@@ -1,114 +1,119 @@
 #include <algorithm>
 
-#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 
 namespace jostle::inline config {
 
 namespace {
 
-struct Widths {
-  double x = 16, y = 16;
-};
-
-Widths read_widths(const Reader& in) {
-  Widths widths;
-  const auto width = in.find("width");
-  if (!width) {
-    in.missing("width", "a number, or a list of two, diameters");
-    return widths;
-  }
-  if (!width->value().is_array()) {
-    widths.x = width->number(above(0, widest_container)).value_or(widths.x);
-    widths.y = widths.x;
-  } else if (width->is_list(2, 2, "numbers")) {
-    widths.x = width->element(0).number(above(0, widest_container)).value_or(widths.x);
-    widths.y = width->element(1).number(above(0, widest_container)).value_or(widths.y);
-  }
-  return widths;
+/// Any positive width: of one that is too narrow, the engine says why.
+Number positive(Number form) {
+  form.range = above(0, form.range.high);
+  return form;
 }
 
-/// Notes the fault that the engine finds in the container's widths at the key they came from.
-void check_width(const Reader& in, const std::string& key, const Container& container) {
-  const auto member = in.find(key);
+/// Notes what the engine finds wrong with a box that has the width under the key, and else
+/// defaults.
+template <class Box>
+void note_width(const Box& box, std::string_view key, const Reader& in) {
+  const auto member = in.find(std::string(key));
   if (!member || !member->sound()) return;
-  if (const auto fault = width_fault(container)) member->fault(*fault);
-}
-
-Container read_cylinder(const Reader& in) {
-  Cylinder tube;
-  if (!in.is_object_of({"sides", "diameter"})) return tube;
-  if (!in.find("diameter")) in.missing("diameter", "a number, diameters of a sphere");
-  in.read("diameter", tube.diameter, above(0, widest_container));
-  check_width(in, "diameter", tube);
-  return tube;
-}
-
-Container read_fully_periodic(const Reader& in) {
-  FullyPeriodicBox box;
-  if (!in.is_object_of({"sides", "width", "height"})) return box;
-  const Widths widths = read_widths(in);
-  box.width_x = widths.x;
-  box.width_y = widths.y;
-  if (!in.find("height")) in.missing("height", "a number, diameters");
-  in.read("height", box.height, above(0, widest_container));
-  const double narrower = std::min(widths.x, widths.y);
-  check_width(in, "width", FullyPeriodicBox{narrower, narrower, narrower});
-  check_width(in, "height", FullyPeriodicBox{box.height, box.height, box.height});
-  return box;
+  if (const auto fault = width_fault(box)) member->fault(*fault);
 }
 
 template <class Box>
-Container read_box(const Reader& in) {
-  Box box;
-  if (!in.is_object_of({"sides", "width"})) return box;
-  const Widths widths = read_widths(in);
-  box.width_x = widths.x;
-  box.width_y = widths.y;
-  check_width(in, "width", box);
-  return box;
+void read_width(const Field<Box, double, Number>& field, const Reader& in, Box& box) {
+  Field<Box, double, Number> wide = field;
+  wide.form = positive(field.form);
+  read_field(wide, in, box);
+  Box alone{};
+  alone.*field.member = box.*field.member;
+  note_width(alone, field.key, in);
 }
 
-Json written_widths(const char* sides, double x, double y) {
-  return {{"sides", sides}, {"width", x == y ? plain_number(x) : written_bounds(x, y)}};
+template <class Box>
+void read_width(const NumberPair<Box>& field, const Reader& in, Box& box) {
+  const auto width = in.find(std::string(field.key));
+  if (!width) return in.missing(field.key, field.required);
+  const Number form = positive(field.form);
+  if (!width->value().is_array()) {
+    read_value(form, *width, box.*field.first);
+    box.*field.second = box.*field.first;
+  } else if (width->is_list(2, 2, "numbers")) {
+    read_value(form, width->element(0), box.*field.first);
+    read_value(form, width->element(1), box.*field.second);
+  }
+  Box alone{};
+  alone.*field.first = box.*field.first;
+  alone.*field.second = box.*field.second;
+  note_width(alone, field.key, in);
 }
-
-Json written_fully_periodic(const FullyPeriodicBox& box) {
-  Json out = written_widths("fully_periodic", box.width_x, box.width_y);
-  out["height"] = plain_number(box.height);
-  return out;
-}
-
-constexpr Kinds<Container> container_kinds{
-    {"periodic", read_box<PeriodicBox>,
-     [](const PeriodicBox& box) { return written_widths("periodic", box.width_x, box.width_y); }},
-    {"walls", read_box<WalledBox>,
-     [](const WalledBox& box) { return written_widths("walls", box.width_x, box.width_y); }},
-    {"cylinder", read_cylinder,
-     [](const Cylinder& tube) -> Json {
-       return {{"sides", "cylinder"}, {"diameter", plain_number(tube.diameter)}};
-     }},
-    {"fully_periodic", read_fully_periodic, written_fully_periodic}};
 
 }  // namespace
 
-Container read_container(const Reader& in) {
-  const auto sides = in.find("sides");
-  if (!sides) {
-    if (in.is_object_of({"sides", "width", "height", "diameter"})) {
-      in.missing("sides", "one of the strings " + listed(names_of(container_kinds)));
-    }
-    return {};
-  }
-  if (const auto kind = sides->one_of(names_of(container_kinds))) {
-    return read_kind(container_kinds, Choice{*kind, in});
-  }
-  in.is_object_of({"sides", "width", "height", "diameter"});
-  return {};
+template <class Box>
+void add_keys(const NumberPair<Box>& field, std::vector<std::string>& keys) {
+  keys.emplace_back(field.key);
+}
+template <class Box>
+void write_field(const NumberPair<Box>& field, const Box& box, Json& out) {
+  const double first = box.*field.first, second = box.*field.second;
+  out[field.key] = first == second ? plain_number(first) : written_bounds(first, second);
+}
+template <class Box>
+void describe_field(const NumberPair<Box>& field, ObjectSchema& out, Definitions& definitions) {
+  const Json number = value_schema(field.form, definitions);
+  const Json both{{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", number}};
+  out.properties[field.key] = described_as(either(number, both), "", sentence_of(field.text, ""),
+                                           std::nullopt, "[16, [12, 12.124355652982141]]");
+  out.required.emplace_back(field.key);
 }
 
-Json written(const Container& container) {
-  return written_settings(container_kinds, container);
+bool read_value(const OneOf<Container>&, const Reader& in, Container& into) {
+  const auto sides = in.find("sides");
+  const std::vector<std::string> names = names_of<Container>();
+  const auto kind = sides ? sides->one_of(names) : std::nullopt;
+  std::vector<std::string> keys{"sides"};
+  for_each_alternative<Container>([&]<class Box>(std::type_identity<Box>) {
+    if (kind && *kind != Box::about.name) return;
+    for (std::string& key : keys_of(Box::fields()))
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
+  });
+  if (!in.is_object_of(keys)) return false;
+  if (!sides) in.missing("sides", "one of the strings " + listed(names));
+  if (!kind) return false;
+  for_each_alternative<Container>([&]<class Box>(std::type_identity<Box>) {
+    if (*kind != Box::about.name) return;
+    Box box{};
+    std::apply([&](const auto&... field) { (read_width(field, in, box), ...); }, Box::fields());
+    into = box;
+  });
+  return true;
+}
+
+Json written_value(const OneOf<Container>&, const Container& container) {
+  Json out{{"sides", name_of(container)}};
+  out.update(written_settings(container));
+  return out;
+}
+
+Json value_schema(const OneOf<Container>&, Definitions& definitions) {
+  Json boxes = Json::array();
+  for_each_alternative<Container>([&]<class Box>(std::type_identity<Box>) {
+    ObjectSchema box = object_schema(Box::fields(), definitions);
+    box.required.insert(box.required.begin(), "sides");
+    box.properties["sides"] = {{"const", Box::about.name}};
+    boxes.push_back(described_as(box.json(), Box::about.title, "", std::nullopt, ""));
+  });
+  const Json sides = described_as(
+      words_schema(names_of<Container>()), "Sides",
+      "periodic; walls: four vertical planes; cylinder: a tube; fully_periodic: periodic in z too "
+      "and without gravity (the hard-sphere fluid).",
+      std::nullopt, "");
+  return {{"type", "object"},
+          {"required", Json::array({"sides"})},
+          {"properties", {{"sides", sides}}},
+          {"oneOf", boxes}};
 }
 
 }  // namespace jostle::inline config

@@ -6,32 +6,59 @@ namespace jostle::inline config {
 
 namespace {
 
-FitRequest read_fit(const Reader& in) {
-  FitRequest fit;
-  if (!in.is_object_of({"observable", "model", "range"})) return fit;
-  if (const auto observable = in.find("observable")) {
-    fit.observable = observable->text().value_or("");
-  } else {
-    in.missing("observable", "the name of an observable of this scene");
-  }
-  std::vector<std::string> allowed = relaxation_laws();
-  allowed.emplace_back("all");
-  if (const auto model = in.find("model")) {
-    fit.model = model->one_of(allowed).value_or("");
-  } else {
-    in.missing("model", "one of the strings " + listed(allowed));
-  }
-  const auto range = in.find("range");
-  if (!range || !range->is_list(1, 2, "taps, first and last")) return fit;
-  fit.first = range->element(0).whole_number(0, most_taps).value_or(fit.first);
-  if (range->value().size() < 2) return fit;
-  fit.last = range->element(1).whole_number(0, most_taps);
-  if (fit.last && *fit.last <= fit.first) {
-    range->fault(fmt::format("the range from {} to {} is empty: the first tap must be the lower",
-                             fit.first, *fit.last));
-  }
-  return fit;
+std::vector<std::string> fitted_models() {
+  std::vector<std::string> models = relaxation_laws();
+  models.emplace_back("all");
+  return models;
 }
+
+void read_range(const Reader& object, FitRequest& fit) {
+  const auto range = object.find("range");
+  if (!range || !range->is_list(1, 2, "taps, first and last")) return;
+  const Whole tap{0, most_taps};
+  read_value(tap, range->element(0), fit.first);
+  if (range->value().size() < 2 || !read_value(tap, range->element(1), fit.last.emplace())) return;
+  if (*fit.last > fit.first) return;
+  range->fault(fmt::format("the range from {} to {} is empty: the first tap must be the lower",
+                           fit.first, *fit.last));
+}
+
+Json written_range(const FitRequest& fit) {
+  Json range = Json::array({fit.first});
+  if (fit.last) range.push_back(*fit.last);
+  return range;
+}
+
+constexpr std::tuple fit_fields{
+    field("observable", &FitRequest::observable, Text{}, "One that the scene observes",
+          {.required = "the name of an observable of this scene"}),
+    irregular(
+        "model",
+        [](const Reader& object, FitRequest& fit) {
+          const auto model = object.find("model");
+          if (!model) {
+            object.missing("model", "one of the strings " + listed(fitted_models()));
+          } else {
+            fit.model = model->one_of(fitted_models()).value_or("");
+          }
+        },
+        [](const FitRequest& fit, Json& out) { out["model"] = fit.model; },
+        [](ObjectSchema& out, Definitions&) {
+          out.properties["model"] = described_as(
+              words_schema(fitted_models()), "",
+              "A law of docs/fitting.md; all: those that compete, eqs. 3 and 4 as one.",
+              std::nullopt, "");
+          out.required.emplace_back("model");
+        }),
+    irregular(
+        "range", read_range,
+        [](const FitRequest& fit, Json& out) { out["range"] = written_range(fit); },
+        [](ObjectSchema& out, Definitions& definitions) {
+          out.properties["range"] =
+              described_as(value_schema(list_of(Whole{0, most_taps}, 1, 2, ""), definitions), "",
+                           "First and last tap; without the last, to the end.", written_range({}),
+                           "[[1, 4000], [10]]");
+        })};
 
 }  // namespace
 
@@ -44,21 +71,14 @@ std::vector<std::string> competing_laws() {
   return {"inverse_log", "two_exponentials", "kww"};
 }
 
-std::vector<FitRequest> read_fits(const Reader& in) {
-  std::vector<FitRequest> fits;
-  if (!in.is_list(0, 100, "fits")) return fits;
-  for (std::size_t i = 0; i < in.value().size(); ++i) fits.push_back(read_fit(in.element(i)));
-  return fits;
+bool read_part(const Reader& in, FitRequest& fit) {
+  return read_object(fit_fields, in, fit);
 }
-
-Json written(const std::vector<FitRequest>& fits) {
-  Json list = Json::array();
-  for (const FitRequest& fit : fits) {
-    Json range = Json::array({fit.first});
-    if (fit.last) range.push_back(*fit.last);
-    list.push_back({{"observable", fit.observable}, {"model", fit.model}, {"range", range}});
-  }
-  return list;
+Json written_part(const FitRequest& fit) {
+  return written_object(fit_fields, fit);
+}
+Json part_schema(std::type_identity<FitRequest>, Definitions& definitions) {
+  return object_schema(fit_fields, definitions).json();
 }
 
 }  // namespace jostle::inline config

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "config/parts/kinds.hpp"
+#include "config/grids.hpp"
 #include "config/parts/parts.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
@@ -11,137 +11,35 @@ namespace jostle::inline config {
 
 namespace {
 
-constexpr std::size_t longest_name = 64;
-constexpr double highest = 1e6;
-constexpr double widest_taper = 10;  // diameters
+constexpr auto tap_list = list_of(Whole{0, most_taps}, 0, 100'000, "tap numbers");
 
-struct Bounds {
-  double low, high;
-};
-
-std::optional<Bounds> read_bounds(const Reader& in, double most) {
-  if (!in.is_list(2, 2, "numbers, low and high")) return std::nullopt;
-  const auto low = in.element(0).number(between(0, most));
-  const auto high = in.element(1).number(between(0, most));
-  if (!low || !high) return std::nullopt;
-  if (*low < *high) return Bounds{*low, *high};
-  in.fault(finite_text("the window from {} to {} is empty: the first number must be the lower",
-                       *low, *high));
-  return std::nullopt;
-}
-
-QuantileWindow read_quantiles(const Reader& in) {
-  const auto bounds = read_bounds(in, 1);
-  return bounds ? QuantileWindow{bounds->low, bounds->high} : QuantileWindow{};
-}
-
-/// Letters, digits and underscores, beginning with a lower-case letter: a name in a file.
-bool is_name(const std::string& name) {
-  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !name.empty() && name.size() <= longest_name && lower(name.front()) &&
-         std::all_of(name.begin(), name.end(),
-                     [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-Observable read_bulk_fraction(const Reader& in) {
-  BulkFraction bulk;
-  if (!in.is_object_of({"name", "heights", "quantiles", "taper"})) return bulk;
-  if (const auto name = in.find("name")) {
-    bulk.name = name->text().value_or(bulk.name);
-    if (!is_name(bulk.name)) {
-      name->fault(
-          fmt::format("expected lower-case letters, digits and underscores, a letter "
-                      "first, at most {} of them",
-                      longest_name));
-    }
-  }
-  const auto heights = in.find("heights");
-  const auto quantiles = in.find("quantiles");
-  if (heights) bulk.window = read_heights(*heights);
-  if (quantiles) bulk.window = read_quantiles(*quantiles);
-  if (heights && quantiles) in.fault("expected only one of the keys heights, quantiles");
-  in.read("taper", bulk.taper, between(0, widest_taper));
-  const auto* window = std::get_if<HeightWindow>(&bulk.window);
-  if (window && window->low < 0.5 * bulk.taper) {
-    in.fault(
-        finite_text("a window from {} tapered over {} begins below the floor: begin at {} or more",
-                    window->low, bulk.taper, 0.5 * bulk.taper));
-  }
-  return bulk;
-}
-
-Observable read_corrected_fraction(const Reader& in) {
-  CorrectedFraction corrected;
-  if (in.is_object_of({"depth"})) in.read("depth", corrected.depth, above(0, 1));
-  return corrected;
-}
-
-template <class Plain>
-Observable read_plain(const Reader& in) {
-  in.is_object_of({});
-  return Plain{};
-}
-
-/// Of an observable without settings: its name alone stands for it.
-template <class Plain>
-Json written_plain(const Plain&) {
-  return nullptr;
-}
-
-Json written_corrected_fraction(const CorrectedFraction& corrected) {
-  return {{"depth", plain_number(corrected.depth)}};
-}
-
-Json written_bulk_fraction(const BulkFraction& bulk) {
-  Json settings{{"name", bulk.name}};
-  settings.update(written(bulk.window));
-  if (bulk.taper > 0) settings["taper"] = plain_number(bulk.taper);
-  return settings;
-}
-
-constexpr Kinds<Observable> observable_kinds{
-    {"mean_height", read_plain<MeanHeight>, written_plain<MeanHeight>},
-    {"bottom_fraction", read_plain<BottomFraction>, written_plain<BottomFraction>},
-    {"corrected_fraction", read_corrected_fraction, written_corrected_fraction},
-    {"bulk_fraction", read_bulk_fraction, written_bulk_fraction},
-    {"crystalline_fraction", read_plain<CrystallineFraction>, written_plain<CrystallineFraction>},
-    {"grown_layers", read_plain<GrownLayers>, written_plain<GrownLayers>},
-    {"ordered_height", read_plain<OrderedHeight>, written_plain<OrderedHeight>}};
-
-Observable read_observable(const Reader& in) {
-  const auto choice = in.named_choice(names_of(observable_kinds));
-  if (!choice) return MeanHeight{};
-  return read_kind(observable_kinds, *choice);
-}
-
-Json written(const Observable& observable) {
-  const bool plain = written_settings(observable_kinds, observable).is_null();
-  return plain ? Json(name_of(observable_kinds, observable))
-               : written_kind(observable_kinds, observable);
-}
-
-std::vector<std::uint64_t> read_tap_list(const Reader& in) {
+bool read_tap_list(const Reader& in, std::vector<std::uint64_t>& into) {
   std::set<std::uint64_t> taps;
-  if (!in.is_list(0, 100'000, "tap numbers")) return {};
+  if (!in.is_list(tap_list.least, tap_list.most, tap_list.of_what)) return false;
   for (std::size_t i = 0; i < in.value().size(); ++i) {
-    const auto tap = in.element(i).whole_number(0, most_taps);
-    if (tap && !taps.insert(*tap).second) {
-      in.element(i).fault(fmt::format("tap {} is listed twice", *tap));
-    }
+    std::uint64_t tap = 0;
+    if (read_value(tap_list.form, in.element(i), tap) && !taps.insert(tap).second)
+      in.element(i).fault(fmt::format("tap {} is listed twice", tap));
   }
-  return {taps.begin(), taps.end()};
+  into.assign(taps.begin(), taps.end());
+  return true;
 }
 
-LogarithmicTaps read_logarithmic_taps(const Reader& in) {
-  LogarithmicTaps grid;
-  if (!in.is_object_of({"log", "also"})) return grid;
+Json tap_list_schema(Definitions& definitions) {
+  Json schema = value_schema(tap_list, definitions);
+  schema["uniqueItems"] = true;
+  return schema;
+}
+
+constexpr std::tuple grid_fields{field("from", &LogarithmicTaps::from, Whole{1, most_taps}),
+                                 field("to", &LogarithmicTaps::to, Whole{1, most_taps}, "",
+                                       {.required = "the tap at which the grid ends"}),
+                                 field("per_decade", &LogarithmicTaps::per_decade, Whole{1, 100})};
+
+bool read_grid(const Reader& in, LogarithmicTaps& grid) {
+  if (!in.is_object_of({"log", "also"})) return false;
   if (const auto log = in.find("log")) {
-    if (log->is_object_of({"from", "to", "per_decade"})) {
-      if (!log->find("to")) log->missing("to", "the tap at which the grid ends");
-      log->read_whole("from", grid.from, 1, most_taps);
-      log->read_whole("to", grid.to, 1, most_taps);
-      log->read_whole("per_decade", grid.per_decade, 1, 100);
-    }
+    read_object(grid_fields, *log, grid);
     if (log->sound() && grid.from > grid.to) {
       log->fault(fmt::format("the grid from {} to {} is empty: from must not be above to",
                              grid.from, grid.to));
@@ -149,8 +47,19 @@ LogarithmicTaps read_logarithmic_taps(const Reader& in) {
   } else {
     in.missing("log", "an object with the keys from, to, per_decade");
   }
-  if (const auto also = in.find("also")) grid.also = read_tap_list(*also);
-  return grid;
+  if (const auto also = in.find("also")) read_tap_list(*also, grid.also);
+  return true;
+}
+
+Json grid_schema(Definitions& definitions) {
+  ObjectSchema schema;
+  schema.required = {"log"};
+  schema.properties = {
+      {"log",
+       described_as(object_schema(grid_fields, definitions).json(), "",
+                    "Taps from x 10^(k / per_decade), rounded, up to to.", std::nullopt, "")},
+      {"also", described_as(tap_list_schema(definitions), "", "Further taps.", Json::array(), "")}};
+  return schema.json();
 }
 
 struct KeptPart {
@@ -168,49 +77,88 @@ constexpr KeptPart kept_parts[] = {
     {"forces", &SnapshotChoice::forces, true},
     {"driven_temperature", &SnapshotChoice::driven_temperature, true, false, true}};
 
-void read_keep(const Reader& in, SnapshotChoice& snapshots) {
+std::vector<std::string> kept_names() {
   std::vector<std::string> names;
   for (const KeptPart& part : kept_parts) names.emplace_back(part.name);
-  if (!in.is_list(0, names.size(), "of the strings " + listed(names))) return;
+  return names;
+}
+
+void read_keep(const Reader& object, SnapshotChoice& snapshots) {
+  const auto in = object.find("keep");
+  const std::vector<std::string> names = kept_names();
+  if (!in || !in->is_list(0, names.size(), "of the strings " + listed(names))) return;
   std::set<std::string> kept;
-  for (std::size_t i = 0; i < in.value().size(); ++i) {
-    const Reader element = in.element(i);
+  for (std::size_t i = 0; i < in->value().size(); ++i) {
+    const Reader element = in->element(i);
     const auto what = element.one_of(names);
     if (what && !kept.insert(*what).second) element.fault(*what + " is listed twice");
   }
   for (const KeptPart& part : kept_parts) snapshots.*part.kept = kept.contains(part.name);
 }
 
+void write_keep(const SnapshotChoice& snapshots, Json& out) {
+  Json& keep = out["keep"] = Json::array();
+  for (const KeptPart& part : kept_parts)
+    if (snapshots.*part.kept) keep.push_back(part.name);
+}
+
+void describe_keep(ObjectSchema& out, Definitions&) {
+  Json by_default = Json::object();
+  write_keep(default_snapshots(false), by_default);
+  const Json names{{"type", "array"},
+                   {"maxItems", std::size(kept_parts)},
+                   {"uniqueItems", true},
+                   {"items", words_schema(kept_names())}};
+  out.properties["keep"] = described_as(
+      names, "What is kept",
+      "Velocities (and spins, with friction), contacts with their forces, granular_temperature by "
+      "height, and forces (of floor and sides, and the force-moment tensor of the bed) are of "
+      "discrete elements, which keep all of them by default; Monte Carlo keeps the first three. "
+      "Velocities and contacts stand beside positions. driven_temperature, on request, is the "
+      "granular temperature while the floor moves, of half_sine and vibration.",
+      by_default.at("keep"), "");
+}
+
+constexpr std::tuple snapshot_fields{
+    field("taps", &SnapshotChoice::taps, TapNumbers{}, "A list, or a logarithmic grid and others",
+          {.title = "Taps of the snapshots",
+           .examples = R"([[0, 100, 4000], {"log": {"to": 4000, "per_decade": 3}, "also": [0]}])"}),
+    irregular("keep", read_keep, write_keep, describe_keep),
+    field("contact_cut", &SnapshotChoice::contact_cut, Number{between(1, 3), "diameters"},
+          "Centres within this distance count as neighbours"),
+    field("bin_width", &SnapshotChoice::bin_width, Number{between(0.001, 10), "diameters"},
+          "Of the height histogram")};
+
 }  // namespace
 
-HeightWindow read_heights(const Reader& in) {
-  const auto bounds = read_bounds(in, highest);
-  return bounds ? HeightWindow{bounds->low, bounds->high} : HeightWindow{};
+std::optional<std::string> part_fault(const BulkFraction& bulk) {
+  const auto* window = std::get_if<HeightWindow>(&bulk.window);
+  if (window == nullptr || window->low >= 0.5 * bulk.taper) return std::nullopt;
+  return finite_text("a window from {} tapered over {} begins below the floor: begin at {} or more",
+                     window->low, bulk.taper, 0.5 * bulk.taper);
 }
 
-Json written_bounds(double low, double high) {
-  return Json::array({plain_number(low), plain_number(high)});
+bool read_value(const TapNumbers&, const Reader& in, TapChoice& into) {
+  if (in.value().is_object()) return read_grid(in, into.emplace<LogarithmicTaps>());
+  return read_tap_list(in, into.emplace<std::vector<std::uint64_t>>());
 }
-
-Window read_window(const Reader& in) {
-  const auto window = in.choice({"heights", "quantiles"});
-  if (!window) return QuantileWindow{};
-  if (window->name == "heights") return read_heights(window->settings);
-  return read_quantiles(window->settings);
+bool read_value(const TapNumbers& form, const Reader& in, std::vector<std::uint64_t>& into) {
+  TapChoice choice;
+  const bool read = read_value(form, in, choice);
+  into = chosen_taps(choice);
+  return read;
 }
-
-std::vector<Observable> read_observables(const Reader& in) {
-  std::vector<Observable> observables;
-  if (!in.is_list(0, 100, "observables")) return observables;
-  for (std::size_t i = 0; i < in.value().size(); ++i) {
-    observables.push_back(read_observable(in.element(i)));
-  }
-  return observables;
+Json written_value(const TapNumbers&, const TapChoice& choice) {
+  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice))
+    return {{"log", written_object(grid_fields, *grid)}, {"also", grid->also}};
+  return std::get<std::vector<std::uint64_t>>(choice);
 }
-
-TapChoice read_taps(const Reader& in) {
-  if (in.value().is_object()) return read_logarithmic_taps(in);
-  return read_tap_list(in);
+Json written_value(const TapNumbers&, const std::vector<std::uint64_t>& taps) {
+  return taps;
+}
+Json value_schema(const TapNumbers&, Definitions& definitions) {
+  return definitions.refer(
+      "taps", [&] { return either(tap_list_schema(definitions), grid_schema(definitions)); });
 }
 
 SnapshotChoice default_snapshots(bool grains) {
@@ -234,51 +182,14 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
   return std::nullopt;
 }
 
-SnapshotChoice read_snapshots(const Reader& in, bool grains) {
-  SnapshotChoice snapshots = default_snapshots(grains);
-  if (!in.is_object_of({"taps", "keep", "contact_cut", "bin_width"})) return snapshots;
-  if (const auto taps = in.find("taps")) snapshots.taps = read_taps(*taps);
-  if (const auto keep = in.find("keep")) read_keep(*keep, snapshots);
-  in.read("contact_cut", snapshots.contact_cut, between(1, 3));
-  in.read("bin_width", snapshots.bin_width, between(0.001, 10));
-  return snapshots;
+bool read_part(const Reader& in, SnapshotChoice& snapshots) {
+  return read_object(snapshot_fields, in, snapshots);
 }
-
-std::vector<Observable> default_observables() {
-  return {MeanHeight{}, BottomFraction{}, CorrectedFraction{}, BulkFraction{}};
+Json written_part(const SnapshotChoice& snapshots) {
+  return written_object(snapshot_fields, snapshots);
 }
-
-Json written(const Window& window) {
-  if (const auto* heights = std::get_if<HeightWindow>(&window)) {
-    return {{"heights", written_bounds(heights->low, heights->high)}};
-  }
-  const auto& quantiles = std::get<QuantileWindow>(window);
-  return {{"quantiles", written_bounds(quantiles.low, quantiles.high)}};
-}
-
-Json written(const std::vector<Observable>& observables) {
-  Json list = Json::array();
-  for (const Observable& observable : observables) list.push_back(written(observable));
-  return list;
-}
-
-Json written_taps(const TapChoice& choice) {
-  if (const auto* grid = std::get_if<LogarithmicTaps>(&choice)) {
-    return {{"log", {{"from", grid->from}, {"to", grid->to}, {"per_decade", grid->per_decade}}},
-            {"also", grid->also}};
-  }
-  return std::get<std::vector<std::uint64_t>>(choice);
-}
-
-Json written(const SnapshotChoice& snapshots) {
-  Json out;
-  out["taps"] = written_taps(snapshots.taps);
-  out["keep"] = Json::array();
-  for (const KeptPart& part : kept_parts)
-    if (snapshots.*part.kept) out["keep"].push_back(part.name);
-  out["contact_cut"] = plain_number(snapshots.contact_cut);
-  out["bin_width"] = plain_number(snapshots.bin_width);
-  return out;
+Json part_schema(std::type_identity<SnapshotChoice>, Definitions& definitions) {
+  return object_schema(snapshot_fields, definitions).json();
 }
 
 }  // namespace jostle::inline config

@@ -10,26 +10,11 @@ namespace jostle::inline config {
 
 namespace {
 
-constexpr double longest_overlap = 100;  // diameters
 constexpr std::uint32_t origins_a_decade = 2, lags_a_decade = 10;
 
 std::vector<std::uint64_t> taps_or(const std::optional<TapChoice>& choice,
                                    const LogarithmicTaps& otherwise) {
   return chosen_taps(choice ? *choice : TapChoice(otherwise));
-}
-
-void read_lengths(const Reader& in, std::vector<double>& lengths) {
-  if (!in.is_list(1, most_overlap_lengths, "lengths in diameters")) return;
-  lengths.clear();
-  for (std::size_t i = 0; i < in.value().size(); ++i) {
-    const Reader element = in.element(i);
-    const auto length = element.number(above(0, longest_overlap));
-    if (!length) continue;
-    if (std::ranges::find(lengths, *length) != lengths.end())
-      element.fault(fmt::format("{} is listed twice", *length));
-    lengths.push_back(*length);
-  }
-  std::ranges::sort(lengths);
 }
 
 /// Notes what is wrong with a list of taps.
@@ -75,28 +60,6 @@ void check_amounts(const MotionSettings& settings, const Scene& scene, std::vect
 }
 
 }  // namespace
-
-MotionChoice read_motion(const Reader& in) {
-  MotionChoice motion;
-  if (!in.is_object_of({"origins", "lags", "overlap_lengths", "layers"})) return motion;
-  if (const auto origins = in.find("origins")) motion.origins = read_taps(*origins);
-  if (const auto lags = in.find("lags")) motion.lags = read_taps(*lags);
-  if (const auto lengths = in.find("overlap_lengths"))
-    read_lengths(*lengths, motion.overlap_lengths);
-  in.read_whole("layers", motion.layers, 1, most_motion_layers);
-  return motion;
-}
-
-Json written(const MotionChoice& motion) {
-  Json lengths = Json::array();
-  for (const double length : motion.overlap_lengths) lengths.push_back(plain_number(length));
-  Json out = Json::object();
-  if (motion.origins) out["origins"] = written_taps(*motion.origins);
-  if (motion.lags) out["lags"] = written_taps(*motion.lags);
-  out["overlap_lengths"] = lengths;
-  out["layers"] = motion.layers;
-  return out;
-}
 
 MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps) {
   MotionSettings settings{.origins = {},

@@ -1,64 +1,87 @@
 #pragma once
 
+#include <string>
+#include <type_traits>
 #include <vector>
 
-#include "config/json/reader.hpp"
+#include "config/fields/fields.hpp"
 #include "config/scene.hpp"
 
-// The parts of a scene, in from JSON and out to it. A read_* function always returns a part; where
-// it noted a fault, the part is a default that stands in for it.
+// The parts of a scene whose fields are listed here or that scenes write in forms of their own,
+// each in a file. All others are read, written and described by the lists beside them.
 namespace jostle::inline config {
 
-Container read_container(const Reader& in);
-StartChoice read_start(const Reader& in);
-std::vector<ProtocolLine> read_protocol(const Reader& in);
-Relaxation read_relaxation(const Reader& in);
-/// The grains' settings; nothing for Monte Carlo, whose own are "relax" and "relax_start".
-std::optional<DiscreteElement> read_engine(const Reader& in);
-Window read_window(const Reader& in);
-HeightWindow read_heights(const Reader& in);
-std::vector<Observable> read_observables(const Reader& in);
-TapChoice read_taps(const Reader& in);
-/// By default everything that the engine has is kept.
-SnapshotChoice default_snapshots(bool grains);
-SnapshotChoice read_snapshots(const Reader& in, bool grains);
-/// The kept parts that only discrete elements have, and those that stand beside positions, where
-/// they cannot be kept: why.
-std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains);
-MotionChoice read_motion(const Reader& in);
-std::vector<SweepAxis> read_sweep(const Reader& in);
-std::vector<FitRequest> read_fits(const Reader& in);
-TargetPrecision read_until(const Reader& in);
-Analyses read_analyses(const Reader& in);
-StructureSettings read_structure(const Reader& in);
+bool read_value(const OneOf<Container>& form, const Reader& in, Container& into);
+Json written_value(const OneOf<Container>& form, const Container& container);
+Json value_schema(const OneOf<Container>& form, Definitions& definitions);
 
-Json written(const Container& container);
-Json written(const StartChoice& start);
+bool read_value(const OneOf<StartChoice>& form, const Reader& in, StartChoice& into);
+Json written_value(const OneOf<StartChoice>& form, const StartChoice& start);
+Json value_schema(const OneOf<StartChoice>& form, Definitions& definitions);
+bool read_part(const Reader& in, Crystal& crystal);
+Json part_schema(std::type_identity<Crystal> type, Definitions& definitions);
+bool read_part(const Reader& in, PackingFile& file);
+Json written_part(const PackingFile& file);
+Json part_schema(std::type_identity<PackingFile> type, Definitions& definitions);
 /// The start as the engine has it; the packing of a file is read later.
 Start engine_start(const StartChoice& choice);
 /// What scenes call the kind of start: "pour", ...
 std::string key_of(const StartChoice& start);
-Json written(const std::vector<ProtocolLine>& protocol);
-Json written(const Relaxation& relaxation);
-Json written_engine(const DiscreteElement& engine);
-Json written(const Window& window);
-Json written(const std::vector<Observable>& observables);
-Json written(const SnapshotChoice& snapshots);
-Json written_taps(const TapChoice& choice);
-Json written(const MotionChoice& motion);
-Json written(const std::vector<SweepAxis>& sweep);
-Json written(const std::vector<FitRequest>& fits);
-Json written(const TargetPrecision& wanted);
-Json written(const Analyses& analyses);
-Json written(const StructureSettings& settings);
-/// [low, high]
-Json written_bounds(double low, double high);
 
-/// A number as a person writes it: 16, not 16.0.
-Json plain_number(double value);
+bool read_part(const Reader& in, ProtocolLine& line);
+Json written_part(const ProtocolLine& line);
+Json part_schema(std::type_identity<ProtocolLine> type, Definitions& definitions);
 
-/// Default of "observe": one of each kind.
-std::vector<Observable> default_observables();
+bool read_value(const OneOf<StopRule>& form, const Reader& in, StopRule& into);
+Json value_schema(const OneOf<StopRule>& form, Definitions& definitions);
+bool read_part(const Reader& in, Relaxation& relaxation);
+Json written_part(const Relaxation& relaxation);
+Json part_schema(std::type_identity<Relaxation> type, Definitions& definitions);
+
+bool read_part(const Reader& in, DiscreteElement& grains);
+Json written_part(const DiscreteElement& grains);
+Json part_schema(std::type_identity<DiscreteElement> type, Definitions& definitions);
+/// The grains' settings; nothing for Monte Carlo, whose own are "relax" and "relax_start".
+std::optional<DiscreteElement> read_engine(const Reader& in);
+Json written_engine(const DiscreteElement& grains);
+Json engine_schema(Definitions& definitions);
+
+/// A window of heights that is tapered below the floor.
+std::optional<std::string> part_fault(const BulkFraction& bulk);
+
+bool read_value(const TapNumbers& form, const Reader& in, TapChoice& into);
+bool read_value(const TapNumbers& form, const Reader& in, std::vector<std::uint64_t>& into);
+Json written_value(const TapNumbers& form, const TapChoice& choice);
+Json written_value(const TapNumbers& form, const std::vector<std::uint64_t>& taps);
+Json value_schema(const TapNumbers& form, Definitions& definitions);
+
+bool read_part(const Reader& in, SnapshotChoice& snapshots);
+Json written_part(const SnapshotChoice& snapshots);
+Json part_schema(std::type_identity<SnapshotChoice> type, Definitions& definitions);
+/// By default everything that the engine has is kept.
+SnapshotChoice default_snapshots(bool grains);
+/// The kept parts that only discrete elements have, and those that stand beside positions, where
+/// they cannot be kept: why.
+std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains);
+
+/// The form of a sweep.
+struct SweptPointers {};
+bool read_value(const SweptPointers& form, const Reader& in, std::vector<SweepAxis>& sweep);
+Json written_value(const SweptPointers& form, const std::vector<SweepAxis>& sweep);
+Json value_schema(const SweptPointers& form, Definitions& definitions);
+
+bool read_part(const Reader& in, FitRequest& fit);
+Json written_part(const FitRequest& fit);
+Json part_schema(std::type_identity<FitRequest> type, Definitions& definitions);
+
+bool read_part(const Reader& in, Region& region);
+Json written_part(const Region& region);
+Json part_schema(std::type_identity<Region> type, Definitions& definitions);
+/// Bond lengths of which there are none.
+std::optional<std::string> part_fault(const HolesSettings& holes);
+bool read_part(const Reader& in, StructureSettings& settings);
+Json written_part(const StructureSettings& settings);
+Json part_schema(std::type_identity<StructureSettings> type, Definitions& definitions);
 
 /// The scene of a JSON object, with defaults in the place of what is faulty or missing. Sweeps are
 /// read, not expanded.

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "config/grids.hpp"
-#include "config/parts/kinds.hpp"
 #include "config/parts/parts.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
@@ -12,31 +11,35 @@ namespace jostle::inline config {
 namespace {
 
 constexpr std::uint64_t most_strengths = 1000;
-constexpr Range dilations = between(0, 10);
-constexpr Range lifts = between(0, 100);
+constexpr Range root_range = between(0, 3);
 
 /// {"from", "to", "step"} or, for what is best stepped in its square root, {"sqrt_from", ...}.
-Ramp read_ramp(const Reader& in, Range strengths, bool may_be_square_root) {
-  Ramp ramp;
-  const std::vector<std::string> plain{"from", "to", "step"};
-  const std::vector<std::string> rooted{"sqrt_from", "sqrt_to", "sqrt_step"};
-  const bool square_root =
-      may_be_square_root && (in.find("sqrt_from") || in.find("sqrt_to") || in.find("sqrt_step"));
-  const auto& keys = square_root ? rooted : plain;
-  std::vector<std::string> allowed = keys;
-  if (may_be_square_root && !square_root)
-    allowed.insert(allowed.end(), rooted.begin(), rooted.end());
-  if (!in.is_object_of(allowed)) return ramp;
+constexpr auto ramp_fields(Range range, RampScale scale) {
+  const bool rooted = scale == RampScale::square_root;
+  constexpr std::string_view plain = "a ramp has the keys from, to, step",
+                             roots = "a ramp has the keys sqrt_from, sqrt_to, sqrt_step";
+  const Notes notes{.required = rooted ? roots : plain};
+  return std::tuple{
+      field(rooted ? "sqrt_from" : "from", &Ramp::from, Number{range}, "", notes),
+      field(rooted ? "sqrt_to" : "to", &Ramp::to, Number{range}, "", notes),
+      field(rooted ? "sqrt_step" : "step", &Ramp::step, Number{above(0, range.high)}, "", notes)};
+}
 
-  const Range range = square_root ? between(0, 3) : strengths;
-  ramp.scale = square_root ? RampScale::square_root : RampScale::linear;
-  for (const std::string& key : keys) {
-    if (!in.find(key)) in.missing(key, "a ramp has the keys " + listed(keys));
+bool read_ramp(const Strength& form, const Reader& in, Ramp& ramp) {
+  const auto plain = ramp_fields(form.range, RampScale::linear),
+             rooted = ramp_fields(root_range, RampScale::square_root);
+  bool in_roots = false;
+  std::vector<std::string> allowed = keys_of(plain);
+  for (const std::string& key : keys_of(rooted)) {
+    in_roots = in_roots || (form.in_roots && in.find(key));
+    if (form.in_roots) allowed.push_back(key);
   }
-  in.read(keys[0], ramp.from, range);
-  in.read(keys[1], ramp.to, range);
-  in.read(keys[2], ramp.step, above(0, range.high));
-  if (!in.sound()) return ramp;
+  if (in_roots) allowed = keys_of(rooted);
+  if (!in.is_object_of(allowed)) return false;
+  ramp.scale = in_roots ? RampScale::square_root : RampScale::linear;
+  std::apply([&](const auto&... field) { (read_field(field, in, ramp), ...); },
+             in_roots ? rooted : plain);
+  if (!in.sound()) return false;
   const auto steps = whole_steps(ramp);
   if (!steps) {
     const double step = ramp.from > ramp.to ? -ramp.step : ramp.step;
@@ -48,184 +51,191 @@ Ramp read_ramp(const Reader& in, Range strengths, bool may_be_square_root) {
   } else if (*steps >= most_strengths) {
     in.fault(fmt::format("{} strengths: a ramp has at most {}", *steps + 1, most_strengths));
   }
-  return ramp;
+  return true;
 }
 
-enum class Rooted { no, yes };
-
-/// Reads the strength of a tap: a number, or in its place a ramp.
-struct StrengthReader {
-  std::optional<Ramp>* ramp = nullptr;  // null: a number
-
-  double operator()(const Reader& in, Range strengths, Rooted rooted) const {
-    if (!ramp) return in.number(strengths).value_or(0);
-    *ramp = read_ramp(in, strengths, rooted == Rooted::yes);
-    return 0;
-  }
-};
-
-/// Writes it.
-struct StrengthWriter {
-  const std::optional<Ramp>& ramp;
-
-  Json operator()(double value) const;
-};
-
-template <class TapKind>
-struct TapEntry {
-  using Part = TapKind;
-  std::string_view name;
-  Tap (*read)(const Reader&, const StrengthReader&);
-  Json (*write)(const TapKind&, const StrengthWriter&);
-};
-
-Tap read_shake(const Reader& in, const StrengthReader& strength) {
-  Shake shake;
-  if (!in.is_object_of({"lambda", "lateral_radius", "retries"})) return shake;
-  if (const auto lambda = in.find("lambda")) {
-    shake.lambda = strength(*lambda, dilations, Rooted::yes);
-  } else if (strength.ramp) {
-    in.missing("lambda", "the ramp of a shake is an object here");
-  }
-  in.read("lateral_radius", shake.lateral_radius, between(0, 1));
-  in.read_whole("retries", shake.retries, 0, 1000);
-  return shake;
+Json written_ramp(const Ramp& ramp) {
+  return written_object(ramp_fields(root_range, ramp.scale), ramp);
 }
 
-Json written_shake(const Shake& tap, const StrengthWriter& strength) {
-  return {{"lambda", strength(tap.lambda)},
-          {"lateral_radius", plain_number(tap.lateral_radius)},
-          {"retries", tap.retries}};
-}
-
-constexpr Range floor_strengths = between(0, 100);  // diameters, or Gamma
-constexpr Range frequencies = between(1e-3, 1e6);   // Hz
-
-template <class FloorTap>
-void read_floor_motion(const Reader& in, const StrengthReader& strength, FloorTap& tap) {
-  const auto amplitude = in.find("amplitude"), acceleration = in.find("acceleration");
-  if (amplitude && acceleration) in.fault("expected only one of the keys acceleration, amplitude");
-  if (acceleration) tap.kind = FloorStrength::acceleration;
-  if (const auto& given = acceleration ? acceleration : amplitude) {
-    tap.strength = strength(*given, floor_strengths, Rooted::no);
-  } else if (strength.ramp) {
-    in.missing("amplitude", "the ramp of a floor that moves is an object here");
-  }
-  in.read("frequency", tap.frequency, frequencies);
-}
-
-template <class FloorTap>
-Json written_floor_motion(const FloorTap& tap, const StrengthWriter& strength) {
-  const bool by_amplitude = tap.kind == FloorStrength::amplitude;
-  return {{by_amplitude ? "amplitude" : "acceleration", strength(tap.strength)},
-          {"frequency", plain_number(tap.frequency)}};
-}
-
-Tap read_half_sine(const Reader& in, const StrengthReader& strength) {
-  HalfSine tap;
-  if (in.is_object_of({"amplitude", "acceleration", "frequency"}))
-    read_floor_motion(in, strength, tap);
-  return tap;
-}
-
-Tap read_vibration(const Reader& in, const StrengthReader& strength) {
-  Vibration tap;
-  if (!in.is_object_of({"amplitude", "acceleration", "frequency", "cycles"})) return tap;
-  read_floor_motion(in, strength, tap);
-  in.read_whole("cycles", tap.cycles, 1, most_cycles);
-  return tap;
-}
-
-constexpr TableOf<TapEntry, Tap>::Type tap_kinds{
-    {"dilate",
-     [](const Reader& in, const StrengthReader& strength) -> Tap {
-       return Dilate{strength(in, dilations, Rooted::yes)};
-     },
-     [](const Dilate& tap, const StrengthWriter& strength) { return strength(tap.epsilon); }},
-    {"dilate_floor_held",
-     [](const Reader& in, const StrengthReader& strength) -> Tap {
-       return DilateFloorHeld{strength(in, dilations, Rooted::yes)};
-     },
-     [](const DilateFloorHeld& tap, const StrengthWriter& strength) {
-       return strength(tap.delta);
-     }},
-    {"lift",
-     [](const Reader& in, const StrengthReader& strength) -> Tap {
-       return Lift{strength(in, lifts, Rooted::no)};
-     },
-     [](const Lift& tap, const StrengthWriter& strength) { return strength(tap.gamma); }},
-    {"shake", read_shake, written_shake},
-    {"half_sine", read_half_sine, written_floor_motion<HalfSine>},
-    {"vibration", read_vibration, [](const Vibration& tap, const StrengthWriter& strength) -> Json {
-       Json settings = written_floor_motion(tap, strength);
-       settings["cycles"] = tap.cycles;
-       return settings;
-     }}};
-
-Tap read_tap(const Reader& in, const StrengthReader& strength) {
-  const auto choice = in.choice(names_of(tap_kinds));
-  if (!choice) return Dilate{};
-  return read_kind(tap_kinds, choice->name,
-                   [&](const auto& kind) { return kind.read(choice->settings, strength); });
-}
-
-Json written(const Tap& tap, const StrengthWriter& strength) {
-  const Json settings = with_kind(tap_kinds, tap, [&](const auto& kind, const auto& part) {
-    return kind.write(part, strength);
+Json ramp_schema(const Strength& form, Definitions& definitions) {
+  const std::string name = fmt::format("ramp{}_to_{}", form.in_roots ? "_in_roots" : "",
+                                       canonical_text(plain_number(form.range.high)));
+  return definitions.refer(name, [&] {
+    const auto schema_of = [&](Range range, RampScale scale) {
+      return object_schema(ramp_fields(range, scale), definitions).json();
+    };
+    const Json plain = schema_of(form.range, RampScale::linear);
+    if (!form.in_roots)
+      return described_as(plain, "", "", std::nullopt,
+                          R"([{"from": 0.1, "to": 0.5, "step": 0.05}])");
+    return described_as(either(plain, schema_of(root_range, RampScale::square_root)), "", "",
+                        std::nullopt,
+                        R"([{"sqrt_from": 0.025, "sqrt_to": 0.4, "sqrt_step": 0.025}])");
   });
-  return {{name_of(tap_kinds, tap), settings}};
 }
 
-ProtocolLine read_line(const Reader& in) {
-  ProtocolLine line;
-  if (!in.is_object_of({"tap", "ramp", "count"})) return line;
-  const auto tap = in.find("tap");
-  const auto ramp = in.find("ramp");
-  if (tap) line.tap = read_tap(*tap, {});
-  if (ramp) {
-    line.ramp = Ramp{};
-    line.tap = read_tap(*ramp, {&line.ramp});
-  }
-  if (tap && ramp) in.fault("expected only one of the keys tap, ramp");
-  if (!tap && !ramp) in.fault("expected one of the keys tap, ramp");
-  if (!in.find("count")) {
-    in.missing("count", "how many taps (of a ramp: at each strength), a whole number");
-  }
-  in.read_whole("count", line.count, 0, most_taps);
-  return line;
+// A tap in a ramp: as the tap alone, with a ramp in the place of its strength.
+
+constexpr std::string_view ramp_required =
+    "the strength of a tap in a ramp is an object with the keys from, to, step";
+
+template <class Field, class Part>
+void read_ramped(const Field& field, const Reader& in, Part& part, Ramp&) {
+  read_field(field, in, part);
+}
+template <class Part>
+void read_ramped(const Field<Part, double, Strength>& field, const Reader& in, Part& part,
+                 Ramp& ramp) {
+  part.*field.member = 0;
+  const auto member = in.find(std::string(field.key));
+  if (!member) return in.missing(field.key, ramp_required);
+  read_ramp(field.form, *member, ramp);
+}
+template <class Part, class Kind, std::size_t n>
+void read_ramped(const KeyedNumber<Part, Kind, n>& field, const Reader& in, Part& part,
+                 Ramp& ramp) {
+  part.*field.value = 0;
+  const auto member = read_kind(field, in, part);
+  if (!member) return in.missing(field.keys[0].first, ramp_required);
+  read_ramp({field.forms[0].range}, *member, ramp);
 }
 
-Json written(const Ramp& ramp) {
-  if (ramp.scale == RampScale::square_root) {
-    return {{"sqrt_from", plain_number(ramp.from)},
-            {"sqrt_to", plain_number(ramp.to)},
-            {"sqrt_step", plain_number(ramp.step)}};
-  }
-  return {{"from", plain_number(ramp.from)},
-          {"to", plain_number(ramp.to)},
-          {"step", plain_number(ramp.step)}};
+template <class Field, class Part>
+void write_ramped(const Field& field, const Part& part, const Ramp&, Json& out) {
+  write_field(field, part, out);
+}
+template <class Part>
+void write_ramped(const Field<Part, double, Strength>& field, const Part&, const Ramp& ramp,
+                  Json& out) {
+  out[field.key] = written_ramp(ramp);
+}
+template <class Part, class Kind, std::size_t n>
+void write_ramped(const KeyedNumber<Part, Kind, n>& field, const Part& part, const Ramp& ramp,
+                  Json& out) {
+  out[name_in(field.keys, part.*field.kind)] = written_ramp(ramp);
 }
 
-Json StrengthWriter::operator()(double value) const {
-  return ramp ? written(*ramp) : plain_number(value);
+template <class Field>
+void describe_ramped(const Field& field, ObjectSchema& out, Definitions& definitions) {
+  describe_field(field, out, definitions);
 }
+template <class Part>
+void describe_ramped(const Field<Part, double, Strength>& field, ObjectSchema& out,
+                     Definitions& definitions) {
+  out.properties[field.key] = ramp_schema(field.form, definitions);
+  out.required.emplace_back(field.key);
+}
+template <class Part, class Kind, std::size_t n>
+void describe_ramped(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& out,
+                     Definitions& definitions) {
+  describe_kinds(field, true, out, [&](const Number& form, std::string_view text, const auto&) {
+    return described_as(ramp_schema({form.range}, definitions), "", sentence_of(text, form.unit),
+                        std::nullopt, "");
+  });
+}
+
+/// {"dilate": ramp} or {"shake": {"lambda": ramp, ...}}
+void read_ramped_tap(const Reader& in, ProtocolLine& line) {
+  const auto choice = in.choice(names_of<Tap>());
+  Ramp& ramp = line.ramp.emplace();
+  if (!choice) return;
+  for_each_alternative<Tap>([&]<class Part>(std::type_identity<Part>) {
+    if (choice->name != Part::about.name) return;
+    Part part{};
+    if constexpr (Bare<Part>) {
+      constexpr auto only = std::get<0>(Part::fields());
+      part.*only.member = 0;
+      read_ramp(only.form, choice->settings, ramp);
+    } else if (choice->settings.is_object_of(keys_of(Part::fields()))) {
+      std::apply(
+          [&](const auto&... field) { (read_ramped(field, choice->settings, part, ramp), ...); },
+          Part::fields());
+    }
+    line.tap = part;
+  });
+}
+
+Json written_ramped_tap(const Tap& tap, const Ramp& ramp) {
+  Json settings = std::visit(
+      [&]<class Part>(const Part& part) {
+        if constexpr (Bare<Part>) {
+          return written_ramp(ramp);
+        } else {
+          Json out = Json::object();
+          std::apply([&](const auto&... field) { (write_ramped(field, part, ramp, out), ...); },
+                     Part::fields());
+          return out;
+        }
+      },
+      tap);
+  return {{name_of(tap), std::move(settings)}};
+}
+
+Json ramped_taps_schema(Definitions& definitions) {
+  ObjectSchema taps;
+  taps.rules = {{"minProperties", 1}, {"maxProperties", 1}};
+  for_each_alternative<Tap>([&]<class Part>(std::type_identity<Part>) {
+    if constexpr (Bare<Part>) {
+      taps.properties[Part::about.name] =
+          described_as(ramp_schema(std::get<0>(Part::fields()).form, definitions), "",
+                       sentence_of(Part::about.text, ""), std::nullopt, "");
+    } else {
+      ObjectSchema settings;
+      std::apply(
+          [&](const auto&... field) { (describe_ramped(field, settings, definitions), ...); },
+          Part::fields());
+      taps.properties[Part::about.name] =
+          described_as(settings.json(), "", sentence_of(Part::about.text, ""), std::nullopt, "");
+    }
+  });
+  return taps.json();
+}
+
+constexpr std::tuple count_field{field(
+    "count", &ProtocolLine::count, Whole{0, most_taps},
+    "Number of taps; of a ramp: at each strength",
+    {.required = "how many taps (of a ramp: at each strength), a whole number", .title = "Count"})};
 
 }  // namespace
 
-std::vector<ProtocolLine> read_protocol(const Reader& in) {
-  std::vector<ProtocolLine> protocol;
-  if (!in.is_list(0, 1000, "stages")) return protocol;
-  for (std::size_t i = 0; i < in.value().size(); ++i) protocol.push_back(read_line(in.element(i)));
-  return protocol;
+bool read_part(const Reader& in, ProtocolLine& line) {
+  if (!in.is_object_of({"tap", "ramp", "count"})) return false;
+  const auto tap = in.find("tap");
+  const auto ramp = in.find("ramp");
+  if (tap) read_value(OneOf<Tap>{}, *tap, line.tap);
+  if (ramp) read_ramped_tap(*ramp, line);
+  if (tap && ramp) in.fault("expected only one of the keys tap, ramp");
+  if (!tap && !ramp) in.fault("expected one of the keys tap, ramp");
+  read_field(std::get<0>(count_field), in, line);
+  return true;
 }
 
-Json written(const std::vector<ProtocolLine>& protocol) {
-  Json lines = Json::array();
-  for (const ProtocolLine& line : protocol) {
-    lines.push_back({{line.ramp ? "ramp" : "tap", written(line.tap, StrengthWriter{line.ramp})},
-                     {"count", line.count}});
+Json written_part(const ProtocolLine& line) {
+  Json out = Json::object();
+  if (line.ramp) {
+    out["ramp"] = written_ramped_tap(line.tap, *line.ramp);
+  } else {
+    out["tap"] = written_value(OneOf<Tap>{}, line.tap);
   }
-  return lines;
+  out.update(written_object(count_field, line));
+  return out;
+}
+
+Json part_schema(std::type_identity<ProtocolLine>, Definitions& definitions) {
+  ObjectSchema schema;
+  schema.rules = {{"minProperties", 2}, {"maxProperties", 2}};
+  schema.properties["tap"] = described_as(value_schema(OneOf<Tap>{}, definitions), "Tap",
+                                          "The excitation of one tap.", std::nullopt, "");
+  schema.properties["ramp"] = described_as(
+      ramped_taps_schema(definitions), "Ramp",
+      "A tap whose strength goes from one value to another in equal steps, both ends included; "
+      "downwards where from is above to. sqrt_*: steps of the square root of the strength.",
+      std::nullopt, "");
+  describe_field(std::get<0>(count_field), schema, definitions);
+  return described_as(schema.json(), "Stage",
+                      "count taps, or count taps at every strength of a ramp.", std::nullopt,
+                      R"([{"tap": {"dilate": 0.02}, "count": 4000}])");
 }
 
 }  // namespace jostle::inline config

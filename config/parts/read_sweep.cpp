@@ -62,12 +62,11 @@ void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
 
 }  // namespace
 
-std::vector<SweepAxis> read_sweep(const Reader& in) {
-  std::vector<SweepAxis> sweep;
+bool read_value(const SweptPointers&, const Reader& in, std::vector<SweepAxis>& sweep) {
   if (!in.value().is_object()) {
     in.fault("expected an object of JSON pointers with lists of values, found " +
              described(in.value()));
-    return sweep;
+    return false;
   }
   for (const auto& [key, value] : in.value().members()) {
     const Reader member = *in.find(key);
@@ -83,10 +82,10 @@ std::vector<SweepAxis> read_sweep(const Reader& in) {
       if (axis.size() > 0) sweep.push_back(std::move(axis));
     }
   }
-  return sweep;
+  return true;
 }
 
-Json written(const std::vector<SweepAxis>& sweep) {
+Json written_value(const SweptPointers&, const std::vector<SweepAxis>& sweep) {
   Json out = Json::object();
   // A later axis must not overtake an earlier one: from the first zipped axis on, all are zipped.
   bool zipped = false;
@@ -101,6 +100,20 @@ Json written(const std::vector<SweepAxis>& sweep) {
     }
   }
   return out;
+}
+
+Json value_schema(const SweptPointers&, Definitions&) {
+  const Json values{{"type", "array"}, {"minItems", 1}, {"maxItems", most_values}};
+  const Json pointers{{"^/", values}};
+  const Json zipped{{"description", "Lists of one length whose values vary together."},
+                    {"type", "object"},
+                    {"minProperties", 1},
+                    {"additionalProperties", false},
+                    {"patternProperties", pointers}};
+  return {{"type", "object"},
+          {"additionalProperties", false},
+          {"patternProperties", pointers},
+          {"properties", {{"zip", either(zipped, {{"type", "array"}, {"items", zipped}})}}}};
 }
 
 }  // namespace jostle::inline config

@@ -1,166 +1,178 @@
-#include <algorithm>
+#include <fmt/format.h>
 
-#include "config/names.hpp"
-#include "config/parts/kinds.hpp"
+#include <algorithm>
+#include <limits>
+
 #include "config/parts/parts.hpp"
 
 namespace jostle::inline config {
 
 namespace {
 
-StartChoice read_pour(const Reader& in) {
-  const auto pour = in.named_choice({"steepest_descent", "fitted"});
-  if (!pour) return SteepestDescentPour{};
-  if (pour->name == "steepest_descent") {
-    pour->settings.is_object_of({});
-    return SteepestDescentPour{};
-  }
+/// {"pour": "steepest_descent"} or {"pour": "fitted"}: two starts under one name.
+using Pour = std::variant<SteepestDescentPour, FittedPour>;
+constexpr OneOf<Pour> pour_form{.by_name = true};
+constexpr std::string_view pour_key = "pour";
+
+template <class Part>
+constexpr bool is_pour =
+    std::is_same_v<Part, SteepestDescentPour> || std::is_same_v<Part, FittedPour>;
+
+std::vector<std::string> start_names() {
+  std::vector<std::string> names{std::string(pour_key)};
+  for_each_alternative<StartChoice>([&]<class Part>(std::type_identity<Part>) {
+    if (!is_pour<Part>) names.emplace_back(Part::about.name);
+  });
+  return names;
+}
+
+void read_pour(const Reader& in, StartChoice& into) {
   // Of the rule before: random moves of every sphere.
-  for (const std::string moves : {"max_step", "max_sweeps"}) {
-    if (const auto key = pour->settings.find(moves)) {
-      key->fault(
-          "a fitted pour has no settings any more: it pours the spheres that overlap a wall again "
-          "and moves no others, so there are no random moves to bound; write {\"pour\": "
-          "\"fitted\"}");
-      return FittedPour{};
+  if (const auto fitted = in.find("fitted")) {
+    for (const std::string moves : {"max_step", "max_sweeps"}) {
+      if (const auto key = fitted->find(moves))
+        return key->fault(
+            "a fitted pour has no settings any more: it pours the spheres that overlap a wall "
+            "again and moves no others, so there are no random moves to bound; write {\"pour\": "
+            "\"fitted\"}");
     }
   }
-  pour->settings.is_object_of({});
-  return FittedPour{};
+  Pour pour;
+  read_value(pour_form, in, pour);
+  std::visit([&](const auto& kind) { into = kind; }, pour);
 }
 
-StartChoice read_random_settle(const Reader& in) {
-  RandomSettle settle;
-  if (in.is_object_of({"dilute_fraction", "drop_height"})) {
-    in.read("dilute_fraction", settle.dilute_fraction, above(0, densest_dilution));
-    in.read("drop_height", settle.drop_height, between(0, highest_drop));
+/// The name of a file with a packing, by its ending: "h5|hdf5".
+struct PackingPath {
+  std::string_view endings;
+};
+constexpr std::string_view results_endings = "h5|hdf5", xyz_endings = "xyz|extxyz",
+                           all_endings = "h5|hdf5|xyz|extxyz";
+
+bool ends_with_one_of(std::string_view path, std::string_view endings) {
+  for (std::size_t begin = 0; begin < endings.size();) {
+    const std::size_t end = std::min(endings.find('|', begin), endings.size());
+    if (path.ends_with(fmt::format(".{}", endings.substr(begin, end - begin)))) return true;
+    begin = end + 1;
   }
-  return settle;
+  return false;
 }
 
-StartChoice read_crystal(const Reader& in) {
-  Crystal crystal;
-  if (in.value().is_string()) {
-    if (const auto lattice = in.named(lattices)) crystal.lattice = *lattice;
-  } else if (in.is_object_of({"lattice", "stretch"})) {
-    if (!in.find("lattice"))
-      in.missing("lattice", "one of the strings " + listed(names_in(lattices)));
-    in.read_name("lattice", crystal.lattice, lattices);
-    in.read_flag("stretch", crystal.stretch);
-  }
-  return crystal;
-}
-
-StartChoice read_grow(const Reader& in) {
-  Grow grow;
-  if (in.is_object_of({"max_sweeps"})) in.read_whole("max_sweeps", grow.max_sweeps, 1, most_sweeps);
-  return grow;
-}
-
-bool ends_with_one_of(const std::string& path, std::initializer_list<std::string_view> endings) {
-  return std::any_of(endings.begin(), endings.end(),
-                     [&](std::string_view ending) { return path.ends_with(ending); });
-}
-
-/// "last" or a number.
-void read_last_or(const Reader& in, const std::string& key, std::optional<std::uint64_t>& into) {
-  const auto member = in.find(key);
-  if (!member || member->value() == "last") return;
-  if (member->value().is_number()) {
-    into = member->whole_number(0, most_sweeps);
-  } else {
-    member->fault("expected a whole number or \"last\", found " + described(member->value()));
-  }
-}
-
-void check_path(const Reader& in, const std::string& path) {
-  if (ends_with_one_of(path, {".h5", ".hdf5", ".xyz", ".extxyz"})) return;
+bool read_value(const PackingPath& form, const Reader& in, std::string& into) {
+  const auto path = in.text();
+  if (!path) return false;
+  into = *path;
+  if (ends_with_one_of(into, form.endings)) return true;
   in.fault(
       "a packing file must end in .h5 or .hdf5 (results of an earlier run), or in .xyz or "
       ".extxyz (extended XYZ)");
+  return false;
+}
+Json written_value(const PackingPath&, const std::string& path) {
+  return path;
+}
+Json value_schema(const PackingPath& form, Definitions&) {
+  return {{"type", "string"}, {"pattern", fmt::format("\\.({})$", form.endings)}};
 }
 
-StartChoice read_file(const Reader& in) {
-  PackingFile file;
-  if (in.value().is_string()) {
-    file.path = in.value().text();
-    check_path(in, file.path);
-    return file;
-  }
-  const std::vector<std::string> of_results{"path", "point", "realization", "tap", "overlap"};
-  const std::vector<std::string> of_xyz{"path", "frame", "overlap"};
-  const auto path = in.find("path");
-  if (path) {
-    file.path = path->text().value_or("");
-    if (path->sound()) check_path(*path, file.path);
-  }
-  const bool known = path && path->sound();
-  const bool xyz = known && ends_with_one_of(file.path, {".xyz", ".extxyz"});
-  if (!in.is_object_of(xyz     ? of_xyz
-                       : known ? of_results
-                               : std::vector<std::string>{"path", "point", "realization", "tap",
-                                                          "frame", "overlap"})) {
-    return file;
-  }
-  if (!path) in.missing("path", "the file of a saved packing, from the folder of the scene");
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  in.read_whole("point", file.point, 0, most);
-  in.read_whole("realization", file.realization, 0, most);
-  read_last_or(in, "tap", file.tap);
-  read_last_or(in, "frame", file.frame);
-  in.read("overlap", file.overlap, between(0, deepest_given_overlap));
-  return file;
+constexpr auto path_of(std::string_view endings) {
+  return std::tuple{
+      field("path", &PackingFile::path, PackingPath{endings}, "",
+            {.required = "the file of a saved packing, from the folder of the scene"})};
 }
+constexpr std::uint64_t most_indices = std::numeric_limits<std::uint32_t>::max();
+constexpr auto number_or_last = or_word(Whole{0, most_sweeps}, "last");
+constexpr std::tuple of_results{
+    field("point", &PackingFile::point, Whole{0, most_indices}, "Index of the sweep point"),
+    field("realization", &PackingFile::realization, Whole{0, most_indices}),
+    field("tap", &PackingFile::tap, number_or_last)};
+constexpr std::tuple of_xyz{field("frame", &PackingFile::frame, number_or_last)};
+constexpr std::tuple of_both{
+    field("overlap", &PackingFile::overlap, Number{between(0, deepest_given_overlap)},
+          "The deepest overlap that is accepted, diameters; above 0 with discrete elements only",
+          {.unless_default = true})};
 
-Json number_or_last(const std::optional<std::uint64_t>& number) {
-  return number ? Json(*number) : Json("last");
-}
-
-Json written_crystal(const Crystal& crystal) {
-  return {{"lattice", name_in(lattices, crystal.lattice)}, {"stretch", crystal.stretch}};
-}
-
-Json written_file(const PackingFile& file) {
-  Json out{{"path", file.path}};
-  if (ends_with_one_of(file.path, {".xyz", ".extxyz"})) {
-    out["frame"] = number_or_last(file.frame);
-  } else {
-    out["point"] = file.point;
-    out["realization"] = file.realization;
-    out["tap"] = number_or_last(file.tap);
-  }
-  if (file.overlap > 0) out["overlap"] = plain_number(file.overlap);
-  return out;
-}
-
-constexpr Kinds<StartChoice> start_kinds{
-    {"pour", read_pour, [](const SteepestDescentPour&) { return Json("steepest_descent"); }},
-    {"pour", read_pour, [](const FittedPour&) { return Json("fitted"); }},
-    {"random_settle", read_random_settle,
-     [](const RandomSettle& settle) -> Json {
-       Json out = {{"dilute_fraction", plain_number(settle.dilute_fraction)}};
-       if (settle.drop_height > 0) out["drop_height"] = plain_number(settle.drop_height);
-       return out;
-     }},
-    {"crystal", read_crystal, written_crystal},
-    {"grow", read_grow,
-     [](const Grow& grow) -> Json {
-       return {{"max_sweeps", grow.max_sweeps}};
-     }},
-    {"file", read_file, written_file}};
+constexpr auto results_fields = std::tuple_cat(path_of(results_endings), of_results, of_both);
+constexpr auto xyz_fields = std::tuple_cat(path_of(xyz_endings), of_xyz, of_both);
+constexpr auto all_fields = std::tuple_cat(path_of(all_endings), of_results, of_xyz, of_both);
 
 }  // namespace
 
-StartChoice read_start(const Reader& in) {
-  const auto start = in.choice(names_of(start_kinds));
-  if (!start) return SteepestDescentPour{};
-  return read_kind(start_kinds, *start);
+bool read_part(const Reader& in, Crystal& crystal) {
+  if (in.value().is_string()) return read_value(word(lattices), in, crystal.lattice);
+  return read_object(Crystal::fields(), in, crystal);
+}
+Json part_schema(std::type_identity<Crystal>, Definitions& definitions) {
+  return either(value_schema(word(lattices), definitions),
+                object_schema(Crystal::fields(), definitions).json());
+}
+
+bool read_part(const Reader& in, PackingFile& file) {
+  if (in.value().is_string()) return read_value(PackingPath{all_endings}, in, file.path);
+  const Json* path = in.value().find("path");
+  if (path != nullptr && path->is_string()) {
+    if (ends_with_one_of(path->text(), results_endings))
+      return read_object(results_fields, in, file);
+    if (ends_with_one_of(path->text(), xyz_endings)) return read_object(xyz_fields, in, file);
+  }
+  return read_object(all_fields, in, file);
+}
+Json written_part(const PackingFile& file) {
+  return ends_with_one_of(file.path, xyz_endings) ? written_object(xyz_fields, file)
+                                                  : written_object(results_fields, file);
+}
+Json part_schema(std::type_identity<PackingFile>, Definitions& definitions) {
+  return {{"anyOf", Json::array({value_schema(PackingPath{all_endings}, definitions),
+                                 object_schema(results_fields, definitions).json(),
+                                 object_schema(xyz_fields, definitions).json()})}};
+}
+
+bool read_value(const OneOf<StartChoice>&, const Reader& in, StartChoice& into) {
+  const auto start = in.choice(start_names());
+  if (!start) return false;
+  if (start->name == pour_key) {
+    read_pour(start->settings, into);
+  } else {
+    read_alternative(start->name, start->settings, into);
+  }
+  return true;
+}
+
+Json written_value(const OneOf<StartChoice>&, const StartChoice& start) {
+  return std::visit(
+      [&]<class Part>(const Part& part) -> Json {
+        Json settings;
+        if constexpr (is_pour<Part>) {
+          settings = written_value(pour_form, Pour(part));
+        } else {
+          settings = written_part(part);
+        }
+        return {{key_of(start), settings}};
+      },
+      start);
+}
+
+Json value_schema(const OneOf<StartChoice>&, Definitions& definitions) {
+  ObjectSchema schema = alternatives_schema<StartChoice>(definitions);
+  Json properties{
+      {std::string(pour_key),
+       described_as(value_schema(pour_form, definitions), "Pour by steepest descent",
+                    "steepest_descent: into the container as it is. fitted: with periodic sides; "
+                    "the spheres that overlap a wall are then taken out and poured again between "
+                    "the walls, no other sphere moves.",
+                    std::nullopt, "")}};
+  for (const auto& [name, settings] : schema.properties.members()) {
+    const std::vector<std::string> names = start_names();
+    if (std::ranges::find(names, name) != names.end()) properties[name] = settings;
+  }
+  schema.properties = std::move(properties);
+  return schema.json();
 }
 
 Start engine_start(const StartChoice& choice) {
   return std::visit(
-      [](const auto& start) -> Start {
-        if constexpr (std::is_same_v<std::decay_t<decltype(start)>, PackingFile>) {
+      []<class Part>(const Part& start) -> Start {
+        if constexpr (std::is_same_v<Part, PackingFile>) {
           return GivenPacking{nullptr, start.overlap};
         } else {
           return start;
@@ -170,11 +182,11 @@ Start engine_start(const StartChoice& choice) {
 }
 
 std::string key_of(const StartChoice& start) {
-  return name_of(start_kinds, start);
-}
-
-Json written(const StartChoice& start) {
-  return written_kind(start_kinds, start);
+  return std::visit(
+      []<class Part>(const Part& part) {
+        return std::string(is_pour<Part> ? pour_key : part.about.name);
+      },
+      start);
 }
 
 }  // namespace jostle::inline config

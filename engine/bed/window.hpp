@@ -3,6 +3,8 @@
 #include <cmath>
 #include <variant>
 
+#include "engine/fields.hpp"
+
 // Horizontal slices of a bed, in which solids fractions are taken.
 namespace jostle::inline engine {
 
@@ -10,6 +12,9 @@ namespace jostle::inline engine {
 struct HeightWindow {
   double low = 0, high = 2;
   bool operator==(const HeightWindow&) const = default;
+
+  static constexpr About about{"heights", "From low to high, diameters above the floor"};
+  static constexpr Bounds form = height_bounds;
 };
 
 /// Whether both heights are numbers, the lower first.
@@ -21,6 +26,11 @@ inline bool is_window(HeightWindow window) {
 struct QuantileWindow {
   double low = 0.2, high = 0.8;
   bool operator==(const QuantileWindow&) const = default;
+
+  static constexpr About about{
+      "quantiles",
+      "From low to high, quantiles of the heights of the centres of the starting packing"};
+  static constexpr Bounds form = bounds(between(0, 1));
 };
 
 using Window = std::variant<HeightWindow, QuantileWindow>;

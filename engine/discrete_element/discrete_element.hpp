@@ -9,10 +9,28 @@
 
 #include "engine/column.hpp"
 #include "engine/dynamics.hpp"
+#include "engine/fields.hpp"
 
 // The discrete-element engine: inelastic, frictional, rotating spheres move by Newton's equations
 // (Rosato et al. 2010, sec. III). Settings are in SI units.
 namespace jostle::inline engine {
+
+inline constexpr Range stiffness_range = between(1, 1e12);          // N/m
+inline constexpr Range tangential_ratio_range = between(1e-3, 10);  // of stiffness_range
+inline constexpr Range rest_seconds_range = above(0, 1e5);          // s
+inline constexpr Range contact_steps_range = between(40, 1e6);      // time steps of a contact
+
+/// The fields that all contact laws share.
+template <class Law>
+constexpr auto contact_fields(std::string_view ratio) {
+  return std::tuple{
+      field("stiffness", &Law::stiffness, Number{stiffness_range, "N/m"}),
+      field("restitution", &Law::restitution, Number{between(0.05, 1)},
+            "Speed after / before a head-on collision"),
+      field("friction", &Law::friction, Number{between(0, 100)},
+            "mu. 0: no tangential forces and no spin"),
+      field("tangential_ratio", &Law::tangential_ratio, Number{tangential_ratio_range}, ratio)};
+}
 
 /// Partially latched springs (Walton & Braun 1986), with friction after Mindlin & Deresiewicz
 /// (Walton & Braun's incremental form, exponent 1/3).
@@ -23,6 +41,11 @@ struct WaltonBraun {
   double friction = 0.1;          // mu; 0: no tangential forces, no spin
   double tangential_ratio = 0.8;  // K0 / K1
   bool operator==(const WaltonBraun&) const = default;
+
+  static constexpr About about{
+      "walton_braun",
+      "Partially latched springs (Walton & Braun 1986) with friction after Mindlin & Deresiewicz"};
+  static constexpr auto fields() { return contact_fields<WaltonBraun>("K0 / K1"); }
 };
 
 /// Springs and dashpots (Cundall & Strack 1979), the tangential one cut where it slides.
@@ -30,9 +53,18 @@ struct LinearSpringDashpot {
   double stiffness = 1e5;             // N/m
   double restitution = 0.9;           // in [0.05, 1]
   double friction = 0.1;              // mu; 0: no tangential forces, no spin
-  double tangential_ratio = 2.0 / 7;  // of the stiffnesses
+  double tangential_ratio = 2.0 / 7;  // of the stiffness_range
   double tangential_damping = 0.5;    // of the dashpots' coefficients
   bool operator==(const LinearSpringDashpot&) const = default;
+
+  static constexpr About about{"linear_spring_dashpot",
+                               "Springs and dashpots (Cundall & Strack 1979)"};
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        contact_fields<LinearSpringDashpot>("Of the stiffnesses; 2/7 where absent"),
+        std::tuple{field("tangential_damping", &LinearSpringDashpot::tangential_damping,
+                         Number{between(0, 10)}, "Of the dashpots' coefficients")});
+  }
 };
 
 using ContactLaw = std::variant<WaltonBraun, LinearSpringDashpot>;
@@ -43,12 +75,26 @@ struct QuietRest {
   double kinetic_energy = 5e-5;
   double seconds = 0.02;
   bool operator==(const QuietRest&) const = default;
+
+  static constexpr About about{"quiet"};
+  static constexpr auto fields() {
+    return std::tuple{field("kinetic_energy", &QuietRest::kinetic_energy,
+                            Number{above(0, 1), "m g d"}, "Kinetic energy per sphere at rest"),
+                      field("seconds", &QuietRest::seconds, Number{rest_seconds_range, "s"},
+                            "How long it stays below")};
+  }
 };
 
 /// A tap ends so many seconds after the floor has come to rest.
 struct TimedRest {
   double seconds = 0.75;
   bool operator==(const TimedRest&) const = default;
+
+  static constexpr About about{"timed"};
+  static constexpr auto fields() {
+    return std::tuple{field("seconds", &TimedRest::seconds, Number{rest_seconds_range, "s"},
+                            "Time after the floor came to rest")};
+  }
 };
 
 using Rest = std::variant<QuietRest, TimedRest>;
@@ -67,6 +113,31 @@ struct DiscreteElement {
   Rest rest;
   double most_seconds = 5;  // of one tap or start: then it is capped
   bool operator==(const DiscreteElement&) const = default;
+
+  static constexpr auto fields() {
+    constexpr OneOf<ContactLaw> law{.by_name = true, .definition = "contact_law"};
+    return std::tuple{
+        field("diameter", &DiscreteElement::diameter, Number{between(1e-6, 10), "m"}),
+        field("density", &DiscreteElement::density, Number{between(1, 1e5), "kg/m^3"}),
+        field("gravity", &DiscreteElement::gravity, Number{between(1e-4, 1e4), "m/s^2"}),
+        field("contact", &DiscreteElement::spheres, law, "Contact law of two spheres"),
+        field("floor", &DiscreteElement::floor, law,
+              "Contact law of a sphere and the floor; absent: that of two spheres"),
+        field("sides", &DiscreteElement::sides, law,
+              "Contact law of a sphere and a side; absent: that of two spheres"),
+        field("steps_per_contact", &DiscreteElement::steps_per_contact, Number{contact_steps_range},
+              "Time steps that the shortest contact takes. Without it 40; 160 of "
+              "linear_spring_dashpot"),
+        field(
+            "rest", &DiscreteElement::rest, OneOf<Rest>{.by_name = true},
+            "When a tap, or the start, has come to rest. quiet: the kinetic energy per sphere, in "
+            "m g d, stays below a value for so many seconds. timed: so many seconds after the "
+            "floor came to rest",
+            {.title = "Rest"}),
+        field("most_seconds", &DiscreteElement::most_seconds, Number{rest_seconds_range},
+              "A tap, or the start, that is not at rest so many seconds after the floor is "
+              "capped")};
+  }
 };
 
 /// Time steps of the shortest contact, at least: 40 where the scene does not say, 160 of springs

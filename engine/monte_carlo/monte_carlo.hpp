@@ -20,6 +20,17 @@ struct Relaxation {
   Stop stop;
   Sampler sampler = Sampler::exhaustive;
   bool operator==(const Relaxation&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        alternative(&Relaxation::move), inlined(&Relaxation::stop),
+        field("sampler", &Relaxation::sampler, word(samplers),
+              "exhaustive: every trial is looked at. skipping: where few trials are accepted, "
+              "those that are certainly refused are counted and not looked at; the law of the "
+              "results is the same, the random numbers are others. Not for a finite beta, "
+              "fully_periodic, or an adaptation of not_upward",
+              {.title = "Sampler"})};
+  }
 };
 
 struct MonteCarlo {

@@ -6,6 +6,9 @@
 #include <optional>
 #include <variant>
 
+#include "engine/bed/container.hpp"
+#include "engine/fields.hpp"
+
 // How one sphere is displaced in a trial. Lengths in diameters, angles in radians.
 namespace jostle::inline engine {
 
@@ -13,6 +16,12 @@ namespace jostle::inline engine {
 /// [0, pi/2]. Gaussian exp(-(theta/theta0)^2), exponential exp(-theta/theta0), linear
 /// max(0, 1 - theta/theta0). Philippe & Bideau 2001, eq. 1 and the text below it.
 enum class ThetaLaw { gaussian, exponential, linear };
+inline constexpr NameTable<ThetaLaw, 3> theta_laws{{{"gaussian", ThetaLaw::gaussian},
+                                                    {"exponential", ThetaLaw::exponential},
+                                                    {"linear", ThetaLaw::linear}}};
+
+/// A longer step could go round the narrowest periodic box.
+inline constexpr Range step_length_range = between(1e-9, least_periodic_width);
 
 /// Scales of the law of theta that make a table.
 inline constexpr double least_theta0 = 1e-6, most_theta0 = 1000;
@@ -24,10 +33,30 @@ struct PolarMove {
   double theta0 = std::numbers::pi / 4;
   ThetaLaw law = ThetaLaw::gaussian;
   bool operator==(const PolarMove&) const = default;
+
+  static constexpr About about{
+      "polar",
+      "A downward step, accepted where nothing overlaps (Philippe & Bideau 2001). The default",
+      "Polar move"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("max_step", &PolarMove::max_step, Number{step_length_range, "diameters"},
+              "Largest length of a step"),
+        field("theta0", &PolarMove::theta0, Number{between(least_theta0, most_theta0), "radians"},
+              "Width of the law of the angle from the downward vertical"),
+        field("law", &PolarMove::law, word(theta_laws),
+              "Density in theta on [0, pi/2]: exp(-(theta/theta0)^2), exp(-theta/theta0) or "
+              "max(0, 1 - theta/theta0)")};
+  }
 };
+
+/// Trials that a rule may name, at most.
+inline constexpr std::uint64_t most_trials = 1'000'000'000'000;
 
 /// Which trials the share of accepted ones is taken of.
 enum class AcceptanceBase { all_trials, not_upward };
+inline constexpr NameTable<AcceptanceBase, 2> acceptance_bases{
+    {{"all_trials", AcceptanceBase::all_trials}, {"not_upward", AcceptanceBase::not_upward}}};
 
 /// Every `every_trials` trials the step is multiplied by `factor` if fewer than `threshold` of
 /// them were accepted. Rosato et al. 2010, sec. II.
@@ -38,6 +67,16 @@ struct StepAdaptation {
   AcceptanceBase base = AcceptanceBase::all_trials;
   bool reset_each_tap = true;  // whether the step starts anew at max_step at each tap
   bool operator==(const StepAdaptation&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{field("factor", &StepAdaptation::factor, Number{strictly_between(0, 1)}),
+                      field("every_trials", &StepAdaptation::every_trials, Whole{1, most_trials}),
+                      field("threshold", &StepAdaptation::threshold, Number{above(0, 1)}),
+                      field("of", &StepAdaptation::base, word(acceptance_bases),
+                            "The trials of which the share is taken"),
+                      field("reset_each_tap", &StepAdaptation::reset_each_tap, Flag{},
+                            "Whether the step starts anew at max_step at each tap")};
+  }
 };
 
 /// x + step (1 - 2 xi), xi uniform in [0, 1]^3; accepted if nothing overlaps and dz <= 0, else with
@@ -48,6 +87,20 @@ struct MetropolisMove {
   double beta = std::numeric_limits<double>::infinity();
   std::optional<StepAdaptation> adaptation = std::nullopt;  // absent: the step is fixed
   bool operator==(const MetropolisMove&) const = default;
+
+  static constexpr About about{
+      "metropolis", "A displacement uniform in a cube (Rosato et al. 2010)", "Metropolis move"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("max_step", &MetropolisMove::max_step, Number{step_length_range, "diameters"},
+              "Largest displacement along an axis"),
+        field("beta", &MetropolisMove::beta, or_word(Number{above(0, 1e300)}, "infinity"),
+              "1/temperature in units of 1/(m g d); infinity: no move goes up"),
+        field("adapt", &MetropolisMove::adaptation, or_word(Object<StepAdaptation>{}, "never"),
+              "never, or: every every_trials trials the step is multiplied by factor if fewer than "
+              "threshold of them were accepted",
+              {.title = "Adaptation of the step"})};
+  }
 };
 
 using Move = std::variant<PolarMove, MetropolisMove>;

@@ -7,9 +7,14 @@
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/window.hpp"
+#include "engine/fields.hpp"
+#include "engine/monte_carlo/moves.hpp"
 
 // When the relaxation after a tap ends. A sweep is n_spheres trials.
 namespace jostle::inline engine {
+
+/// Sweeps that a rule or a cap may name, at most.
+inline constexpr std::uint64_t most_sweeps = 1'000'000'000;
 
 /// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height.
 /// The first value is taken right after the tap. Philippe & Bideau 2001, sec. II, which publishes
@@ -18,6 +23,17 @@ struct MeanHeightStop {
   double eta = 1e-5;
   std::uint64_t every_sweeps = 100;
   bool operator==(const MeanHeightStop&) const = default;
+
+  static constexpr About about{
+      "mean_height",
+      "The mean height changed by less than eta, relatively, or by less than change, in diameters, "
+      "between two tests. Not both"};
+  static constexpr auto fields() {
+    return std::tuple{field("eta", &MeanHeightStop::eta, Number{strictly_between(0, 1)},
+                            "Relative change of the mean height"),
+                      field("every_sweeps", &MeanHeightStop::every_sweeps, Whole{1, most_sweeps},
+                            "Sweeps between two tests")};
+  }
 };
 
 /// Stop when |Z' - Z| < `change` diameters between two tests: MeanHeightStop with eta <Z> fixed for
@@ -26,6 +42,15 @@ struct HeightChangeStop {
   double change = 1e-4;  // diameters
   std::uint64_t every_sweeps = 100;
   bool operator==(const HeightChangeStop&) const = default;
+
+  static constexpr About about{"mean_height"};  // a key tells it from MeanHeightStop
+  static constexpr auto fields() {
+    return std::tuple{field("change", &HeightChangeStop::change, Number{above(0, 1)},
+                            "Absolute change, diameters: the same for beds of every depth",
+                            {.required = "the change of the mean height"}),
+                      field("every_sweeps", &HeightChangeStop::every_sweeps, Whole{1, most_sweeps},
+                            "Sweeps between two tests")};
+  }
 };
 
 /// Stop when the solids fraction in `window` changes by at most `change` between two measurements
@@ -38,25 +63,51 @@ struct BulkFractionStop {
   bool measure_start = true;  // whether the state right after the tap counts as a measurement
   Window window = QuantileWindow{};
   bool operator==(const BulkFractionStop&) const = default;
+
+  static constexpr About about{
+      "bulk_fraction",
+      "The solids fraction of a window changed by at most change, several times in a row (Rosato "
+      "et al. 2010). Can stop a bed in mid-air"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("change", &BulkFractionStop::change, Number{between(0, 1)}),
+        field("every_trials", &BulkFractionStop::every_trials, Whole{1, most_trials},
+              "Trials between two measurements"),
+        field("times", &BulkFractionStop::times, Whole{1, 1000}),
+        field("measure_start", &BulkFractionStop::measure_start, Flag{},
+              "Whether the state right after the tap counts as a measurement"),
+        field("window", &BulkFractionStop::window, OneOf<Window>{}, "", {.title = "Window"})};
+  }
 };
 
 /// Stop after a fixed number of sweeps.
 struct SweepsStop {
   std::uint64_t sweeps = 1000;
   bool operator==(const SweepsStop&) const = default;
+
+  static constexpr About about{"sweeps", "A fixed number of sweeps"};
+  static constexpr auto fields() {
+    return std::tuple{field("", &SweepsStop::sweeps, Whole{1, most_sweeps})};
+  }
 };
 
 using StopRule = std::variant<MeanHeightStop, BulkFractionStop, SweepsStop, HeightChangeStop>;
-
-/// Sweeps and trials that a rule or a cap may name, at most.
-inline constexpr std::uint64_t most_sweeps = 1'000'000'000;
-inline constexpr std::uint64_t most_trials = 1'000'000'000'000;
 
 /// A rule and the cap that ends a relaxation which never meets it. A capped relaxation is reported.
 struct Stop {
   StopRule rule = MeanHeightStop{};
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Stop&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("stop", &Stop::rule, OneOf<StopRule>{}, "When a relaxation ends",
+              {.title = "Stop rule"}),
+        field("max_sweeps", &Stop::max_sweeps, Whole{1, most_sweeps},
+              "Ends a relaxation that never meets its rule; such relaxations are counted and "
+              "reported",
+              {.title = "Cap"})};
+  }
 };
 
 /// Why a relaxation in the container cannot end by the rule; nothing if it can. Without gravity

@@ -28,6 +28,8 @@ enum class Sampler {
   exhaustive,      // looks at every trial
   rejection_free,  // advances over trials that are certain to be rejected, once few are accepted
 };
+inline constexpr NameTable<Sampler, 2> samplers{
+    {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::rejection_free}}};
 
 /// What the rejection-free sampler must remember besides MoveState; unused by the exhaustive one.
 struct SamplerState {

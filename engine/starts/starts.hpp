@@ -12,6 +12,7 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
+#include "engine/fields.hpp"
 
 // How the packing begins, tap 0. Lengths in diameters.
 namespace jostle::inline engine {
@@ -21,6 +22,9 @@ namespace jostle::inline engine {
 /// container, whatever its sides.
 struct SteepestDescentPour {
   bool operator==(const SteepestDescentPour&) const = default;
+
+  static constexpr About about{"steepest_descent"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
 
 /// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
@@ -31,7 +35,15 @@ struct SteepestDescentPour {
 /// seam no longer meet. Other containers and widths of 2 diameters or less are an error.
 struct FittedPour {
   bool operator==(const FittedPour&) const = default;
+
+  static constexpr About about{"fitted"};
+  static constexpr auto fields() { return std::tuple{}; }
 };
+
+/// Solids fraction up to which random places that do not overlap are found one after another: such
+/// beds jam at 0.384 (random sequential addition; Zhang & Torquato 2013).
+inline constexpr double densest_dilution = 0.36;
+inline constexpr double highest_drop = 1000;  // diameters
 
 /// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap
 /// (the scene's own). Rosato et al. 2010, sec. II.
@@ -39,9 +51,22 @@ struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
   double drop_height = 0;        // of the column's foot above the floor, diameters
   bool operator==(const RandomSettle&) const = default;
+
+  static constexpr About about{
+      "random_settle", "Random positions in a tall dilute box, then a relaxation without a tap",
+      "Random settle"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("dilute_fraction", &RandomSettle::dilute_fraction, Number{above(0, densest_dilution)},
+              "Solids fraction of the dilute box"),
+        field("drop_height", &RandomSettle::drop_height,
+              Number{between(0, highest_drop), "diameters"},
+              "Height of the dilute box's foot above the floor", {.unless_default = true})};
+  }
 };
 
 enum class Lattice { hcp, fcc };
+inline constexpr NameTable<Lattice, 2> lattices{{{"hcp", Lattice::hcp}, {"fcc", Lattice::fcc}}};
 
 /// A close-packed crystal on the floor, filled layer by layer and row by row from below. hcp:
 /// layers parallel to the floor at z = 1/2 + k sqrt(2/3), footprint n x m sqrt(3)/2 with m even.
@@ -55,7 +80,23 @@ struct Crystal {
   Lattice lattice = Lattice::hcp;
   bool stretch = false;
   bool operator==(const Crystal&) const = default;
+
+  static constexpr About about{
+      "crystal",
+      "A close-packed crystal, filled layer by layer from the floor; between walls and in a "
+      "cylinder without the sites that do not fit",
+      "Crystal"};
+  static constexpr auto fields() {
+    return std::tuple{field("lattice", &Crystal::lattice, word(lattices),
+                            "hcp: layers parallel to the floor. fcc: on its (100) face",
+                            {.required = "one of the strings hcp, fcc"}),
+                      field("stretch", &Crystal::stretch, Flag{},
+                            "Stretch the lattice where a periodic footprint is not commensurate")};
+  }
 };
+
+/// Sweeps of a growth, at most.
+inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
 
 /// Random points whose diameters grow by Monte Carlo until the spheres of diameter 1 fill the fully
 /// periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly and may leave a residue
@@ -63,6 +104,12 @@ struct Crystal {
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;
+
+  static constexpr About about{
+      "grow", "Random points that grow to spheres; fully_periodic containers only", "Grow"};
+  static constexpr auto fields() {
+    return std::tuple{field("max_sweeps", &Grow::max_sweeps, Whole{1, most_growth_sweeps})};
+  }
 };
 
 /// A packing read from a file: [n_spheres] centres, brought into the box where it is periodic.
@@ -77,10 +124,6 @@ struct GivenPacking {
 using Start =
     std::variant<SteepestDescentPour, FittedPour, RandomSettle, Crystal, Grow, GivenPacking>;
 
-/// Solids fraction up to which random places that do not overlap are found one after another: such
-/// beds jam at 0.384 (random sequential addition; Zhang & Torquato 2013).
-inline constexpr double densest_dilution = 0.36;
-inline constexpr double highest_drop = 1000;  // diameters
 /// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
 inline constexpr double deepest_given_overlap = 0.1;
 /// Spheres that grow without order jam beyond this solids fraction.

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/fields.hpp"
+#include "engine/taps.hpp"
 #include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
@@ -21,12 +23,35 @@ struct AnalysedSeries {
   std::uint64_t n_taps() const { return last_tap + 1 - first_tap; }
 };
 
+/// The last taps of a run, or of a stage, that an analysis looks at.
+template <class Settings>
+constexpr auto last_taps(std::uint64_t least, std::string_view text) {
+  return field("last", &Settings::last, Whole{least, most_taps}, text);
+}
+/// The swept value that is drawn against.
+template <class Settings>
+constexpr auto drawn_against() {
+  return field("against", &Settings::against, Text{},
+               "JSON pointer; absent: the first of the sweep", {.unless_default = true});
+}
+
 /// How a steady state is judged: by its last taps.
 struct SteadySettings {
   /// At least SteadyStateTest::fewest_taps; absent: the last quarter of a run.
   std::optional<std::uint64_t> last = std::nullopt;
   bool operator==(const SteadySettings&) const = default;
+
+  static constexpr About about{
+      "steady", "Value, fluctuation and memory of the last taps, and whether they are steady"};
+  static constexpr auto fields() {
+    return std::tuple{last_taps<SteadySettings>(SteadyStateTest::fewest_taps,
+                                                "Taps at the end; absent: a quarter of all")};
+  }
 };
+
+/// The fewest taps that a spectrum is estimated from.
+inline constexpr std::uint64_t fewest_spectrum_taps = 32;
+inline constexpr std::uint64_t shortest_spectrum_segment = 16;
 
 /// How a spectrum is estimated, of the last taps.
 struct SpectrumSettings {
@@ -37,18 +62,48 @@ struct SpectrumSettings {
   /// Of the slope, in 1/taps; absent: from the first sound line to 1/2.
   std::optional<Band> band = std::nullopt;
   bool operator==(const SpectrumSettings&) const = default;
+
+  static constexpr About about{"spectrum", "Power spectrum of the last taps and its log-log slope"};
+  static constexpr auto fields() {
+    return std::tuple{
+        last_taps<SpectrumSettings>(fewest_spectrum_taps, "Taps at the end; absent: half of all"),
+        field("segment", &SpectrumSettings::segment, Whole{shortest_spectrum_segment, most_taps},
+              "Taps of a segment of Welch's average; absent: about a quarter of them"),
+        field("window", &SpectrumSettings::window, word(taper_names)),
+        field("detrend", &SpectrumSettings::detrending, word(detrending_names),
+              "What is taken from every segment"),
+        field("band", &SpectrumSettings::band, Band::form,
+              "Lowest and highest frequency of the slope, in 1/taps; absent: all that are sound",
+              {.examples = "[[0.001, 0.1]]"})};
+  }
 };
 
 /// At which pairs of taps ageing is measured; empty: as ageing_grid() has them.
 struct AgeingSettings {
   std::vector<std::uint64_t> waiting_times, lags;  // ascending; lags at least 1
   bool operator==(const AgeingSettings&) const = default;
+
+  static constexpr About about{
+      "ageing", "A(t, t_W), V and C with errors, fits of eq. 6, what lays ages on one curve"};
+  static constexpr auto fields() {
+    return std::tuple{field("waiting_times", &AgeingSettings::waiting_times, TapNumbers{},
+                            "Ages t_W; none: 0 and two a decade, up to a tenth of the taps"),
+                      field("lags", &AgeingSettings::lags, TapNumbers{},
+                            "t, each at least 1; none: ten a decade")};
+  }
 };
 
 /// How the steps of a protocol are judged: each by its last taps.
 struct HysteresisSettings {
   std::optional<std::uint64_t> last = std::nullopt;  // absent: a quarter of the shortest stage
   bool operator==(const HysteresisSettings&) const = default;
+
+  static constexpr About about{
+      "hysteresis", "Steady value of every stage of the protocol, branches, areas of loops"};
+  static constexpr auto fields() {
+    return std::tuple{last_taps<HysteresisSettings>(
+        1, "Taps at the end of each stage; absent: a quarter of the shortest")};
+  }
 };
 
 /// When a realization counts as ordered, and what of the end of a run it is compared with.
@@ -58,6 +113,22 @@ struct OrderingSettings {
   std::string equilibrium;  // observable whose last taps are compared; empty: the same
   std::optional<std::uint64_t> last = std::nullopt;  // of these taps; absent: the last quarter
   bool operator==(const OrderingSettings&) const = default;
+
+  static constexpr About about{"ordering",
+                               "Time to order, its distribution over realizations, growth; over a "
+                               "sweep which point orders first, and which ends highest"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("threshold", &OrderingSettings::threshold, Number{between(-1e9, 1e9)},
+              "The value from which a packing counts as ordered, in units of the observable",
+              {.required = "the value of the observable at which a packing counts as ordered"}),
+        field("hold", &OrderingSettings::hold, Whole{1, most_taps},
+              "Taps running that it must be at or above the threshold"),
+        field("equilibrium", &OrderingSettings::equilibrium, Text{},
+              "The observable whose last taps are compared over a sweep; absent: the same",
+              {.unless_default = true}),
+        last_taps<OrderingSettings>(1, "Taps at the end that are compared; absent: a quarter")};
+  }
 };
 
 /// What is drawn against which swept value.
@@ -70,6 +141,21 @@ struct SweepSettings {
   /// The point, on the axis as drawn, that all others are compared with; absent: neighbours.
   std::optional<double> reference = std::nullopt;
   bool operator==(const SweepSettings&) const = default;
+
+  static constexpr About about{"sweep",
+                               "A quantity against the swept value, its maximum, its straight "
+                               "line, differences between its points"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("quantity", &SweepSettings::quantity, Text{},
+              "value: the mean of the last taps; or what another analysis or a fit that the scene "
+              "asks for finds",
+              {.examples = R"(["value", "steady/sigma", "kww/rho_inf"])"}),
+        last_taps<SweepSettings>(1, "Taps at the end; absent: a quarter of all"),
+        drawn_against<SweepSettings>(),
+        field("reference", &SweepSettings::reference, Number{between(-1e9, 1e9)},
+              "Point on the axis as drawn that all others are compared with; absent: neighbours")};
+  }
 };
 
 /// What is drawn of volumes and compactivities, over the points of a sweep.
@@ -79,16 +165,33 @@ struct VolumesSettings {
   /// Whose volume it is; absent: those of the observable's window.
   std::optional<double> spheres = std::nullopt;
   bool operator==(const VolumesSettings&) const = default;
+
+  static constexpr About about{
+      "volumes", "Variance of steady states over strengths, compactivity by two estimators"};
+  static constexpr auto fields() {
+    return std::tuple{last_taps<VolumesSettings>(
+                          SteadyStateTest::fewest_taps,
+                          "Taps at the end; absent: a quarter of all, or of the shortest stage"),
+                      drawn_against<VolumesSettings>(),
+                      field("spheres", &VolumesSettings::spheres, Number{above(0, 1e9)},
+                            "Whose volume it is; absent: those of the observable's window")};
+  }
 };
 
 /// At which lags after the last stage has begun histories are compared.
 struct MemorySettings {
   std::vector<std::uint64_t> lags;  // last ones of windows, ascending, at least 1; empty: all
   bool operator==(const MemorySettings&) const = default;
-};
 
-/// The fewest taps that a spectrum is estimated from.
-inline constexpr std::uint64_t fewest_spectrum_taps = 32;
+  static constexpr About about{"memory",
+                               "Whether what follows a common value depends on how it was reached: "
+                               "the last stage is common to the sweep points"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("lags", &MemorySettings::lags, TapNumbers{},
+              "Last ones of windows after the switch, each at least 1; none: 1, 3, 10, 30, ...")};
+  }
+};
 
 /// With half-overlapping segments for Hann, others end to end. A segment that is not given is the
 /// longest fast one of at most a quarter of the taps, at least 16. n_taps >= fewest_spectrum_taps;

@@ -65,7 +65,7 @@ def schema(program: Path | None = None) -> dict[str, Any]:
     except ProgramMissing:
         here = pathlib.Path(__file__).resolve()
         for above in here.parents:
-            for path in ("config/scene.schema.json", "share/jostle/scene.schema.json"):
+            for path in ("share/jostle/scene.schema.json", "build/release/scene.schema.json"):
                 if (above / path).is_file():
                     return json.loads((above / path).read_text(encoding="utf-8"))
         raise

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
+#include "engine/fields.hpp"
 
 // Close-packed layers growing upwards from the floor. Rosato et al. 2010, figs. 6 and 13: n(z)
 // (height_histogram) beside the heights of hcp layers. Lengths in diameters.
@@ -24,6 +25,15 @@ struct LayerRule {
   /// or between walls of the part of it that centres can reach. Keeps a partial top layer out.
   double least_filling = 0.7;
   bool operator==(const LayerRule&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{field("tolerance", &LayerRule::tolerance, Number{above(0, 0.4), "diameters"},
+                            "Of a centre from its layer's height"),
+                      field("least_share", &LayerRule::least_share, Number{between(0, 1)},
+                            "Of a layer's centres, within the tolerance"),
+                      field("least_filling", &LayerRule::least_filling, Number{between(0, 1)},
+                            "Of a full layer")};
+  }
 };
 
 /// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are

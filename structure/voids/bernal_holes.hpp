@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/bed/packing.hpp"
+#include "engine/fields.hpp"
 #include "structure/voids/pores.hpp"
 
 // The five canonical holes of J. D. Bernal (Proc. R. Soc. A 280, 299, 1964): polyhedra with edges
@@ -51,6 +52,14 @@ struct BernalHole {
 struct BondLengths {
   double first = 1.2, last = 1.4, step = 0.05;
   bool operator==(const BondLengths&) const = default;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("first", &BondLengths::first, Number{above(1, 2), "diameters"}, "First bond length"),
+        field("last", &BondLengths::last, Number{above(1, 2), "diameters"}, "Last bond length"),
+        field("step", &BondLengths::step, Number{between(0.001, 1), "diameters"},
+              "Between bond lengths")};
+  }
 };
 
 /// The holes of a packing, every Delaunay tetrahedron in exactly one. Our rule, as Bernal took his

@@ -18,9 +18,7 @@ constexpr std::uint32_t fewest_replicates = 2;  // an error needs two
 
 Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
   const std::uint32_t point = wanted.empty() ? 0 : chosen_points(study_of(loaded), wanted).front();
-  std::vector<Fault> faults;
-  Scene scene =
-      scene_at(resolved(loaded.scene), sweep_points(loaded.scene.sweep).at(point), faults);
+  Scene scene = loaded.points.at(point);
   if (total_taps(scene.protocol) == 0) {
     throw BadInput("/protocol: there is no tap that could cost anything");
   }

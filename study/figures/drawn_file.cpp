@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
+#include "structure/observables.hpp"
 #include "study/report/thinning.hpp"
 
 namespace jostle::inline study {
@@ -173,10 +173,8 @@ std::string unit_text(const std::string& units) {
 }
 
 std::string axis_label(const std::string& name, const std::string& units) {
-  static const std::map<std::string, std::string> symbols{
-      {"mean_height", " ⟨Z⟩"}, {"bottom_fraction", " Φ_b"}, {"corrected_fraction", " ⟨Φ_c⟩"}};
-  const auto symbol = symbols.find(name);
-  return words(name) + (symbol == symbols.end() ? "" : symbol->second) + unit_text(units);
+  const std::string_view symbol = observable_symbol(name);
+  return fmt::format("{}{}{}{}", words(name), symbol.empty() ? "" : " ", symbol, unit_text(units));
 }
 
 namespace {

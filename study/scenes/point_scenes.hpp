@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,17 +10,16 @@
 
 namespace jostle::inline study {
 
-/// The scene that a results file keeps, read once, and those of its sweep points, each read when it
-/// is first asked for.
+/// The scene that a results file keeps and those of its sweep points, read once.
 class PointScenes {
  public:
   /// Throws BadInput for a scene that this version does not read.
   explicit PointScenes(const ResultsFile& file);
 
   /// With its sweep.
-  const Scene& scene() const { return scene_; }
+  const Scene& scene() const { return *read_.scene; }
   /// Without a sweep.
-  const Scene& at(std::uint32_t point) const;
+  const Scene& at(std::uint32_t point) const { return read_.points.at(point); }
   /// The value that a JSON pointer leads to in the scene of a point; nothing where it leads
   /// nowhere.
   std::optional<Json> value_at(std::uint32_t point, const std::string& pointer) const;
@@ -29,10 +27,8 @@ class PointScenes {
   bool vary_together(const std::string& a, const std::string& b) const;
 
  private:
-  Scene scene_;
-  Json resolved_;
+  ParsedScene read_;
   std::vector<SweepPoint> points_;
-  mutable std::map<std::uint32_t, Scene> read_;  // one thread at a time
 };
 
 }  // namespace jostle::inline study

@@ -96,11 +96,12 @@ LoadedScene load_text(std::string text, const std::string& path) {
                                counted(parsed.faults.size(), "fault"), fault_lines(parsed.faults)));
   }
   loaded.scene = std::move(*parsed.scene);
+  loaded.points = std::move(parsed.points);
   loaded.resolved = resolved(loaded.scene).dump(2);
   PackingFiles packings(fs::path(path).parent_path());
   try {
-    loaded.plans =
-        make_plans(loaded.scene, [&](const PackingFile& file) { return packings.load(file); });
+    loaded.plans = make_plans(loaded.scene, loaded.points,
+                              [&](const PackingFile& file) { return packings.load(file); });
     for (const Plan& plan : loaded.plans) packings.require_same_container(plan);
   } catch (const StartError& error) {
     throw BadInput(fmt::format("{}: /start: {}", path, error.what()));

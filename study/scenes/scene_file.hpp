@@ -12,8 +12,9 @@ namespace jostle::inline study {
 /// A scene file, read, with all that is needed to run it.
 struct LoadedScene {
   Scene scene;
-  std::string text;      // the file, word for word
-  std::string resolved;  // with every default written out
+  std::vector<Scene> points;  // of its sweep points
+  std::string text;           // the file, word for word
+  std::string resolved;       // with every default written out
   std::vector<Plan> plans;
   std::vector<std::string> files;  // what it was read from: the scene, packings it starts from
 };

@@ -17,7 +17,7 @@ Json stored_scene(const ResultsFile& file) {
 }
 
 std::string scene_differences(const ResultsFile& file, const LoadedScene& loaded) {
-  return fault_lines(resume_faults(stored_scene(file), Json::parse(loaded.resolved)));
+  return fault_lines(resume_faults(checked_scene(stored_scene(file)), loaded.scene, loaded.points));
 }
 
 }  // namespace jostle::inline study

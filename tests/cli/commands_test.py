@@ -1,6 +1,7 @@
 """Exit codes, messages, and what each command prints."""
 
 import json
+import pathlib
 import subprocess
 import unittest
 
@@ -134,7 +135,7 @@ class Scenes(Case):
 
     def test_the_schema_is_the_shipped_one(self):
         printed = self.jostle("schema").stdout
-        shipped = (SOURCE / "config/scene.schema.json").read_text()
+        shipped = (pathlib.Path(JOSTLE).parent.parent / "scene.schema.json").read_text()
         self.assertEqual(json.loads(printed), json.loads(shipped))
 
 

@@ -20,7 +20,7 @@ class New(Case):
         original = json.loads((SOURCE / "config/scenes/quickstart.json").read_text())
         self.assertEqual(scene, {**original, "name": "my-bed", "$schema": "scene.schema.json"})
         self.assertEqual((self.folder / scene["$schema"]).read_text(),
-                         (SOURCE / "config/scene.schema.json").read_text())
+                         self.jostle("schema").stdout)
         self.jostle("run", "my-bed.json", "--time-limit", "0s", "--quiet", expect=STOPPED)
         self.assertIn("my-bed.h5", self.files())
 

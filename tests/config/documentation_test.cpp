@@ -66,7 +66,7 @@ std::set<std::string> words_of_code(const std::string& page) {
 
 TEST_CASE("The reference of scenes has every key and every word of the schema") {
   const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
-  const Json schema = Json::parse(text_of(SOURCE_ROOT "/config/scene.schema.json"));
+  const Json schema = Json::parse(scene_schema());
   const std::set<std::string> quoted = words_of_code(page);
   std::set<std::string> words;
   add_words(schema, words);

@@ -17,13 +17,18 @@ const char* const run = R"({
   "snapshots": {"taps": [0, 100]},
   "sweep": {"/protocol/0/tap/dilate": [0.01, 0.02]}})";
 
+std::vector<Fault> faults_of_resume(const std::string& was, const std::string& is) {
+  const ParsedScene now = parse_scene(is);
+  if (!now.scene) throw std::runtime_error(lines(now.faults));
+  return resume_faults(parse_scene(was), *now.scene, now.points);
+}
+
 /// What resume says to a change of the scene above.
 template <class Change>
 std::string faults_of(const Change& change) {
-  const Json was = resolved(scene_of(run));
   EditedScene is = EditedScene::parse(run);
   change(is);
-  return lines(resume_faults(was, resolved(scene_of(is.dump()))));
+  return lines(faults_of_resume(run, is.dump()));
 }
 
 }  // namespace
@@ -48,8 +53,7 @@ TEST_CASE("A resume follows the same motion, from further origins and over furth
     if (is != nullptr) after["motion"] = EditedScene::parse(is);
     after["protocol"][1]["count"] = 10;
     if (taps > 0) after["protocol"].push_back({{"tap", {{"lift", 0.3}}}, {"count", taps}});
-    return lines(
-        resume_faults(resolved(scene_of(before.dump())), resolved(scene_of(after.dump()))));
+    return lines(faults_of_resume(before.dump(), after.dump()));
   };
   CHECK(faults("{}", "{}", 0).empty());
   CHECK(faults("{}", "{}", 3000).empty());
@@ -169,7 +173,7 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
     return scene;
   };
   const auto join = [](const EditedScene& a, const EditedScene& b) {
-    return join_sweeps(resolved(scene_of(a.dump())), resolved(scene_of(b.dump())));
+    return join_sweeps(parse_scene(a.dump()), parse_scene(b.dump()));
   };
   const auto low = with(R"({"/protocol/0/tap/dilate": [0.02, 0.01], "/spheres": [512, 500]})");
   const auto high =
@@ -203,11 +207,9 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
 }
 
 TEST_CASE("A resume refuses a scene that this program cannot read") {
-  const Json good = resolved(scene_of(run));
-  Json bad = good;
+  EditedScene bad = EditedScene::parse(run);
   bad["gravity"] = 9.81;
-  CHECK(resume_faults(bad, good).size() == 1);
-  CHECK(resume_faults(good, bad).size() == 1);
+  CHECK(faults_of_resume(bad.dump(), run).size() == 1);
 }
 
 }  // namespace jostle

@@ -139,4 +139,20 @@ TEST_CASE("Axes keep their order through the resolved scene") {
   CHECK(n_sweep_points(scene) == 4);
 }
 
+TEST_CASE("A parsed sweep has the scene of every point") {
+  const ParsedScene parsed = parse_scene(
+      scene_with(R"({"/spheres": [256, 512], "/relax/polar/max_step": [0.05, 0.1, 0.2]})"));
+  REQUIRE(parsed.scene);
+  REQUIRE(parsed.points.size() == 6);
+  CHECK(parsed.points == point_scenes(*parsed.scene));
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(parsed.points[i].sweep.empty());
+    CHECK(parsed.points[i].n_spheres == (i < 3 ? 256 : 512));
+    CHECK(std::get<PolarMove>(parsed.points[i].relax.move).max_step ==
+          std::vector<double>{0.05, 0.1, 0.2}[i % 3]);
+  }
+  const ParsedScene alone = parse_scene(scene_with("{}"));
+  CHECK(alone.points == std::vector<Scene>{alone.scene.value()});
+}
+
 }  // namespace jostle

@@ -24,6 +24,12 @@ FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, doub
 struct Band {
   double lowest = 0, highest = 0.5;
   bool operator==(const Band&) const = default;
+
+  static constexpr Bounds form{{0, 0.5, true, false},
+                               {0, 0.5, false, true},
+                               "frequencies, lowest and highest, in 1/taps",
+                               "band",
+                               "the lowest frequency comes first"};
 };
 
 /// s of density ~ frequency^s by least squares on the logarithms, every point with equal weight.

@@ -5,12 +5,18 @@
 #include <span>
 #include <vector>
 
+#include "engine/fields.hpp"
+
 // Power spectra of one evenly spaced series, in the conventions of scipy.signal: densities,
 // one-sided, the window periodic. Frequencies are in 1/taps.
 namespace jostle::inline ensemble {
 
 enum class Taper { boxcar, hann };  // the window: engine/bed/window.hpp has another Window
 enum class Detrending { none, mean, linear };  // of every segment, before the window
+inline constexpr NameTable<Taper, 2> taper_names{
+    {{"hann", Taper::hann}, {"boxcar", Taper::boxcar}}};
+inline constexpr NameTable<Detrending, 3> detrending_names{
+    {{"mean", Detrending::mean}, {"linear", Detrending::linear}, {"none", Detrending::none}}};
 
 struct SpectrumOptions {
   Taper window = Taper::hann;

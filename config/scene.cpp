@@ -1,0 +1,281 @@
+#include "config/scene.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "config/parts/parts.hpp"
+#include "config/sweep.hpp"
+
+namespace jostle::inline config {
+
+namespace {
+
+/// Text, or a list of texts that are joined by blanks.
+struct Prose {};
+
+bool read_value(const Prose&, const Reader& in, std::string& prose) {
+  if (in.value().is_string()) {
+    prose = in.value().text();
+  } else if (!in.value().is_array()) {
+    in.fault("expected a string or a list of strings, found " + described(in.value()));
+  } else {
+    for (std::size_t i = 0; i < in.value().size(); ++i) {
+      if (i > 0) prose += ' ';
+      prose += in.element(i).text().value_or("");
+    }
+  }
+  return true;
+}
+Json written_value(const Prose&, const std::string& prose) {
+  return prose;
+}
+Json value_schema(const Prose&, Definitions&) {
+  const Json text{{"type", "string"}};
+  return either(text, {{"type", "array"}, {"items", text}});
+}
+
+constexpr auto schema_link = irregular(
+    "$schema",
+    [](const Reader& in, Scene&) {
+      if (const auto link = in.find("$schema")) link->text();
+    },
+    [](const Scene&, Json&) {},
+    [](ObjectSchema& out, Definitions&) {
+      out.properties["$schema"] =
+          described_as({{"type", "string"}}, "Schema", "Path of scene.schema.json, for editors.",
+                       std::nullopt, "");
+    });
+
+constexpr auto engine_field = irregular(
+    "engine",
+    [](const Reader& in, Scene& scene) {
+      if (const auto engine = in.find("engine")) scene.grains = read_engine(*engine);
+    },
+    [](const Scene& scene, Json& out) {
+      if (scene.grains) out["engine"] = written_engine(*scene.grains);
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["engine"] = described_as(
+          engine_schema(definitions), "Engine",
+          "What moves the spheres: Monte Carlo, with its settings in relax and relax_start, or "
+          "discrete elements.",
+          "monte_carlo", "");
+    });
+
+/// A relaxation, which only Monte Carlo has.
+void read_trials(const Reader& in, std::string_view key, bool grains, Relaxation& relaxation) {
+  const auto relax = in.find(std::string(key));
+  if (!relax) return;
+  if (grains)
+    relax->fault(
+        "trials are of Monte Carlo: discrete elements come to rest as their key \"rest\" says; "
+        "leave this out");
+  read_part(*relax, relaxation);
+}
+
+constexpr Object<Relaxation> relaxation_form{"relax"};
+
+constexpr auto relax_field = irregular(
+    "relax",
+    [](const Reader& in, Scene& scene) {
+      read_trials(in, "relax", scene.grains.has_value(), scene.relax);
+    },
+    [](const Scene& scene, Json& out) {
+      if (!scene.grains) out["relax"] = written_part(scene.relax);
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["relax"] = described_as(value_schema(relaxation_form, definitions),
+                                             "Relaxation after a tap", "", Json::object(), "");
+    });
+
+constexpr auto relax_start_field = irregular(
+    "relax_start",
+    [](const Reader& in, Scene& scene) {
+      if (in.find("relax_start"))
+        read_trials(in, "relax_start", scene.grains.has_value(), scene.relax_start.emplace());
+    },
+    [](const Scene& scene, Json& out) {
+      if (scene.relax_start) out["relax_start"] = written_part(*scene.relax_start);
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["relax_start"] = described_as(
+          value_schema(relaxation_form, definitions), "Relaxation of the start",
+          "How the start is relaxed before tap 0. Absent: random_settle as after a tap, a fitted "
+          "pour not at all. Other starts are at rest and take none.",
+          std::nullopt, "");
+    });
+
+bool sweeps_engine(const Scene& scene) {
+  return std::ranges::any_of(scene.sweep, [](const SweepAxis& axis) {
+    return std::ranges::any_of(axis.columns,
+                               [](const auto& column) { return column.first == "/engine"; });
+  });
+}
+bool keeps_default(const Scene& scene) {
+  return written_part(scene.snapshots).at("keep") ==
+         written_part(default_snapshots(scene.grains.has_value())).at("keep");
+}
+
+// What is kept by default depends on the engine: where that is swept, it is not spelled out.
+constexpr auto snapshots_field = irregular(
+    "snapshots",
+    [](const Reader& in, Scene& scene) {
+      scene.snapshots = default_snapshots(scene.grains.has_value());
+      if (const auto snapshots = in.find("snapshots")) read_part(*snapshots, scene.snapshots);
+    },
+    [](const Scene& scene, Json& out) {
+      Json& snapshots = out["snapshots"] = written_part(scene.snapshots);
+      if (sweeps_engine(scene) && keeps_default(scene)) snapshots.erase("keep");
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["snapshots"] = described_as(
+          part_schema(std::type_identity<SnapshotChoice>{}, definitions), "Snapshots",
+          "What is kept of the packing at chosen taps; tap 0 is the start.", Json::object(), "");
+    });
+
+constexpr auto identity_fields() {
+  return std::tuple{
+      schema_link,
+      field("name", &Scene::name,
+            Text{"A-Za-z0-9", "A-Za-z0-9._-", 100,
+                 "a name has 1 to 100 letters, digits, dots, hyphens and underscores, a letter or "
+                 "digit first"},
+            "Short name of the study", {.title = "Name", .examples = R"(["quickstart"])"}),
+      field("description", &Scene::description, Prose{},
+            "What the study is, for people. A list of strings is joined by blanks",
+            {.title = "Description"}),
+      field("seed", &Scene::seed, Whole{},
+            "Of all random numbers: the same scene with the same seed gives the same bytes",
+            {.required = "a whole number; the same scene with the same seed gives the same bytes",
+             .title = "Seed",
+             .examples = "[20010222]"}),
+      field("realizations", &Scene::realizations, Whole{1, most_realizations},
+            "Independent repetitions of every sweep point",
+            {.title = "Realizations", .examples = "[10]"}),
+      field("streams", &Scene::streams, word(stream_kinds),
+            "independent: every sweep point draws its own numbers. matched: starts and taps draw "
+            "the same numbers at all points, for paired comparisons",
+            {.title = "Random streams of sweep points"})};
+}
+
+constexpr auto simulation_fields() {
+  return std::tuple{
+      field("container", &Scene::container, OneOf<Container>{},
+            "What holds the spheres; a floor at z = 0 and an open top, but for fully_periodic",
+            {.required = "an object with the key sides",
+             .title = "Container",
+             .examples = R"([{"sides": "periodic", "width": 16}, {"sides": "walls", "width": 16},
+                             {"sides": "cylinder", "diameter": 19}])"}),
+      field("spheres", &Scene::n_spheres, Whole{1, most_spheres}, "",
+            {.required = "the number of spheres, a whole number",
+             .title = "Number of spheres",
+             .examples = "[4096, 3456]"}),
+      field("start", &Scene::start, OneOf<StartChoice>{}, "How the packing begins: tap 0",
+            {.title = "Starting packing",
+             .examples = R"([{"pour": "steepest_descent"}, {"pour": "fitted"},
+                             {"random_settle": {"dilute_fraction": 0.1}}, {"crystal": "hcp"},
+                             {"file": "earlier.h5"}])"}),
+      field("protocol", &Scene::protocol, list_of(Object<ProtocolLine>{}, 0, 1000, "stages"),
+            "Stages of taps, one after another. [] makes the starting packings only",
+            {.required = "a list of stages; [] makes the starting packings only",
+             .title = "Protocol",
+             .examples = R"([[{"tap": {"dilate": 0.02}, "count": 4000}],
+                             [{"ramp": {"dilate": {"sqrt_from": 0.025, "sqrt_to": 0.4,
+                               "sqrt_step": 0.025}}, "count": 4000}]])"}),
+      engine_field,
+      relax_field,
+      relax_start_field};
+}
+
+constexpr auto measured_fields() {
+  return std::tuple{
+      field("observe", &Scene::observables,
+            list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables"),
+            "What is measured at the start and after every tap", {.title = "Observables"}),
+      snapshots_field,
+      field("motion", &Scene::motion, Object<MotionChoice>{},
+            "Displacements over many taps, measured while the bed is tapped: mean square "
+            "displacements, overlaps and chi_4 (docs/analysis.md). Nothing is kept without this "
+            "key",
+            {.title = "Motion of the spheres",
+             .examples = R"([{}, {"overlap_lengths": [0.05, 0.1, 0.3], "layers": 10}])"}),
+      field("sweep", &Scene::sweep, SweptPointers{},
+            "JSON pointers into the scene, each with a list of values. All are crossed, the first "
+            "varies slowest; those inside a zip vary together",
+            {.title = "Sweep", .examples = R"([{"/protocol/0/tap/dilate": [0.005, 0.05, 0.15]}])"}),
+      field("until", &Scene::until, Object<TargetPrecision>{},
+            "Realizations are added, the same number at every sweep point, until every target is "
+            "met at every point",
+            {.unless_default = true,
+             .title = "Enough realizations",
+             .examples = R"([{"targets": [{"observable": "bulk_fraction",
+                              "standard_error": 0.001}], "at_most": 200}])"}),
+      field("fits", &Scene::fits, list_of(Object<FitRequest>{}, 0, 100, "fits"),
+            "Laws fitted to the mean of an observable against taps, at every sweep point, when the "
+            "run ends",
+            {.title = "Fits"}),
+      field("analyse", &Scene::analyse, Object<Analyses>{},
+            "What the run ends with, at every sweep point: docs/analysis.md",
+            {.title = "Analyses"}),
+      field("structure", &Scene::structure, Object<StructureSettings>{},
+            "What the run ends with measuring in the kept packings, averaged over realizations; "
+            "parts that are not named are not measured. docs/structure.md",
+            {.title = "Structure",
+             .examples = R"([{"profile": {}, "pores": {"bin_width": 0.01}}])"})};
+}
+
+constexpr auto scene_fields() {
+  return std::tuple_cat(identity_fields(), simulation_fields(), measured_fields());
+}
+
+/// `faults`: those that the text has already.
+ParsedScene checked(const Json& document, std::vector<Fault> faults) {
+  ParsedScene parsed{.scene = std::nullopt, .points = {}, .faults = std::move(faults)};
+  Scene scene = read_scene(Reader{document, "", parsed.faults});
+  check_consistency(scene, parsed.faults);
+  check_sweep_analyses(scene, parsed.faults);
+  const Json* sweep = document.find("sweep");
+  std::vector<Scene> points =
+      read_sweep_points(scene, sweep != nullptr ? *sweep : Json(), parsed.faults);
+  if (!parsed.faults.empty()) return parsed;
+  parsed.scene = std::move(scene);
+  parsed.points = std::move(points);
+  return parsed;
+}
+
+}  // namespace
+
+Scene read_scene(const Reader& in) {
+  Scene scene;
+  read_object(scene_fields(), in, scene);
+  return scene;
+}
+
+Json resolved(const Scene& scene) {
+  return written_object(scene_fields(), scene);
+}
+
+std::string scene_schema() {
+  Definitions definitions;
+  Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+              {"title", "jostle scene"},
+              {"description",
+               "One study of a tapped packing of equal hard spheres. Lengths in sphere diameters, "
+               "angles in radians. docs/scene.md explains every key."}};
+  schema.update(object_schema(scene_fields(), definitions).json());
+  schema["definitions"] = definitions.all();
+  return schema.dump(2) + '\n';
+}
+
+ParsedScene checked_scene(const Json& document) {
+  return checked(document, {});
+}
+
+ParsedScene parse_scene(std::string_view json_text) {
+  std::vector<Fault> faults;
+  const auto json = read_json(json_text, faults);
+  if (!json) return {.scene = std::nullopt, .points = {}, .faults = std::move(faults)};
+  return checked(*json, std::move(faults));
+}
+
+}  // namespace jostle::inline config
