@@ -1,12 +1,11 @@
-"""jostle fit: results and measured curves, for people and for programs."""
+"""jostle fit: measured curves, for people and for programs."""
 
 import json
 import math
 import unittest
 from random import Random
 
-import h5py
-from support import BAD_INPUT, BROKEN, OK, SOURCE, TINY, UNFOLDED, Case, changed
+from support import BAD_INPUT, OK, SOURCE, UNFOLDED, Case
 
 TRUTH = {"X_inf": 0.64, "dX": 0.056, "B": 0.3, "tau": 10.0}
 
@@ -357,136 +356,6 @@ class OwnLaw(WithCurve):
             with self.subTest(arguments=arguments):
                 result = self.jostle("fit", "data.csv", *arguments, expect=BAD_INPUT)
                 self.assertIn(message, result.stderr + result.stdout)
-
-
-class Results(Case):
-    def setUp(self):
-        super().setUp()
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
-        self.run_scene("-o", "tiny.h5")
-
-    def test_every_sweep_point_is_fitted_with_errors_from_its_realizations(self):
-        result = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--resample",
-                             "jackknife", "--json")
-        curves = json.loads(result.stdout)["curves"]
-        self.assertEqual([curve["sweep_point"] for curve in curves], [0, 1])
-        for curve in curves:
-            self.assertEqual(curve["realizations"], 3)
-            self.assertEqual(curve["range"], [1, 40])
-            for fit in curve["fits"]:
-                self.assertEqual(fit["points"], 40)
-                self.assertEqual(fit["resamples"], 3)
-                self.assertEqual((fit["realizations"], fit["error_dof"]), (3, 2))
-                self.assertTrue(fit["sigma_given"])
-
-    def test_a_point_is_chosen_by_number_or_by_value(self):
-        texts = []
-        for point in ("1", "/protocol/0/tap/dilate=0.1"):
-            texts.append(self.jostle("fit", "tiny.h5", "--observable", "bottom_fraction", "--model",
-                                     "kww", "--sweep-point", point, "--range", "2:30").stdout)
-            self.assertIn("sweep point 1, 3 realizations", texts[-1])
-        self.assertEqual(*texts)
-
-    def test_threads_and_repeats_change_nothing(self):
-        texts = {self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--resample",
-                             "bootstrap", "--resamples", "40", "--threads", threads).stdout
-                 for threads in (1, 2, 3, 1)}
-        self.assertEqual(len(texts), 1)
-
-    def test_what_is_not_there_is_refused_with_what_is(self):
-        for arguments, message in (
-                ([], "--observable"),
-                (["--observable", "height"], "mean_height, bottom_fraction"),
-                (["--observable", "mean_height", "--sweep-point", "7"],
-                 "/protocol/0/tap/dilate=0.02"),
-                (["--observable", "mean_height", "--csv", "x.csv"], "--sweep-point")):
-            with self.subTest(arguments=arguments):
-                self.assertIn(message,
-                              self.jostle("fit", "tiny.h5", *arguments, expect=BAD_INPUT).stderr)
-
-
-class Kept(Case):
-    """Fits in the results file."""
-
-    def tables(self, file="tiny.h5"):
-        return self.info(file)["tables"]
-
-    def test_fits_are_kept_beside_the_data_and_replaced(self):
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
-        self.run_scene()
-        digest = self.digest("tiny.h5")
-        self.assertEqual(self.tables(), [])
-        for _ in range(2):
-            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
-        self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--sweep-point", "1")
-        laws = ["inverse_log", "kww", "two_exponentials"]
-        self.assertEqual(self.tables(), ["fits/point_0000/mean_height/kww"] +
-                         [f"fits/point_0001/mean_height/{law}" for law in laws])
-        self.assertEqual(self.digest("tiny.h5"), digest)
-        with h5py.File(self.folder / "tiny.h5") as file:
-            choices = set()
-            for law in laws:
-                table = file[f"fits/point_0001/mean_height/{law}"]
-                choices.add(table.attrs["note_choice"])
-                self.assertGreaterEqual(table["held_out_difference"][()], 0)
-                self.assertTrue(0 <= table["held_out_p"][()] <= 1)
-                self.assertNotIn("aic", table)
-            self.assertEqual(len(choices), 1)
-
-    def test_an_own_law_is_kept_with_its_formula(self):
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
-        self.run_scene()
-        for name in ((), ("--law-name", "line")):
-            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--sweep-point", "0", "--law",
-                        "a + b*log(t)", "--start", "a=4,b=-0.1", *name, "--resample", "jackknife")
-        self.assertEqual(self.tables(), ["fits/point_0000/mean_height/line",
-                                         "fits/point_0000/mean_height/own"])
-        with h5py.File(self.folder / "tiny.h5") as file:
-            table = file["fits/point_0000/mean_height/own"]
-            self.assertEqual(table.attrs["note_law"], "a + b*log(t)")
-            self.assertEqual([name.decode() for name in table["parameter"]], ["a", "b"])
-            self.assertEqual([unit.decode() for unit in table["units"]], ["X", "X"])
-
-    def test_a_trial_leaves_what_is_kept(self):
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
-        self.run_scene()
-        asked = ("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww")
-        self.jostle(*asked)
-        before = (self.folder / "tiny.h5").read_bytes()
-        self.jostle(*asked, "--range", "1:20", "--no-store")
-        self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
-
-    def test_a_file_that_cannot_be_changed_still_gives_its_fits(self):
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
-        self.run_scene()
-        (self.folder / "tiny.h5.lock").mkdir()  # no lock can be made there, even by root
-        done = self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--model", "kww",
-                           expect=BROKEN)
-        self.assertIn("not stored", done.stderr)
-        self.assertIn("rho_inf", done.stdout)
-        self.assertEqual(self.tables(), [])
-
-    def test_a_run_ends_with_the_fits_of_its_scene(self):
-        asked = [{"observable": "mean_height", "model": "inverse_log", "range": [1, 30]}]
-        protocol = [{"tap": {"dilate": 0.05}, "count": 40}]
-        self.write(changed(TINY, protocol=protocol, fits=asked))
-        done = self.run_scene()
-        self.assertIn("inverse_log", done.stdout)
-        names = [f"fits/point_000{point}/mean_height/inverse_log" for point in (0, 1)]
-        self.assertEqual(self.tables(), names)
-        asked[0]["model"] = "kww"
-        self.write(changed(TINY, protocol=protocol, fits=asked))
-        self.run_scene("--resume")
-        self.assertEqual(self.tables(), [name.replace("inverse_log", "kww") for name in names])
-
-    def test_shards_are_fitted_when_they_are_merged(self):
-        asked = [{"observable": "mean_height", "model": "kww"}]
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], fits=asked))
-        for share in (1, 2):
-            self.run_scene("--shard", f"{share}/2", "-o", f"{share}.h5")
-            self.assertEqual(self.tables(f"{share}.h5"), [])
-        self.jostle("merge", "1.h5", "2.h5", "-o", "all.h5")
-        self.assertEqual(len(self.tables("all.h5")), 2)
 
 
 if __name__ == "__main__":
