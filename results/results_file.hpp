@@ -70,6 +70,9 @@ struct RealizationSummary {
   std::uint64_t rows = 0;  // recorded taps, the start included
   std::string reason;      // of a failure
   Work work{};
+
+  /// Recorded taps. The start, tap 0, is none.
+  std::uint64_t taps() const { return rows > 0 ? rows - 1 : 0; }
 };
 
 /// A results file opened for reading. Its checksum is verified first: a damaged, truncated or

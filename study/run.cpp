@@ -73,7 +73,7 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   for (const RealizationSummary& one : store_->realizations()) {
     const bool counts =
         one.status == RealizationStatus::running && std::ranges::binary_search(pending, one.id);
-    if (counts && one.rows > 0) taps_recorded_ += one.rows - 1;  // row 0 is the start
+    if (counts) taps_recorded_ += one.taps();
   }
 }
 

@@ -55,7 +55,7 @@ Json realization_json(const RealizationSummary& one, bool alive, std::string uni
   Json json{{"point", one.id.point},
             {"realization", one.id.realization},
             {"status", name(one.status, alive)},
-            {"taps_recorded", one.rows},
+            {"taps_recorded", one.taps()},
             {unit, one.work.effort.units},
             {"seconds", one.work.seconds}};
   if (!one.reason.empty()) json["reason"] = one.reason;
@@ -108,19 +108,19 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
 
 std::string counts(const ResultsFile& file, const RunStatus& status) {
   std::map<RealizationStatus, std::uint64_t> by_status;
-  std::uint64_t rows = 0, all_rows = 0;
+  std::uint64_t taps = 0, all_taps = 0;
   for (const auto& one : status.realizations) {
     if (!in_share(file.shard(), file.study(), one.id)) continue;
     ++by_status[one.status];
-    rows += one.rows;
-    all_rows += file.study().points[one.id.point].taps + 1;
+    taps += one.taps();
+    all_taps += file.study().points[one.id.point].taps;
   }
   std::string text;
   for (const auto& [status_of_some, n] : by_status) {
     text +=
         fmt::format("{}{} {}", text.empty() ? "" : ", ", n, name(status_of_some, is_alive(status)));
   }
-  return text + fmt::format("; {} of {} taps", rows, all_rows);
+  return text + fmt::format("; {} of {} taps", taps, all_taps);
 }
 
 void print_info(const ResultsFile& file, const RunStatus& status, const Layout& layout) {

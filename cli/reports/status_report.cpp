@@ -83,7 +83,7 @@ std::string state_line(const ShardsStatus& study, ShardState state) {
 }
 
 struct Sums {
-  std::uint64_t done = 0, failed = 0, realizations = 0, rows = 0, all_rows = 0;
+  std::uint64_t done = 0, failed = 0, realizations = 0, taps = 0, all_taps = 0;
 };
 Sums sums_of(const ShardsStatus& study) {
   Sums sums;
@@ -91,8 +91,8 @@ Sums sums_of(const ShardsStatus& study) {
     sums.done += shard.done;
     sums.failed += shard.failed;
     sums.realizations += shard.realizations;
-    sums.rows += shard.rows;
-    sums.all_rows += shard.all_rows;
+    sums.taps += shard.taps;
+    sums.all_taps += shard.all_taps;
   }
   return sums;
 }
@@ -157,7 +157,7 @@ std::string status_text(const ShardsStatus& study) {
   };
   line("realizations", fmt::format("{} of {} done{}", sums.done, sums.realizations,
                                    sums.failed > 0 ? fmt::format(", {} failed", sums.failed) : ""));
-  line("taps", fmt::format("{} of {}", sums.rows, sums.all_rows));
+  line("taps", fmt::format("{} of {}", sums.taps, sums.all_taps));
   line("core-hours", finite_text("{:.3g} used, {}", hours(study.used),
                                  study.left ? finite_text("about {:.3g} left", hours(*study.left))
                                             : "what is left is not known before the first tap"));
@@ -181,8 +181,8 @@ Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo
              {"realizations", shard.realizations},
              {"done", shard.done},
              {"failed", shard.failed},
-             {"taps_recorded", shard.rows},
-             {"taps", shard.all_rows}};
+             {"taps_recorded", shard.taps},
+             {"taps", shard.all_taps}};
     if (!shard.path.empty()) one["file"] = shard.path;
     if (shard.owner) {
       one["host"] = shard.owner->host;

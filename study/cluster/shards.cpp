@@ -82,11 +82,11 @@ void gather(Gathered& study, const std::string& path, const LiveLook& look) {
       .index = file.shard().index, .state = state_of(status), .path = path, .owner = status.owner};
   if (!file.provenance().empty()) shard.command = file.provenance().back().command_line;
   for (const RealizationSummary& one : status.realizations) {
-    const std::uint64_t rows = file.study().points[one.id.point].taps + 1;
+    const std::uint64_t taps = file.study().points[one.id.point].taps, rows = taps + 1;
     PointWork& point = study.points[one.id.point];
     ++shard.realizations;
-    shard.all_rows += rows;
-    shard.rows += one.rows;
+    shard.all_taps += taps;
+    shard.taps += one.taps();
     point.seconds += one.work.seconds;
     point.rows += one.rows;
     if (one.status == RealizationStatus::done) ++shard.done;
@@ -140,10 +140,10 @@ void count_missing(Gathered& study, const Study& stored) {
   for (ShardStatus& shard : study.status.shards) {
     if (shard.state != ShardState::missing && shard.state != ShardState::unreadable) continue;
     for (std::uint64_t n = shard.index - 1; n < all; n += count) {
-      const std::uint64_t rows = stored.points[n % points].taps + 1;
+      const std::uint64_t taps = stored.points[n % points].taps;
       ++shard.realizations;
-      shard.all_rows += rows;
-      study.points[n % points].rows_left += rows;
+      shard.all_taps += taps;
+      study.points[n % points].rows_left += taps + 1;
     }
   }
 }

@@ -29,7 +29,7 @@ struct ShardStatus {
   std::string path{};                // empty where it is missing
   std::optional<LockOwner> owner{};  // of a lock
   std::uint64_t done = 0, failed = 0, realizations = 0;
-  std::uint64_t rows = 0, all_rows = 0;  // taps recorded and to record, starts included
+  std::uint64_t taps = 0, all_taps = 0;  // recorded and to record; a start is none
   std::string command{};                 // that worked on it last
 };
 

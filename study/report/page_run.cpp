@@ -26,12 +26,12 @@ Json page_container(const Container& container) {
 
 /// Of the realizations of a sweep point, or of all.
 struct Tally {
-  std::uint64_t done = 0, unfinished = 0, failed = 0, missing = 0, rows = 0;
+  std::uint64_t done = 0, unfinished = 0, failed = 0, missing = 0, taps = 0;
   Work work;
 
   void add(const RealizationSummary& one) {
     work += one.work;
-    rows += one.rows;
+    taps += one.taps();
     ++(one.status == RealizationStatus::done      ? done
        : one.status == RealizationStatus::failed  ? failed
        : one.status == RealizationStatus::running ? unfinished
@@ -42,7 +42,7 @@ struct Tally {
             {"unfinished", unfinished},
             {"failed", failed},
             {"missing", missing},
-            {"taps_stored", rows},
+            {"taps_stored", taps},
             {"units", work.effort.units},
             {"seconds", page_number(work.seconds)}};
   }

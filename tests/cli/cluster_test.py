@@ -268,6 +268,10 @@ class Status(Case):
         # 2 of 6 realizations are done, of the same cost.
         self.assertGreater(study["core_hours_left"], 0)
         self.assertEqual((study["realizations_done"], study["realizations"]), (2, 6))
+        # A realization has four taps; its start, tap 0, is none.
+        self.assertEqual([(one["taps_recorded"], one["taps"]) for one in study["shards"]],
+                         [(0, 8), (4, 4), (0, 4), (4, 4), (0, 4)])
+        self.assertIn("8 of 24\n", self.jostle("status", "shards").stdout)
         refused = self.jostle("merge", "shards", "-o", "all.h5", expect=BROKEN)
         self.assertIn("no input holds shard 1, 3, 5 of 5", refused.stderr)
         for command in study["redo"]:
