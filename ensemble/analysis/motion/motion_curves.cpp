@@ -31,14 +31,6 @@ std::vector<double> about_mean(std::span<const double> square, std::span<const d
   });
 }
 
-/// fourth / (factor second^2) - 1; no number where nothing moved.
-std::vector<double> non_gaussian(std::span<const double> fourth, std::span<const double> second,
-                                 double factor) {
-  return each(fourth.size(), [&](std::size_t r) {
-    return second[r] > 0 ? fourth[r] / (factor * second[r] * second[r]) - 1 : not_a_number;
-  });
-}
-
 /// Values of two rows where both have one.
 struct Pairs {
   std::vector<double> first, second;
@@ -51,6 +43,30 @@ Pairs pairs(std::span<const double> first, std::span<const double> second) {
     found.second.push_back(second[r]);
   }
   return found;
+}
+
+double sum(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// <fourth> / (gaussian <second>^2) - 1 of the means over realizations, with the jackknife's error;
+/// no number where nothing moved. `gaussian`: the ratio that Gaussian displacements of so many
+/// realizations have in the mean.
+template <class Gaussian>
+MeanEstimate non_gaussian(std::span<const double> fourth, std::span<const double> second,
+                          const Gaussian& gaussian) {
+  const Pairs moments = pairs(fourth, second);
+  const std::size_t n = moments.first.size();
+  const auto parameter = [&](double fourths, double seconds, std::size_t realizations) {
+    const auto m = static_cast<double>(realizations);
+    return seconds > 0 ? m * fourths / (seconds * seconds * gaussian(m)) - 1 : not_a_number;
+  };
+  const double fourths = sum(moments.first), seconds = sum(moments.second);
+  const std::vector<double> left_out = each(n > 1 ? n : 0, [&](std::size_t r) {
+    return parameter(fourths - moments.first[r], seconds - moments.second[r], n - 1);
+  });
+  return {parameter(fourths, seconds, n), jackknife_error(left_out),
+          std::max(0.0, static_cast<double>(n) - 1)};
 }
 
 }  // namespace
@@ -90,32 +106,34 @@ std::vector<double> layer_vertical_squares(const MotionRecords& records, std::si
                     records.row("layer_settling", origin, lag, layer));
 }
 
-std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                         std::size_t lag) {
+MeanEstimate lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                  std::size_t lag) {
   return non_gaussian(records.row("lateral_quartic", origin, lag),
-                      lateral_squares(records, origin, lag), 2);
+                      lateral_squares(records, origin, lag), [](double) { return 2.0; });
 }
 
-std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                          std::size_t lag) {
+MeanEstimate vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                   std::size_t lag) {
   return non_gaussian(records.row("vertical_quartic", origin, lag),
-                      vertical_squares(records, origin, lag), 3);
+                      vertical_squares(records, origin, lag), [](double) { return 3.0; });
 }
 
-std::vector<double> layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                               std::size_t lag, std::size_t layer) {
+MeanEstimate layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                        std::size_t lag, std::size_t layer) {
   const auto n =
       static_cast<double>(layer_sizes(records.n_spheres, records.settings.layers)[layer]);
   return non_gaussian(records.row("layer_lateral_quartic", origin, lag, layer),
-                      layer_lateral_squares(records, origin, lag, layer), 2 * n / (n + 1));
+                      layer_lateral_squares(records, origin, lag, layer),
+                      [&](double m) { return 2 * n * m / (n * m + 1); });
 }
 
-std::vector<double> layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                                std::size_t lag, std::size_t layer) {
+MeanEstimate layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag, std::size_t layer) {
   const auto n =
       static_cast<double>(layer_sizes(records.n_spheres, records.settings.layers)[layer]);
   return non_gaussian(records.row("layer_vertical_quartic", origin, lag, layer),
-                      layer_vertical_squares(records, origin, lag, layer), 3 * (n - 1) / (n + 1));
+                      layer_vertical_squares(records, origin, lag, layer),
+                      [&](double m) { return 3 * (n - 1) * m / ((n - 1) * m + 2); });
 }
 
 std::vector<double> independent_susceptibility(const MotionRecords& records,
@@ -162,9 +180,6 @@ MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, 
       pairs(lateral_squares(records, origin, early), lateral_squares(records, origin, late));
   const double decades =
       std::log(static_cast<double>(lags[late]) / static_cast<double>(lags[early]));
-  const auto sum = [](const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-  };
   const double slope = std::log(sum(squares.second) / sum(squares.first)) / decades;
   if (!std::isfinite(slope)) return no_mean;
   const auto first = ln_means_without_one(squares.first),

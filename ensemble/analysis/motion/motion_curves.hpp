@@ -32,19 +32,20 @@ std::vector<double> layer_vertical_squares(const MotionRecords& records, std::si
                                            std::size_t lag, std::size_t layer);
 
 /// <r^4> / (2 <r^2>^2) - 1 of lateral displacements r in two dimensions: 0 for Gaussian ones.
-/// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is of three.
-std::vector<double> lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                         std::size_t lag);
-/// <z^4> / (3 <z^2>^2) - 1 of vertical displacements z about their mean.
-std::vector<double> vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                          std::size_t lag);
-/// The same of the spheres of a layer, about its own mean. Of n Gaussian displacements the ratios
-/// are low by 1/(n + 1) and 2/(n + 1) in the mean: here they are taken times (n + 1)/n and (n +
-/// 1)/(n - 1), so that they read 0.
-std::vector<double> layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                               std::size_t lag, std::size_t layer);
-std::vector<double> layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
-                                                std::size_t lag, std::size_t layer);
+/// < > is the mean over spheres and realizations, the error a jackknife's over realizations.
+/// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is of three dimensions.
+MeanEstimate lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                  std::size_t lag);
+/// <z^4> / (3 <z^2>^2) - 1 of vertical displacements z about the mean of each realization.
+MeanEstimate vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                   std::size_t lag);
+/// Like those of the bed, for the spheres of a layer about its own mean. Few Gaussian displacements
+/// read 0 in the mean: for n spheres of each of M realizations the ratios are multiplied by
+/// (n M + 1)/(n M) and by ((n - 1) M + 2)/((n - 1) M).
+MeanEstimate layer_lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                        std::size_t lag, std::size_t layer);
+MeanEstimate layer_vertical_non_gaussian(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag, std::size_t layer);
 
 /// chi_4 of spheres that move independently of each other, and alike within layers: the mean over
 /// spheres of Q_l (1 - Q_l) n_l/(n_l - 1), Q_l the fraction of the n_l spheres of their layer that

@@ -200,10 +200,17 @@ Table displacement_table(const std::string& prefix, const MotionRecords& records
   table.add_means(
       {"lateral_exponent", "1", "d ln msd_lateral / d ln lag, over a factor of four", ""},
       [&](std::size_t o, std::size_t l, std::size_t) { return lateral_exponent(records, o, l); });
-  add("lateral_non_gaussian", "1", "<r^4> / (2 <r^2>^2) - 1, sideways", rahman,
-      lateral_non_gaussian);
-  add("vertical_non_gaussian", "1", "<z^4> / (3 <z^2>^2) - 1, about the mean", rahman,
-      vertical_non_gaussian);
+  const auto add_estimates = [&](const char* name, const char* long_name, const auto& estimate) {
+    table.add_means({name, "1", long_name, rahman}, [&](std::size_t o, std::size_t l, std::size_t) {
+      return estimate(records, o, l);
+    });
+  };
+  add_estimates("lateral_non_gaussian",
+                "<r^4> / (2 <r^2>^2) - 1, sideways; < > over spheres and realizations",
+                lateral_non_gaussian);
+  add_estimates("vertical_non_gaussian",
+                "<z^4> / (3 <z^2>^2) - 1, about each mean; < > over spheres and realizations",
+                vertical_non_gaussian);
   table.add_intervals(
       {"lateral_ratio", "1", "msd_lateral over that of the first waiting time, geometric mean", ""},
       "end of the interval, Student's t of the logarithm",
@@ -274,16 +281,19 @@ Table layer_table(const std::string& prefix, const MotionRecords& records) {
                      [&](std::size_t o, std::size_t l, std::size_t layer) {
                        return layer_vertical_squares(records, o, l, layer);
                      });
-  table.add_means_of({"lateral_non_gaussian", "1",
-                      "<r^4> / (2 <r^2>^2) - 1, sideways, within the layer; 0 if Gaussian", rahman},
-                     [&](std::size_t o, std::size_t l, std::size_t layer) {
-                       return layer_lateral_non_gaussian(records, o, l, layer);
-                     });
-  table.add_means_of({"vertical_non_gaussian", "1",
-                      "<z^4> / (3 <z^2>^2) - 1, about the layer's mean; 0 if Gaussian", rahman},
-                     [&](std::size_t o, std::size_t l, std::size_t layer) {
-                       return layer_vertical_non_gaussian(records, o, l, layer);
-                     });
+  table.add_means(
+      {"lateral_non_gaussian", "1",
+       "<r^4> / (2 <r^2>^2) - 1, sideways; < > over the layer and realizations", rahman},
+      [&](std::size_t o, std::size_t l, std::size_t layer) {
+        return layer_lateral_non_gaussian(records, o, l, layer);
+      });
+  table.add_means({"vertical_non_gaussian", "1",
+                   "<z^4> / (3 <z^2>^2) - 1, about each layer's mean; < > over the layer and "
+                   "realizations",
+                   rahman},
+                  [&](std::size_t o, std::size_t l, std::size_t layer) {
+                    return layer_vertical_non_gaussian(records, o, l, layer);
+                  });
   return table.take();
 }
 

@@ -105,9 +105,10 @@ std::vector<double> overlaps(std::size_t realizations, std::size_t group, double
 }
 
 /// Spheres that move alone, Gaussian steps, those of each layer alike and `ratio` times as far as
-/// those of the layer below. One waiting time and lag.
+/// those of the layer below. One waiting time and lag. `spread`: standard deviation over beds of
+/// the logarithm of the mean square step.
 MotionRecords sheared(std::size_t realizations, std::uint32_t spheres, std::uint32_t layers,
-                      double ratio, synthetic::Gaussian& gaussian) {
+                      double ratio, synthetic::Gaussian& gaussian, double spread = 0) {
   const MotionSettings settings{
       .origins = {0}, .lags = {1}, .overlap_lengths = {0.1}, .layers = layers};
   MotionRecords records(settings, spheres, static_cast<std::uint32_t>(realizations));
@@ -116,8 +117,9 @@ MotionRecords sheared(std::size_t realizations, std::uint32_t spheres, std::uint
     MotionOrigin origin;
     origin.centres.resize(spheres);
     std::vector<Vec3> now(spheres);
+    const double of_bed = 0.01 * (spread > 0 ? std::exp(spread * gaussian() / 2) : 1);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      const double step = 0.01 * std::pow(ratio, of_sphere[i]);
+      const double step = of_bed * std::pow(ratio, of_sphere[i]);
       now[i] = {step * gaussian(), step * gaussian(), step * (gaussian() - 1)};
     }
     origin.values = motion_values(settings, origin.centres, now, of_sphere);
@@ -153,11 +155,11 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
       for (const double q : records.row("lateral_overlap", 0, 0)) of_bed.add(q * (1 - q));
       chi_4.add(four_point_susceptibility(records.row("lateral_overlap", 0, 0), spheres).value);
       for (std::uint32_t k = 0; k < layers; ++k) {
-        for (const double one : layer_lateral_non_gaussian(records, 0, 0, k)) lateral.add(one);
-        for (const double one : layer_vertical_non_gaussian(records, 0, 0, k)) vertical.add(one);
+        lateral.add(layer_lateral_non_gaussian(records, 0, 0, k).value);
+        vertical.add(layer_vertical_non_gaussian(records, 0, 0, k).value);
       }
-      for (const double one : lateral_non_gaussian(records, 0, 0)) lateral_of_bed.add(one);
-      for (const double one : vertical_non_gaussian(records, 0, 0)) vertical_of_bed.add(one);
+      lateral_of_bed.add(lateral_non_gaussian(records, 0, 0).value);
+      vertical_of_bed.add(vertical_non_gaussian(records, 0, 0).value);
     }
     CHECK(std::abs(independent.mean() - truth) <= 3 * independent.standard_error());
     CHECK(std::abs(chi_4.mean() - truth) <= 3 * chi_4.standard_error());
@@ -260,9 +262,9 @@ TEST_CASE("Gaussian motion has no non-Gaussian parameter, motion of two rates ha
   RandomStream random = test_stream(43);
   Moments alike, mixed, vertical;
   for (int e = 0; e < 40; ++e) {
-    alike.add(lateral_non_gaussian(walks(1, 1, false, 1, random), 0, 2)[0]);
-    mixed.add(lateral_non_gaussian(walks(1, 1, true, 1, random), 0, 2)[0]);
-    vertical.add(vertical_non_gaussian(walks(1, 1, true, 1, random), 0, 2)[0]);
+    alike.add(lateral_non_gaussian(walks(1, 1, false, 1, random), 0, 2).value);
+    mixed.add(lateral_non_gaussian(walks(1, 1, true, 1, random), 0, 2).value);
+    vertical.add(vertical_non_gaussian(walks(1, 1, true, 1, random), 0, 2).value);
   }
   // One in ten (52 of 512) of 9 times the variance: <v^2> / <v>^2 - 1.
   const double share = 52.0 / n_spheres;
@@ -271,6 +273,56 @@ TEST_CASE("Gaussian motion has no non-Gaussian parameter, motion of two rates ha
   // Of 512 spheres it is some 4 % low: a ratio of means of few fast ones.
   CHECK(mixed.mean() == Approx(expected).epsilon(0.1));
   CHECK(vertical.mean() == Approx(expected).epsilon(0.1));
+}
+
+TEST_CASE("Non-Gaussian parameters are ratios of means over spheres and realizations") {
+  synthetic::Gaussian gaussian(20261126, 48);
+  const MotionRecords records = sheared(3, 60, 2, 1.5, gaussian, 0.8);
+  const auto mean = [&](const char* quantity, std::size_t place) {
+    return mean_estimate(records.row(quantity, 0, 0, place)).value;
+  };
+  const double square = mean("square_displacement", 0) + mean("square_displacement", 1);
+  const double of_bed = mean("lateral_quartic", 0) / (2 * square * square) - 1;
+  CHECK(lateral_non_gaussian(records, 0, 0).value == Approx(of_bed));
+  const double of_layer =
+      mean("layer_square_displacement", 3) + mean("layer_square_displacement", 4);
+  CHECK(layer_lateral_non_gaussian(records, 0, 0, 1).value ==
+        Approx(mean("layer_lateral_quartic", 1) / (2 * of_layer * of_layer) * 91 / 90 - 1));
+  CHECK(lateral_non_gaussian(records, 0, 0).dof == 2);
+  const MeanEstimate alone = lateral_non_gaussian(sheared(1, 60, 1, 1, gaussian), 0, 0);
+  CHECK(std::isfinite(alone.value));
+  CHECK(std::isnan(alone.error));
+}
+
+// The mean over beds of the ratio of each bed is 0 here at any spread: 8 % low, in 0 of 1500 cases.
+TEST_CASE("Beds of unlike mobility are one ensemble of displacements", "[statistics]") {
+  synthetic::Gaussian gaussian(20261126, 49);
+  constexpr double spread = 0.3;
+  const double truth = std::exp(spread * spread) - 1;
+  for (const std::size_t realizations : {3u, 6u, 18u}) {
+    CAPTURE(realizations);
+    Moments lateral, vertical;
+    Coverage of_lateral, of_vertical;
+    for (int e = 0; e < 500; ++e) {
+      const MotionRecords records = sheared(realizations, 128, 1, 1, gaussian, spread);
+      const MeanEstimate sideways = lateral_non_gaussian(records, 0, 0),
+                         upwards = vertical_non_gaussian(records, 0, 0);
+      lateral.add(sideways.value);
+      vertical.add(upwards.value);
+      of_lateral.add(truth, sideways);
+      of_vertical.add(truth, upwards);
+    }
+    for (const Moments* one : {&lateral, &vertical}) {
+      CHECK((one->mean() + 1) / (truth + 1) >= 0.94);
+      CHECK((one->mean() + 1) / (truth + 1) <= 1.01);
+    }
+    for (const Coverage* one : {&of_lateral, &of_vertical}) {
+      fmt::print("{:>3} beds of unlike mobility | {:>6.1f}% {:>6.1f}%\n", realizations,
+                 100 * one->share_68(), 100 * one->share_95());
+      CHECK(one->share_95() >= 0.80);
+    }
+  }
+  std::fflush(stdout);
 }
 
 TEST_CASE("A realization of which nothing is there yet counts for nothing") {
