@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cli/tables/table_output.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "fitting/report.hpp"
 #include "fitting/value_text.hpp"
@@ -14,8 +15,7 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; not identifiable: the data set "
-    "no "
-    "limit. docs/fitting.md says what the rest means.\n";
+    "no limit. docs/fitting.md says what the rest means.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -212,9 +212,9 @@ std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes)
   }
   text += "\n";
   for (std::size_t i = 0; i < curve.t.size(); ++i) {
-    text += fmt::format("{},{}", curve.t[i], curve.x[i]);
-    if (!curve.sigma.empty()) text += fmt::format(",{}", curve.sigma[i]);
-    for (const Fit* fit : fits) text += fmt::format(",{}", fit->fitted[i]);
+    text += csv_number(curve.t[i]) + "," + csv_number(curve.x[i]);
+    if (!curve.sigma.empty()) text += "," + csv_number(curve.sigma[i]);
+    for (const Fit* fit : fits) text += "," + csv_number(fit->fitted[i]);
     text += "\n";
   }
   return text;

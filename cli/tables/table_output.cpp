@@ -10,11 +10,9 @@ namespace jostle::inline cli {
 
 namespace {
 
-/// To the last bit.
-std::string stored_cell(const Quantity& quantity, std::size_t index) {
+std::string csv_cell(const Quantity& quantity, std::size_t index) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&quantity.values)) {
-    const double number = numbers->at(index);
-    return std::isnan(number) ? "nan" : fmt::format("{}", number);
+    return csv_number(numbers->at(index));
   }
   if (const auto* counts = std::get_if<std::vector<std::uint64_t>>(&quantity.values)) {
     return fmt::to_string(counts->at(index));
@@ -59,9 +57,9 @@ std::string quoted(const std::string& text) {
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
-  for (const std::string& text : cells) line.append(line.empty() ? "" : ",").append(quoted(text));
-  line += '\n';
-  return line;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    line.append(i == 0 ? "" : ",").append(quoted(cells[i]));
+  return (line.empty() ? "\"\"" : line) + "\n";  // an empty line would end the block
 }
 
 }  // namespace
@@ -79,6 +77,10 @@ Json table_json(const Table& table) {
   return object;
 }
 
+std::string csv_number(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "";
+}
+
 std::string table_csv(const Table& table) {
   std::string text = fmt::format("# {}\n", table.name);
   for (const auto& [name, note] : table.notes) text += fmt::format("# {}: {}\n", name, note);
@@ -90,10 +92,10 @@ std::string table_csv(const Table& table) {
       std::vector<std::string> cells;
       const auto indices = place(table, block, row);
       for (std::size_t i = 0; i < indices.size(); ++i) {
-        cells.push_back(stored_cell(axis_named(table, block.axes[i]), indices[i]));
+        cells.push_back(csv_cell(axis_named(table, block.axes[i]), indices[i]));
       }
       for (const Quantity* quantity : block.columns) {
-        cells.push_back(stored_cell(*quantity, row));
+        cells.push_back(csv_cell(*quantity, row));
       }
       text += csv_line(cells);
     }

@@ -13,8 +13,12 @@ namespace jostle::inline cli {
 /// outermost axis first; what is not a number is null.
 Json table_json(const Table& table);
 
-/// One block a set of axes, under a header of names, a row a place along the axes; numbers to the
-/// last bit. Lines that begin with # hold the table's name and notes.
+/// A number to the last bit; an empty field for NaN and the infinities, which no reader of CSV
+/// agrees on.
+std::string csv_number(double value);
+
+/// One block a set of axes, under a header of names, a row a place along the axes; numbers as
+/// csv_number() writes them. Lines that begin with # hold the table's name and notes.
 std::string table_csv(const Table& table);
 
 }  // namespace jostle::inline cli

@@ -144,13 +144,16 @@ class Texts(Case):
         return done
 
     def look_at_file(self, name):
-        """Of CSV: a cell that is nan or inf is a missing number for programs, a sentence is not."""
+        """Of CSV: a missing number is an empty field, and every block has one number of fields."""
         path = self.folder / name
         if path.exists():
             with path.open(newline="") as file:
-                cells = [cell for row in csv.reader(file) for cell in row]
-            self.look_at("\n".join(cell for cell in cells if cell not in FOR_PROGRAMS_TO_READ),
-                         (self.scene_name, name))
+                rows = [row for row in csv.reader(file) if not row or not row[0].startswith("#")]
+            self.look_at("\n".join(cell for row in rows for cell in row), (self.scene_name, name))
+            for before, row in zip(rows, rows[1:], strict=False):
+                if before and row:
+                    self.assertEqual(len(before), len(row), (self.scene_name, name, row))
+            path.unlink()
 
     def look_at_notes(self):
         with h5py.File(self.folder / "one.h5") as file:
@@ -194,6 +197,7 @@ class Texts(Case):
         self.ask("status", "one.h5")
         for observable in given["observe"][-2:]:
             self.ask("fit", "one.h5", "--observable", observable, "--verbose", "--csv", "fit.csv", "--force")
+            self.look_at_file("fit.csv")
             for kind in ANALYSES:
                 extra = ["--threshold", "0.5"] if kind == "ordering" else []
                 self.ask("analyse", "one.h5", "--wide", "--csv", "tables.csv", "--force", kind,

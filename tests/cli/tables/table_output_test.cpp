@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "cli/tables/table_text.hpp"
 
@@ -152,6 +153,33 @@ TEST_CASE("A table as CSV has a block a set of axes") {
   CHECK(table_csv(example()) ==
         "# point_0000/ageing\n# verdict: it ages\n"
         "tau,tau_error\n12.345678,0.21\n\n"
-        "age,lag,a\n1,2,1\n1,4,2\n1,8,3\n10,2,4\n10,4,5\n10,8,nan\n\n"
+        "age,lag,a\n1,2,1\n1,4,2\n1,8,3\n10,2,4\n10,4,5\n10,8,\n\n"
         "age,kind\n1,x\n10,\"y, z\"\n\n");
+}
+
+TEST_CASE("A value that is not there is an empty field of a CSV") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double value : {std::nan(""), -std::nan(""), infinity, -infinity})
+    CHECK(csv_number(value).empty());
+  CHECK(csv_number(0.1) == "0.1");
+  CHECK(csv_number(-1e-300) == "-1e-300");
+  const Table table = {
+      .name = "t",
+      .axes = {{"n", {"n"}, std::vector<std::uint64_t>{1, 2}, "", "", ""}},
+      .quantities = {{"x", {"n"}, std::vector{infinity, 1.0}, "1", "", ""},
+                     {"y", {"n"}, std::vector{-infinity, std::nan("")}, "1", "", ""}},
+      .notes = {}};
+  CHECK(table_csv(table) == "# t\nn,x,y\n1,,\n2,1,\n\n");
+  // No field is lost where the first ones are empty, and a lone one is no empty line.
+  const Table first = {.name = "t",
+                       .axes = {{"n", {"n"}, std::vector<std::uint64_t>{1}, "", "", ""}},
+                       .quantities = {{"x", {}, std::vector{infinity}, "1", "", ""},
+                                      {"y", {}, std::vector{2.5}, "1", "", ""}},
+                       .notes = {}};
+  CHECK(table_csv(first) == "# t\nx,y\n,2.5\n\n");
+  const Table lone = {.name = "t",
+                      .axes = {},
+                      .quantities = {{"x", {}, std::vector{infinity}, "1", "", ""}},
+                      .notes = {}};
+  CHECK(table_csv(lone) == "# t\nx\n\"\"\n\n");
 }
