@@ -1,7 +1,6 @@
 #include "structure/measure.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -14,29 +13,6 @@
 namespace jostle::inline structure {
 
 namespace {
-
-// Voronoi cells of centres that all but coincide are lost in rounding, and beds have contacts.
-void require_diameters(const Packing& packing) {
-  constexpr double least = 0.5, most = 1.5;
-  constexpr std::uint32_t many = 100;
-  const NeighbourFinder finder(packing, most);
-  bool any = finder.size() < many;
-  for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
-      any = true;
-      if (distance_squared >= least * least) return;
-      throw std::invalid_argument("structure: spheres " + std::to_string(i) + " and " +
-                                  std::to_string(j) + " are " +
-                                  std::to_string(std::sqrt(distance_squared)) +
-                                  " apart, and their diameter is 1: lengths must be in diameters");
-    });
-  }
-  if (!any) {
-    throw std::invalid_argument(
-        "structure: no two spheres are less than 1.5 apart, and their diameter is 1: lengths must "
-        "be in diameters");
-  }
-}
 
 std::string in_words(const Region& region, const Container& container) {
   std::string words = "heights " + std::to_string(region.low);

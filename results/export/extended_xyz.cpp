@@ -12,7 +12,9 @@
 #include "results/error.hpp"
 #include "results/export/extended_xyz_header.hpp"
 #include "results/export/input_file.hpp"
+#include "results/export/particle_columns.hpp"
 #include "results/export/printable.hpp"
+#include "structure/order/neighbours.hpp"
 
 namespace jostle::inline results {
 namespace {
@@ -108,6 +110,7 @@ bool FrameReader::read(Packing& packing) {
   }
   for (std::size_t k = 0; k < sizes.size(); ++k)
     require_model_size(header.sizes[k].name, sizes[k].least, sizes[k].most, header.sizes[k].model);
+  require_diameters(wrapped_inside(packing));
   return true;
 }
 

@@ -110,7 +110,18 @@ std::array<double, 3> widths_of(const Keys& keys) {
 }
 
 Vec3 origin_of(const Keys& keys) {
-  const auto origin = keys.find("origin");
+  auto origin = keys.end();
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    std::string plain = key->first;
+    std::erase(plain, '_');
+    if (plain != "origin" && plain != "cellorigin" && plain != "boxorigin" &&
+        plain != "latticeorigin")
+      continue;
+    if (origin != keys.end())
+      refuse("the comment line has both {} and {}; leave one of them out", origin->first,
+             key->first);
+    origin = key;
+  }
   if (origin == keys.end()) return {};
   const auto words = entries_of(origin->second);
   if (words.size() != 3) refuse("Origin has {} numbers, not 3", words.size());
@@ -191,9 +202,10 @@ Container container_of(const Keys& keys) {
 std::optional<SizeColumns> size_named(const std::string& name) {
   std::string plain = lower(name);
   std::erase(plain, '_');
-  for (const char* radius : {"radius", "radii", "particleradius"})
+  for (const char* radius : {"radius", "radii", "particleradius", "r", "rad"})
     if (plain == radius) return SizeColumns{.name = name, .model = sphere_radius};
-  for (const char* diameter : {"diameter", "diameters", "particlediameter", "size"})
+  for (const char* diameter :
+       {"diameter", "diameters", "particlediameter", "size", "d", "diam", "sigma"})
     if (plain == diameter) return SizeColumns{.name = name, .model = 2 * sphere_radius};
   if (plain == "asphericalshape")
     return SizeColumns{.name = name, .model = sphere_radius, .zero_means = true};
@@ -204,7 +216,8 @@ std::optional<SizeColumns> size_named(const std::string& name) {
 void require_model_keys(const Keys& keys) {
   for (const auto& [key, value] : keys) {
     const auto size = size_named(key);
-    if (size && key != "size") {  // of a frame: anything
+    static constexpr std::array anything = {"size", "r", "d", "sigma"};  // of a frame
+    if (size && std::ranges::find(anything, key) == anything.end()) {
       for (const std::string& entry : entries_of(value)) {
         const double given = finite_number(entry);
         require_model_size(key, given, given, size->model);
@@ -283,15 +296,19 @@ void require_model_size(const std::string& name, double least, double most, doub
   if (std::abs(least - model) <= close && std::abs(most - model) <= close) return;
   if (!(least > 0))
     refuse("{} is {}: every sphere must have {}, with lengths in diameters", name, least, model);
+  constexpr std::array ambiguous = {"r", "rad", "d", "diam", "sigma"};
+  const char* const rename = std::ranges::find(ambiguous, lower(name)) != ambiguous.end()
+                                 ? ". Rename the column if it holds no sizes"
+                                 : "";
   if (most - least <= rounding * most)
     refuse(
         "{} is {}, and the spheres of the model have {}: lengths must be in diameters. Divide all "
-        "lengths (Lattice, Origin, pos, {}) by {:.6g}",
-        name, least, model, name, least / model);
+        "lengths (Lattice, Origin, pos, {}) by {:.6g}{}",
+        name, least, model, name, least / model, rename);
   refuse(
       "{} is from {} to {}: spheres of several sizes are not known. All spheres must have {}, with "
-      "lengths in diameters",
-      name, least, most, model);
+      "lengths in diameters{}",
+      name, least, most, model, rename);
 }
 
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment) {

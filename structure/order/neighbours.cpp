@@ -1,7 +1,10 @@
 #include "structure/order/neighbours.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "engine/bed/boundary.hpp"
 
@@ -171,6 +174,28 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
     table.first.push_back(static_cast<std::uint32_t>(table.neighbours.size()));
   }
   return table;
+}
+
+// Voronoi cells of centres that all but coincide are lost in rounding, and beds have contacts.
+void require_diameters(const Packing& packing) {
+  constexpr double least = 0.5, most = 1.5;
+  constexpr std::uint32_t many = 100;
+  const NeighbourFinder finder(packing, most);
+  bool any = finder.size() < many;
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      any = true;
+      if (distance_squared >= least * least) return;
+      throw std::invalid_argument("spheres " + std::to_string(i) + " and " + std::to_string(j) +
+                                  " are " + std::to_string(std::sqrt(distance_squared)) +
+                                  " apart, and their diameter is 1: lengths must be in diameters");
+    });
+  }
+  if (!any) {
+    throw std::invalid_argument(
+        "no two spheres are less than 1.5 apart, and their diameter is 1: lengths must be in "
+        "diameters");
+  }
 }
 
 }  // namespace jostle::inline structure

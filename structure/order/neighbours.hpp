@@ -104,4 +104,8 @@ NeighbourTable neighbours_within(const Packing& packing, double cut);
 /// within 1.5, where they touch or nearly do. Equally far ones stand in order of their index.
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
 
+/// Throws std::invalid_argument where lengths cannot be in diameters: two centres are less than 0.5
+/// apart, or no two of 100 or more are less than 1.5 apart. Centres wrapped, in the container.
+void require_diameters(const Packing& packing);
+
 }  // namespace jostle::inline structure

@@ -135,6 +135,29 @@ class ExtendedXyz(Case):
         self.refused_by_all(frame(self.rows, HEADER + " units=mm"), "must be in diameters")
         self.read_alike(frame(self.rows, HEADER + " radius=0.5 units=diameters"))
 
+    def test_sizes_by_their_short_names(self):
+        for name, model in (("r", 0.5), ("rad", 0.5), ("d", 1.0), ("diam", 1.0), ("sigma", 1.0), ("R", 0.5)):
+            header = HEADER.replace("pos:R:3", f"pos:R:3:{name}:R:1")
+            self.read_alike(frame([[*row, model] for row in self.rows], header))
+            for rows in ([[*row, 0.3] for row in self.rows],
+                         [[*row, 0.3 if i == 47 else model] for i, row in enumerate(self.rows)]):
+                self.refused_by_all(frame(rows, header), f"{name} is .*0.3.* Rename the column if it holds no sizes")
+        self.read_alike(frame(self.rows, HEADER + " r=3 d=2 sigma=0.1 size=7"))  # of a frame: anything
+
+    def test_names_of_the_corner(self):
+        for key in ("cell_origin", "box_origin", "Cell_Origin", "lattice_origin"):
+            self.read_alike(frame(self.shifted(0, 0, 2), f'{HEADER} {key}="0 0 2"'))
+        self.refused_by_all(frame(self.rows, HEADER + ' Origin="0 0 0" cell_origin="0 0 2"'), "leave one of them out")
+
+    def test_beds_in_other_lengths_are_refused(self):
+        fractional = [["X", x / 4, y / 4, z / 5] for x, y, z in self.centres]
+        self.refused_by_all(frame(fractional), "apart, and their diameter is 1")
+        lattice = [["X", 1.5 + 3 * (i % 5), 1.5 + 3 * (i // 5 % 5), 1.5 + 3 * (i // 25)] for i in range(100)]
+        self.refused_by_all(frame(lattice, HEADER.replace("4 0 0 0 4 0 0 0 5", "15 0 0 0 15 0 0 0 15")),
+                            "no two spheres are less than 1.5 apart")
+        walls = HEADER.replace('pbc="T T F"', "container=walls")
+        self.refused_by_all(frame(self.shifted(4, 0, 0), walls), "outside the container")
+
     def test_containers_that_contradict_themselves_are_refused(self):
         for words, says in (('pbc="T F T" container=periodic', "contradicts container=periodic"),
                             ('pbc="F F F" container=periodic', "contradicts container=periodic"),
