@@ -116,11 +116,12 @@ def _opened(done: Any, path: Path, program: Path | None) -> Results:
 def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None = None,
         resume: bool = False, retry_failed: bool = False, force: bool = False,
         time_limit: str | None = None, checkpoint_every: str | None = None, shard: str | None = None,
-        progress: bool = False, program: Path | None = None) -> Results:
+        wait: str | None = None, progress: bool = False, program: Path | None = None) -> Results:
     """Runs a scene (a dict, or the path of one) to its end and opens its results.
 
     output: default the scene's name + .h5, in the current folder. time_limit, checkpoint_every: "90s",
-    "30m", "1h30m". shard: "i/n". progress: show it on stderr. The other options are those of `jostle run`.
+    "30m", "1h30m". wait: how long another process that works on `output` is waited for, in the same form,
+    as in all functions that have it. shard: "i/n". progress: show it on stderr. The other options are those of `jostle run`.
     KeyboardInterrupt (Ctrl-C) stops the run as the program does: all taps are stored, resume=True goes on.
     Raises SceneError with every fault; RunStopped after a time limit or a signal, RealizationsFailed: both
     have the results that there are; ProgramError for everything else.
@@ -129,7 +130,8 @@ def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None 
     with scene_file(scene) as file:
         done = call(["run", *_option("output", path), *([] if progress else ["--quiet"]),
                      *_options(threads=threads, resume=resume, retry_failed=retry_failed, force=force,
-                               time_limit=time_limit, checkpoint_every=checkpoint_every, shard=shard)],
+                               time_limit=time_limit, checkpoint_every=checkpoint_every, shard=shard,
+                               wait=wait)],
                     [file], program=program, show=progress, accept=(OK, FAILED, STOPPED))
     return _opened(done, path, program)
 
@@ -138,7 +140,7 @@ def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None 
 def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | None = None,
          target: float | None = None, budget: str | None = None, replicates: int | None = None,
          taps: int | None = None, sweep_point: int | str | None = None, resume: bool = False,
-         force: bool = False, program: Path | None = None) -> tuple[Results, str]:
+         force: bool = False, wait: str | None = None, program: Path | None = None) -> tuple[Results, str]:
     """What the accuracy of a scene costs: its results file (tables in `.tables`), and the report's text.
 
     output: default NAME-cost.h5. target: recommend the cheapest way to this total error of `observable`.
@@ -148,7 +150,8 @@ def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | N
         done = call(["cost", *_option("output", path),
                      *_options(observable=observable, target=target, budget=budget, taps=taps,
                                replicates=replicates, sweep_point=sweep_point, resume=resume,
-                               force=force)], [file], program=program, accept=(OK, FAILED, STOPPED))
+                               force=force, wait=wait)], [file], program=program,
+                    accept=(OK, FAILED, STOPPED))
     return _opened(done, path, program), done.stdout
 
 
@@ -186,7 +189,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
         independent: bool = False, figures: Path | None = None, page: Path | None = None,
         resample: str | None = None,
         resamples: int | None = None, seed: int | None = None, store: bool = True, live: bool = False,
-        program: Path | None = None) -> list[FittedCurve]:
+        wait: str | None = None, program: Path | None = None) -> list[FittedCurve]:
     """Fits laws to the mean curve of an observable at every sweep point, or to a measured curve (CSV).
 
     Kept in the file under /fits unless store=False; a Results that is open shows them once it is opened
@@ -207,7 +210,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
                  *_options(observable=observable, model=model, law=law, law_name=law_name,
                            sweep_point=sweep_point, range=range, realizations=realizations,
                            gaps=gaps, independent=independent, figures=figures, page=page, resample=resample,
-                           resamples=resamples, seed=seed, no_store=not store,
+                           resamples=resamples, seed=seed, no_store=not store, wait=wait,
                            live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
     return fitted_curves(_report(done))
 
@@ -220,7 +223,8 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
             spheres: float | None = None, segment: int | None = None, window: str | None = None,
             detrend: str | None = None, band: str | None = None, threshold: float | None = None,
             hold: int | None = None, equilibrium: str | None = None, threads: int | None = None,
-            store: bool = True, live: bool = False, program: Path | None = None) -> list[Table]:
+            store: bool = True, live: bool = False, wait: str | None = None,
+            program: Path | None = None) -> list[Table]:
     """what: "steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes" or "memory" of observables, or
     "motion", which is of none; docs/analysis.md and docs/volumes.md have the equations.
 
@@ -233,7 +237,7 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
                   quantity=quantity, against=against, reference=reference, spheres=spheres,
                   segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
                   hold=hold, equilibrium=equilibrium, threads=threads,
-                  no_store=not store, live=_live(results, live))])
+                  no_store=not store, wait=wait, live=_live(results, live))])
     return [table_from_json(one) for one in _report(done)["tables"]]
 
 
@@ -241,14 +245,14 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
 def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] | None = None,
               settings: Mapping[str, Any] | None = None, tap: Sequence[int] | None = None,
               sweep_point: int | str | None = None, threads: int | None = None, store: bool = True,
-              live: bool = False, program: Path | None = None) -> list[Table]:
+              live: bool = False, wait: str | None = None, program: Path | None = None) -> list[Table]:
     """What kept packings, or extended XYZ files, look like inside; docs/structure.md says what.
 
     Kept in a results file under /structure unless store=False.
     """
     done = call(["structure", "--json",
                  *_options(part=part, settings=None if settings is None else _json_text(settings, "settings"),
-                           tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store,
+                           tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store, wait=wait,
                            live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
     return [table_from_json(one) for one in _report(done)["tables"]]
 
@@ -266,10 +270,10 @@ def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool
 @takes_arguments
 def export(results: Results | Path, output: Path, *, format: str, point: int | None = None,
            realization: int | None = None, tap: Sequence[int] | str | None = None, live: bool = False,
-           force: bool = False, program: Path | None = None) -> Path:
+           force: bool = False, wait: str | None = None, program: Path | None = None) -> Path:
     """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
     last, "all", or some. Returns `output`."""
     call(["export", *_option("format", format), *_option("output", path_text(output, "output")),
           *_options(sweep_point=point, realization=realization, tap=tap, live=_live(results, live),
-                    force=force)], _paths(results), program=program)
+                    force=force, wait=wait)], _paths(results), program=program)
     return output

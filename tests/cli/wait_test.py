@@ -2,6 +2,7 @@
 stored is an exit code."""
 
 import fcntl
+import inspect
 import json
 import os
 import subprocess
@@ -133,6 +134,30 @@ class Waiting(Case):
         with self.assertWarnsRegex(UserWarning, "not stored"):
             tables = jostle.analyse(self.folder / "tiny.h5", "steady", "mean_height", program=JOSTLE)
         self.assertEqual(len(tables), 2)
+
+    def test_python_waits_as_long_as_it_is_told_to(self):
+        self.hold(" storing")
+        path, given = self.folder / "tiny.h5", {"wait": "0.2s", "program": JOSTLE}
+        for store in (lambda: jostle.fit(path, "mean_height", model="kww", **given),
+                      lambda: jostle.analyse(path, "steady", "mean_height", **given),
+                      lambda: jostle.structure(path, part=["profile"], **given)):
+            with self.assertWarnsRegex(UserWarning, r"still after 0\.2 s"):
+                store()
+        scene = json.loads((self.folder / "scene.json").read_text())
+        single = {key: value for key, value in scene.items() if key != "sweep"}
+        for write in (lambda: jostle.run(scene, path, resume=True, **given),
+                      lambda: jostle.cost(single, path, replicates=2, taps=1, force=True, **given),
+                      lambda: jostle.export(self.folder / "copy.h5", path, format="results", force=True, **given)):
+            with self.assertRaisesRegex(jostle.ProgramError, r"still after 0\.2 s"):
+                write()
+
+    def test_every_function_waits_whose_command_does(self):
+        for name in ("run", "cost", "fit", "analyse", "structure", "export"):
+            with self.subTest(name):
+                self.assertIn("--wait", self.jostle(name, "--help").stdout)
+                self.assertIn("wait", inspect.signature(getattr(jostle, name)).parameters)
+        for name in ("report", "check"):
+            self.assertNotIn("--wait", self.jostle(name, "--help").stdout)
 
     def test_names_of_locks_are_of_whole_files(self):
         """The lock of one file keeps nobody from another."""
