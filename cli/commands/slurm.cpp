@@ -13,8 +13,6 @@
 #include "cli/options/command_words.hpp"
 #include "cli/reports/batch_script.hpp"
 #include "cli/reports/durations.hpp"
-#include "cli/tables/wrapped.hpp"
-#include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -137,7 +135,7 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
 }
 
 void say(const std::string& text) {
-  print_to_standard_error(wrapped(fmt::format("jostle: {}\n", text), screen().width));
+  print_to_standard_error(fmt::format("jostle: {}\n", text));
 }
 
 void write_script(const SlurmArguments& arguments) {

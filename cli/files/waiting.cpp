@@ -32,7 +32,7 @@ void warn_of_lost_seals(std::span<const std::string> paths) {
     const std::string warning = seal_warning(path);
     if (warning.empty()) continue;
     print_to_standard_error(
-        fmt::format("jostle: warning: {}: {}. Seal the file again with\n  {}\n", printable(path),
+        fmt::format("jostle: warning: {}: {}. Seal the file again:\n  {}\n", printable(path),
                     warning, shell_words({command_line().front(), "info", "--reseal", path})));
   }
 }

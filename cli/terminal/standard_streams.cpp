@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "results/export/printable.hpp"
+#include "study/provenance.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -59,8 +60,27 @@ bool output_is_lost() {
   return std::cout.bad();
 }
 
+std::string with_words_on_one_line(std::string message, std::span<const std::string> words) {
+  const auto replace = [&](const std::string& part) {
+    if (part.find('\n') == std::string::npos) return;
+    const std::string shown = printable_name(part);
+    for (std::size_t i = message.find(part); i != std::string::npos;
+         i = message.find(part, i + shown.size()))
+      message.replace(i, part.size(), shown);
+  };
+  for (const std::string& word : words) {
+    replace(word);
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    replace(word.substr(0, equals));
+    replace(word.substr(equals + 1));
+  }
+  return message;
+}
+
 void print_to_standard_error(std::string_view text) {
-  print_to_standard_error_exactly(printable(text));
+  print_to_standard_error_exactly(
+      printable(with_words_on_one_line(std::string(text), command_line())));
 }
 
 void print_to_standard_error_exactly(std::string_view text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,8 +30,11 @@ void print_json(const Json& json);
 /// Whether something that was printed did not reach standard output: the exit code must say so.
 bool output_is_lost();
 
-/// Writes a message to standard error, as print() does. Where that goes to a full disk or a closed
-/// terminal the text is lost, and not the run.
+/// A message in which no word of the command line begins a new line: its newlines are \x0a.
+std::string with_words_on_one_line(std::string message, std::span<const std::string> words);
+
+/// Writes a message to standard error, as print() does, words of the command line on one line.
+/// Where that goes to a full disk or a closed terminal the text is lost, and not the run.
 void print_to_standard_error(std::string_view text);
 
 /// Commands to the terminal among it.

@@ -119,7 +119,8 @@ std::string fault_lines(const std::vector<Fault>& faults) {
   std::string lines;
   for (const auto& [pointer, message] :
        std::span(faults).first(std::min(faults.size(), most_lines))) {
-    lines += printable(fmt::format("{}: {}\n", pointer.empty() ? "(scene)" : pointer, message));
+    lines += printable_name(pointer.empty() ? "(scene)" : pointer) + ": " +
+             printable_name(message) + "\n";
   }
   if (faults.size() > most_lines) {
     lines += fmt::format("... and {} more\n", faults.size() - most_lines);

@@ -351,5 +351,38 @@ class Streams(Refused):
                 self.assertIn("no table could be made", listed.stderr)
 
 
+class OneMessage(Case):
+    """An error is one line, whatever stands on the command line and however narrow a terminal is."""
+
+    def test_words_with_newlines(self):
+        self.write(TINY)
+        self.run_scene()
+        fit = ("fit", "tiny.h5", "--observable", "mean_height", "--no-store")
+        for command in ((*fit[:3], "a\nb"), (*fit, "--sweep-point", "a\nb"), (*fit, "--model", "a\nb"),
+                        (*fit, "--range", "a\nb"), (*fit, "--law", "c + a\nb", "--start", "a=1"), ("a\nb",),
+                        ("info", "a\nb"), ("info", "tiny.h5", "--a\nb"), ("run", "a\nb"), ("status", "a\nb"),
+                        ("export", "tiny.h5", "--format", "a\nb"), ("structure", "tiny.h5", "--part", "a\nb"),
+                        ("run", "scene.json", "--time-limit", "a\nb"), ("export", "tiny.h5", "--format", "vtp", "--tap", "a\nb")):
+            with self.subTest(command):
+                done = self.jostle(*command, expect=None, environment={"COLUMNS": "40"})
+                self.assertIn(done.returncode, (BAD_INPUT, BROKEN))
+                self.assertIn("a\\x0ab", done.stderr)
+                self.assertNotRegex(done.stderr, r"(?m)^b")
+
+    def test_keys_with_newlines(self):
+        self.write({**TINY, "a\nb": 1, "spheres": "c\nd"})
+        done = self.jostle("check", "scene.json", expect=BAD_INPUT)
+        self.assertRegex(done.stderr, r"(?m)^/a\\x0ab: unknown key")
+        self.assertEqual(len(done.stderr.splitlines()), 3)
+
+    def test_warnings_of_slurm_are_a_line_each(self):
+        self.write(TINY)
+        done = self.jostle("slurm", "scene.json", "--hours", 1, "--cpus", 64, "--jobs", 6,
+                           environment={"COLUMNS": "40"})
+        self.assertTrue(done.stderr)
+        for line in done.stderr.splitlines():
+            self.assertRegex(line, r"^jostle: |^  \S*(sbatch|jostle) ")  # a command to copy has its own line
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <new>
 
+#include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
 #include "study/run.hpp"
 
@@ -34,4 +35,12 @@ TEST_CASE("Errors of the library are said by the names of options") {
 
 TEST_CASE("Memory that ran out is said with what to do") {
   CHECK(failure_text(std::bad_alloc()).starts_with("out of memory; raise the limit"));
+}
+
+TEST_CASE("A word of the command line begins no line of a message") {
+  const std::vector<std::string> words = {"jostle", "fit", "a\nb", "--fix=c\nd=1", "plain"};
+  CHECK(with_words_on_one_line("--observable a\nb: there is none", words) ==
+        "--observable a\\x0ab: there is none");
+  CHECK(with_words_on_one_line("no c\nd=1:\n  plain\n", words) == "no c\\x0ad=1:\n  plain\n");
+  CHECK(with_words_on_one_line("a\nb, a\nb", words) == "a\\x0ab, a\\x0ab");
 }
