@@ -15,6 +15,7 @@
 #include "fitting/numbers.hpp"
 #include "fitting/refusal.hpp"
 #include "fitting/solver/curve_residuals.hpp"
+#include "fitting/solver/grid.hpp"
 
 namespace jostle::inline fitting {
 
@@ -34,6 +35,8 @@ class Fitter {
   double cost_of_all_points() const;
   /// After search().
   Fit finish();
+  /// The evaluations that the options allow for a law and a curve like these.
+  long long allowed_evaluations() const;
   std::size_t n_free() const {
     return static_cast<std::size_t>(std::count(free_.begin(), free_.end(), true));
   }
@@ -43,9 +46,9 @@ class Fitter {
   bool descend_from_all();
   bool descend(const ParameterValues& start, int number);
   ParameterValues refined() const;
-  Eigen::VectorXd describe_fit(Fit& fit) const;
+  DependentErrors describe_fit(Fit& fit) const;
   /// False where a profile found a lower minimum; the search then goes on from there.
-  bool find_intervals(const Eigen::VectorXd& inflation, Fit& fit);
+  bool find_intervals(const DependentErrors& errors, Fit& fit);
   void void_intervals(Fit& fit) const;
   void remark_on_order(Fit& fit) const;
   bool has_intervals(const Fit& fit) const;
@@ -80,11 +83,23 @@ std::vector<ParameterValues> Fitter::starts() const {
   if (options_.multi_start || !options_.start) {
     const std::size_t wanted = options_.multi_start ? 8 : 1;
     for (ParameterValues& p : model_.starts(searched_, fixed_, wanted)) all.push_back(std::move(p));
+    options_.solver.budget->left -= evaluations_of_starts(model_, searched_, fixed_);
   }
   for (ParameterValues& p : all) {
     for (std::size_t j = 0; j < p.size(); ++j) p[j] = free_[j] ? p[j] : fixed_[j];
   }
   return all;
+}
+
+long long Fitter::allowed_evaluations() const {
+  constexpr std::size_t few = 5;  // parameters, as many as the papers' laws have
+  if (n_free() <= few) return options_.max_evaluations;
+  const auto parameters = static_cast<double>(n_free());
+  const double points = std::max<double>(1, static_cast<double>(searched_.t.size()));
+  const double affordable = options_.max_work / (points * parameters * parameters);
+  constexpr double fewest = 100;
+  return static_cast<long long>(
+      std::min(std::max(affordable, fewest), static_cast<double>(options_.max_evaluations)));
 }
 
 SolverOptions Fitter::solver_options(const CurveResiduals& residuals) const {
@@ -139,9 +154,8 @@ ParameterValues Fitter::refined() const {
   return is_minimum(minimum.reason) ? residuals.to_parameters(minimum.x) : values_;
 }
 
-// All but intervals and words, over all points. Returns by how much dependence inflates the
-// variance of every variable, [n_variables].
-Eigen::VectorXd Fitter::describe_fit(Fit& fit) const {
+// All but intervals and words, over all points. Returns what dependence makes of the errors.
+DependentErrors Fitter::describe_fit(Fit& fit) const {
   fit.model = model_.name();
   fit.formula = model_.formula();
   fit.source = model_.source();
@@ -186,7 +200,7 @@ Eigen::VectorXd Fitter::describe_fit(Fit& fit) const {
     if (!free_[j]) estimate.identifiability = Identifiability::fixed;
     fit.estimates.push_back(std::move(estimate));
   }
-  return dependent.inflation;
+  return dependent;
 }
 
 bool Fitter::has_intervals(const Fit& fit) const {
@@ -194,14 +208,14 @@ bool Fitter::has_intervals(const Fit& fit) const {
   return fit.sigma_given || (fit.dof > 0 && fit.residual_sum > 0);
 }
 
-bool Fitter::find_intervals(const Eigen::VectorXd& inflation, Fit& fit) {
-  ProfileProblem problem{model_, searched_,      values_,
-                         free_,  best_.cost,     fit.sigma_given ? 1 : fit.reduced_chi2,
-                         {0, 0}, options_.solver};
+bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
+  ProfileProblem problem{model_, searched_,       values_,
+                         free_,  best_.cost,      fit.sigma_given ? 1 : fit.reduced_chi2,
+                         {0, 0}, options_.solver, errors.level_weight};
   Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     if (!free_[j]) continue;
-    const double longer = std::sqrt(inflation[variable++]);
+    const double longer = std::sqrt(errors.inflation[variable++]);
     for (int level = 0; level < 2; ++level) {
       problem.thresholds[level] = longer * two_sided(interval_levels[level], fit.error_dof);
     }
@@ -271,8 +285,8 @@ Fit Fitter::finish() {
       reordered.values_and_jacobian(best_.x, best_.r, best_.jacobian);
     }
     Fit fit;
-    const Eigen::VectorXd inflation = describe_fit(fit);
-    if (has_intervals(fit) && !find_intervals(inflation, fit)) {
+    const DependentErrors errors = describe_fit(fit);
+    if (has_intervals(fit) && !find_intervals(errors, fit)) {
       if (attempt < most_attempts) continue;
       void_intervals(fit);
     }
@@ -296,7 +310,9 @@ Fit Fitter::finish() {
 void remark_on_budget(Fit& fit) {
   std::ostringstream text;
   text << "The fit stopped after " << fit.total_evaluations
-       << " evaluations of the law over the curve, as many as allowed: "
+       << " evaluations of the law over the curve, as many as allowed for " << fit.n_points
+       << (fit.n_bins > 0 ? " points in " + std::to_string(fit.n_bins) + " bins" : " points")
+       << " and " << fit.n_free << (fit.n_free == 1 ? " parameter: " : " parameters: ")
        << (is_minimum(fit.reason) ? "intervals that were not finished by then are open"
                                   : "no minimum was reached")
        << ". Fix parameters, or choose a law of fewer.";
@@ -316,11 +332,13 @@ std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const Fit
   // A search that crawls towards infinity leaves enough for what is fitted there instead.
   constexpr int share_of_search = 5;
   const bool outermost = options.solver.budget == nullptr;
-  EvaluationBudget budget{options.max_evaluations / share_of_search};
+  EvaluationBudget budget;
   FitOptions counted = options;
   if (outermost) counted.solver.budget = &budget;
   Fitter fitter(model, curve, counted);
   if (auto refusal = refuse_curve(model, curve, fitter.n_free())) return *refusal;
+  const long long allowed = fitter.allowed_evaluations();
+  budget.left = allowed / share_of_search;
   const bool limits =
       options.profiles && options.limits && fitter.n_free() > 0 && curve.t.size() > fitter.n_free();
   const auto candidates =
@@ -333,7 +351,7 @@ std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const Fit
     }
     limit = reached(candidates, curve, fitter.cost_of_all_points(), dof);
   }
-  if (outermost) budget.left = options.max_evaluations - budget.used;
+  if (outermost) budget.left = allowed - budget.used;
   std::variant<Fit, Refusal> outcome =
       limit ? fit_at_limit(model, curve, counted, *limit) : fitter.finish();
   if (auto* found = std::get_if<Fit>(&outcome)) {

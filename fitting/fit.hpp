@@ -31,9 +31,12 @@ struct FitOptions {
   /// profiles.
   bool limits = true;
   /// Evaluations of the law over the curve, in all: searches and intervals. A derivative by one
-  /// parameter is one. A fit that reaches it is not settled, or has intervals left open, and says
-  /// so.
+  /// parameter is one. Fewer are allowed where their work would exceed max_work. A fit that reaches
+  /// the end of them is not settled, or has intervals left open, and says so.
   long long max_evaluations = 200000;
+  /// Of a law of more than 5 parameters: evaluations times points times parameters squared. An
+  /// evaluation of such a law at a point takes as long as it has parameters, and so does a step.
+  double max_work = 2e9;
   SolverOptions solver = {};
 };
 
@@ -41,8 +44,8 @@ struct FitOptions {
 inline constexpr double interval_levels[] = {0.682689492137086, 0.95};
 
 /// A confidence interval; an infinite end means that the data set no limit on this side (or not
-/// within a factor 10^6 for a bounded parameter, 10^4 ranges of X for a value, else 10^4 errors),
-/// or that no settled fit closes it.
+/// within a factor 10^6 for a bounded parameter, 100 values or ranges of X for a value, else 10^4
+/// errors), or that no settled fit closes it.
 struct Interval {
   double lower = 0, upper = 0;
   bool closed() const;

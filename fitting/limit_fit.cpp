@@ -141,8 +141,9 @@ class NearLimit {
     const DependentErrors errors = dependent_errors(curve_, linear, options_.memory, counts);
     const auto variable =
         std::count(free_.begin(), free_.begin() + static_cast<std::ptrdiff_t>(j), true);
-    ProfileProblem problem{model_, searched_,  place,  free_,
-                           cost_,  variance(), {0, 0}, options_.solver};
+    ProfileProblem problem{model_, searched_,       place,
+                           free_,  cost_,           variance(),
+                           {0, 0}, options_.solver, errors.level_weight};
     for (int level = 0; level < 2; ++level) {
       problem.thresholds[level] = std::sqrt(errors.inflation[variable]) *
                                   two_sided(interval_levels[level], found_.error_dof);

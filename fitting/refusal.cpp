@@ -67,6 +67,11 @@ std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std:
     constant << "X is constant (" << *low << "): it determines no law, only its own value";
     return Refusal{RefusalKind::constant_curve, constant.str()};
   }
+  if (model.residual_scale() == ResidualScale::logarithmic && !curve.present.empty()) {
+    return Refusal{RefusalKind::bad_curve,
+                   "realizations have gaps, and their levels are taken in X, but " + model.name() +
+                       " is fitted in ln X: leave out rows with gaps (--gaps drop-row)"};
+  }
   text = model.refusal(curve);
   if (!text.empty()) return Refusal{RefusalKind::bad_domain, text};
   return std::nullopt;

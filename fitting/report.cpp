@@ -41,21 +41,6 @@ std::string p_text(double p) {
   return p < 1e-6 ? "p < 1e-06" : "p = " + number(p, 2);
 }
 
-std::string value_text(const Estimate& estimate) {
-  if (estimate.identifiability == Identifiability::fixed) {
-    return number(estimate.value, 6) + " fixed";
-  }
-  if (!estimate.has_value()) return "-";
-  if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
-  // Of so lopsided an interval half its length says nothing of the value; the limits stand beside
-  // it.
-  constexpr double lopsided = 4;
-  const double shorter = std::min(estimate.value - estimate.intervals[0].lower,
-                                  estimate.intervals[0].upper - estimate.value);
-  if (estimate.half_width() > lopsided * shorter) return number(estimate.value, 3);
-  return value_with_error(estimate.value, estimate.half_width());
-}
-
 const char* verdict_text(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::fixed:
@@ -76,12 +61,6 @@ const char* verdict_text(Identifiability identifiability) {
   return "";
 }
 
-std::string limits(const Estimate& estimate, std::size_t level) {
-  if (estimate.identifiability <= Identifiability::not_examined) return "-";
-  const Interval& interval = estimate.intervals[level];
-  return limits_text(interval.lower, interval.upper, 5);
-}
-
 std::vector<Estimate> shown_estimates(const Fit& fit) {
   std::vector<Estimate> shown = fit.estimates;
   shown.insert(shown.end(), fit.combinations.begin(), fit.combinations.end());
@@ -92,29 +71,16 @@ std::string parameter_table(const std::vector<Estimate>& estimates) {
   std::vector<std::vector<std::string>> rows = {{"", "value", "95 %", "verdict"}};
   for (const Estimate& e : estimates) {
     rows.push_back(
-        {e.parameter.name, value_text(e), limits(e, 1), verdict_text(e.identifiability)});
+        {e.parameter.name, estimate_text(e), interval_text(e, 1), verdict_text(e.identifiability)});
   }
   return table(rows);
-}
-
-std::string limit_table(const Fit& fit) {
-  if (!fit.limit) return "";
-  return "  fitted as its limit, X = " + fit.limit->formula + ":\n" +
-         parameter_table(fit.limit->estimates) + "  and all of " + fit.model +
-         " that fits as well, which may leave the limit after the last t:\n";
-}
-
-std::string restated_table(const Fit& fit) {
-  if (!fit.restated) return "";
-  return "  the same curve as " + fit.restated->model + ", " + fit.restated->formula + "  [" +
-         fit.restated->source + "]:\n" + parameter_table(fit.restated->estimates);
 }
 
 std::string more_of_the_parameters(const Fit& fit) {
   std::vector<std::vector<std::string>> rows = {{"", "68 %", "linear error"}};
   std::string meanings;
   for (const Estimate& e : shown_estimates(fit)) {
-    rows.push_back({e.parameter.name, limits(e, 0), number(e.standard_error, 2)});
+    rows.push_back({e.parameter.name, interval_text(e, 0), number(e.standard_error, 2)});
     meanings += (meanings.empty() ? "  " : "; ") + e.parameter.name + ": " + e.parameter.meaning;
   }
   return table(rows) + meanings + '\n';
@@ -202,13 +168,49 @@ std::string listed(const std::vector<std::string>& texts) {
 
 }  // namespace
 
+std::string estimate_text(const Estimate& estimate) {
+  if (estimate.identifiability == Identifiability::fixed) {
+    return number(estimate.value, 6) + " fixed";
+  }
+  if (!estimate.has_value()) return "-";
+  if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
+  return value_with_error(estimate.value, estimate.half_width());
+}
+
+std::string interval_text(const Estimate& estimate, std::size_t level) {
+  if (estimate.identifiability <= Identifiability::not_examined) return "-";
+  const Interval& interval = estimate.intervals[level];
+  return limits_text(interval.lower, interval.upper, 5);
+}
+
+std::vector<ParameterTable> parameter_tables(const Fit& fit) {
+  std::vector<ParameterTable> tables;
+  if (fit.limit) {
+    tables.push_back({"fitted as its limit, X = " + fit.limit->formula, fit.limit->estimates});
+    tables.push_back({"and all of " + fit.model +
+                          " that fits as well, which may leave the limit after the last t",
+                      fit.estimates});
+  } else {
+    tables.push_back({"", shown_estimates(fit)});
+  }
+  if (fit.restated) {
+    tables.push_back({"the same curve as " + fit.restated->model + ", " + fit.restated->formula +
+                          "  [" + fit.restated->source + "]",
+                      fit.restated->estimates});
+  }
+  return tables;
+}
+
 std::string describe(const Fit& fit, ReportDetail detail) {
   std::ostringstream text;
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
-  text << '\n'
-       << limit_table(fit) << parameter_table(fit.limit ? fit.estimates : shown_estimates(fit))
-       << restated_table(fit) << "  " << basis_of_errors(fit) << "; reduced "
+  text << '\n';
+  for (const ParameterTable& one : parameter_tables(fit)) {
+    if (!one.heading.empty()) text << "  " << one.heading << ":\n";
+    text << parameter_table(one.estimates);
+  }
+  text << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
        << number(fit.r2, 4) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);

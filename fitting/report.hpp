@@ -13,6 +13,23 @@ enum class ReportDetail {
   full    // 68 % intervals, linear errors, what parameters mean and the statistics of the fit too
 };
 
+/// A table of parameters in a report of a fit.
+struct ParameterTable {
+  std::string heading;  // empty for the law that was asked for, where it is the first
+  std::vector<Estimate> estimates;
+};
+
+/// The tables of a fit in the order in which every report has them: where the least squares are at
+/// a limit of the law first that of the limit, then that of the law, then that of the law that
+/// draws the same curve.
+std::vector<ParameterTable> parameter_tables(const Fit& fit);
+
+/// "0.5735(17)", value and half of the 68 % interval; "-" where that is open; "0.5 fixed".
+std::string estimate_text(const Estimate& estimate);
+
+/// The interval of level 0 (68 %) or 1 (95 %): "0.571 to 0.576", "> 0.571", "no limit".
+std::string interval_text(const Estimate& estimate, std::size_t level);
+
 /// A fit for people: the law, a table of parameters, what errors and intervals rest on, and
 /// remarks. Several lines, each ended by a newline; tables are at most 80 wide, sentences are not
 /// folded. A value stands with its error only (value_with_error): half of the 68 % interval, which

@@ -13,6 +13,9 @@ namespace {
 constexpr double least_inflation =
     1e-12;  // realizations that agree in a variable, but for rounding
 
+constexpr double constant_tolerance = 1e-6;  // of a constant's squared length, outside the tangent
+constexpr double least_level_weight = 1e-6;
+
 // What least squares makes of residuals: an orthonormal basis Q of the Jacobian's columns, and for
 // every variable the combination of Q^T r that is its change.
 struct Influence {
@@ -60,6 +63,20 @@ DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
   const Eigen::MatrixXd projected = found.basis.transpose() * deviations;
   const auto m = static_cast<double>(deviations.cols());
   return errors_of(found, projected * projected.transpose() / (m * (m - 1)), 1, m - 1);
+}
+
+double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& jacobian,
+                    const Eigen::MatrixXd& deviations) {
+  const Eigen::Map<const Eigen::VectorXd> points(weights.data(),
+                                                 static_cast<Eigen::Index>(weights.size()));
+  const Eigen::VectorXd level = points.normalized();
+  const Eigen::VectorXd tangent = influence(jacobian).basis.transpose() * level;
+  if (!(tangent.squaredNorm() > 1 - constant_tolerance)) return 1;
+  const double of_level = (level.transpose() * deviations).squaredNorm();
+  const double of_others =
+      (deviations.squaredNorm() - of_level) / static_cast<double>(deviations.rows() - 1);
+  if (!(of_others > 0) || !(of_level > of_others)) return 1;
+  return std::max(std::sqrt(of_others / of_level), least_level_weight);
 }
 
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,

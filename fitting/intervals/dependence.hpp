@@ -14,8 +14,10 @@ namespace jostle::inline fitting {
 struct DependentErrors {
   Eigen::MatrixXd covariance;  // [n_variables, n_variables]
   /// [n_variables], > 0: the variance of each variable over what independent points of unit
-  /// variance would give it. A profile's threshold grows by its root.
+  /// variance would give it, with the level weighed. A profile's threshold grows by its root.
   Eigen::VectorXd inflation;
+  /// Of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
+  double level_weight = 1;
   /// Of Student's t; infinite where the errors are known.
   double dof = std::numeric_limits<double>::infinity();
 };
@@ -28,6 +30,15 @@ struct DependentErrors {
 /// from their mean, with the same weights, n_realizations >= 2.
 DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
                                  const Eigen::MatrixXd& deviations);
+
+/// The weight that the weighted mean of the residuals deserves against their other components: the
+/// root of the variance of one of these over that of the mean. Below 1 where realizations keep to
+/// levels of their own, which all points of the mean curve share. A profile without this weight has
+/// one threshold for a parameter that the shape of the curve determines on one side and its level
+/// on the other. It is 1 where the law has no constant to add, as another weight would then move
+/// the least squares. weights: [n_points]; jacobian, deviations as of clustered_errors().
+double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& jacobian,
+                    const Eigen::MatrixXd& deviations);
 
 /// Of one curve alone, whose residuals have a memory; Student's t of effective_size - n_variables
 /// degrees of freedom, which may be negative where the memory is as long as the curve. t:

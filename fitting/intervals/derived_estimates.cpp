@@ -63,7 +63,8 @@ Estimate estimate_in(const Rewritten& other, std::size_t index, const FittedCurv
                                fitted.cost,
                                variance,
                                {thresholds[0], thresholds[1]},
-                               fitted.options.solver};
+                               fitted.options.solver,
+                               errors.level_weight};
   const ParameterProfile found = profile(problem, index, estimate.standard_error);
   if (found.better) return estimate;
   estimate.intervals[0] = found.intervals[0];

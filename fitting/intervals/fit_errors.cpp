@@ -37,6 +37,16 @@ std::vector<Eigen::Index> in_order_of_t(const std::vector<double>& t) {
   return order;
 }
 
+DependentErrors errors_of_realizations(const Curve& curve, const LinearProblem& problem) {
+  Eigen::MatrixXd jacobian = problem.jacobian, scatter = deviations(curve);
+  const double weight = level_weight(problem.weights, jacobian, scatter);
+  weigh_level(problem.weights, weight, jacobian);
+  weigh_level(problem.weights, weight, scatter);
+  DependentErrors errors = clustered_errors(jacobian, scatter);
+  errors.level_weight = weight;
+  return errors;
+}
+
 DependentErrors of_memory(const Curve& curve, const LinearProblem& problem, Fit& fit) {
   const auto order = in_order_of_t(curve.t);
   std::vector<double> t(curve.t);
@@ -71,6 +81,7 @@ LinearProblem linear_problem(const Model& model, const Curve& curve, const Param
   problem.jacobian.resize(residuals.n_residuals(), residuals.n_variables());
   residuals.values_and_jacobian(u, problem.residuals, problem.jacobian);
   problem.slopes = residuals.slopes(u);
+  problem.weights = residuals.weights();
   return problem;
 }
 
@@ -107,9 +118,9 @@ DependentErrors dependent_errors(const Curve& curve, const LinearProblem& proble
   fit.n_realizations = scattered ? curve.n_realizations : 0;
   DependentErrors errors;
   if (fit.n_free == 0) {
-    errors = {Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), infinite};
+    errors.covariance.resize(0, 0);
   } else if (scattered) {
-    errors = clustered_errors(problem.jacobian, deviations(curve));
+    errors = errors_of_realizations(curve, problem);
     if (!curve.present.empty()) errors.dof = gapped_dof(problem.jacobian, curve);
   } else if (memory && fit.dof > 0 && fit.residual_sum > 0 && fit.reason != EndReason::exact) {
     errors = of_memory(curve, problem, fit);

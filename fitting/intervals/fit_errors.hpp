@@ -12,9 +12,10 @@ namespace jostle::inline fitting {
 
 /// A fit at its minimum, over all points.
 struct LinearProblem {
-  Eigen::VectorXd residuals;  // [n_points], weighted
-  Eigen::MatrixXd jacobian;   // [n_points, n_variables], of the residuals by the variables
-  Eigen::VectorXd slopes;     // [n_variables], of the free parameters by the variables
+  Eigen::VectorXd residuals;    // [n_points], weighted
+  Eigen::MatrixXd jacobian;     // [n_points, n_variables], of the residuals by the variables
+  Eigen::VectorXd slopes;       // [n_variables], of the free parameters by the variables
+  std::vector<double> weights;  // [n_points], of the residuals
 };
 LinearProblem linear_problem(const Model& model, const Curve& curve, const ParameterValues& values,
                              const std::vector<bool>& free);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fitting/numbers.hpp"
+#include "fitting/solver/grid.hpp"
 #include "fitting/solver/projection.hpp"
 
 namespace jostle::inline fitting {
@@ -91,14 +92,17 @@ ParameterValues HeldFits::solved(double distance, ParameterValues p) const {
     if (free_[j]) fixed[j] = std::numeric_limits<double>::quiet_NaN();
   }
   ParameterValues q = p;
-  return std::isfinite(Projection(problem_.model, problem_.curve, fixed)(q)) ? q : p;
+  return std::isfinite(Projection(problem_.model, problem_.curve, fixed, problem_.level_weight)(q))
+             ? q
+             : p;
 }
 
 // With the parameters in `free` fitted anew, from one guess.
 HeldFit HeldFits::held(double distance, const ParameterValues& guess,
                        const std::vector<bool>& free) const {
   HeldFit point{distance, infinite, false, guess};
-  const CurveResiduals residuals(problem_.model, problem_.curve, guess, free);
+  const CurveResiduals residuals(problem_.model, problem_.curve, guess, free,
+                                 problem_.level_weight);
   double cost = infinite;
   if (residuals.n_variables() == 0) {
     Eigen::VectorXd r(residuals.n_residuals());
@@ -189,6 +193,14 @@ void HeldFits::search(HeldFit& fit) {
   // A grid of all nonlinear parameters is the dear one, and needs few points to be told apart.
   const bool all_nonlinear = problem_.model.parameters()[index_].linear;
   const Curve sample = all_nonlinear ? thinned(problem_.curve, 32) : problem_.curve;
+  EvaluationBudget* const budget = problem_.solver.budget;
+  if (budget) {
+    if (budget->spent()) return;
+    const double share =
+        static_cast<double>(sample.t.size()) / static_cast<double>(problem_.curve.t.size());
+    budget->left -= std::llround(
+        share * static_cast<double>(evaluations_of_starts(problem_.model, sample, fixed)));
+  }
   for (ParameterValues& start : problem_.model.starts(sample, fixed, 8)) {
     const HeldFit other = descend(fit.distance, std::move(start));
     agreeing = other.z < fit.z - noticeable_ ? 0 : agreeing + (other.z < fit.z + noticeable_);

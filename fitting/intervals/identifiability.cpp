@@ -12,6 +12,10 @@ namespace jostle::inline fitting {
 namespace {
 
 constexpr double few_points_share = 0.1;
+// Remarks are made without being asked for, on every law of every curve, most of which are rightly
+// fitted: at 5 % one sound fit in seven would carry one. The number of independent points behind
+// chi2 is itself an estimate, hence the smaller level.
+constexpr double runs_level = 0.01;
 constexpr double chi2_level = 0.001;
 constexpr double wide_factor = 2;     // of a positive parameter
 constexpr double wide_share = 0.125;  // of the curve, for a place or a level
@@ -169,7 +173,7 @@ void remark_on_chi2(Fit& fit) {
 }
 
 void remark_on_residuals(Fit& fit) {
-  if (fit.reason == EndReason::exact || !(fit.runs.z < 0 && fit.runs.p < 0.01)) return;
+  if (fit.reason == EndReason::exact || !(fit.runs.z < 0 && fit.runs.p < runs_level)) return;
   std::ostringstream text;
   text.precision(3);
   text << "The residuals are correlated (" << fit.runs.runs << " runs of one sign, "

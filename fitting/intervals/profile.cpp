@@ -12,6 +12,8 @@ namespace {
 
 constexpr double reach_of_logarithm = 13.8;  // a factor 10^6
 constexpr double reach_of_errors = 1e4;
+constexpr double reach_of_values = 100;  // or of ranges of X
+constexpr double flat = 0.01;            // rise of z over the last half of the way, in thresholds
 
 // z as a function of the distance on one side. An end of an interval is closed by a settled fit
 // alone, and where z rises to it without a jump.
@@ -30,6 +32,7 @@ class Side {
   std::vector<HeldFit> march(double step);
   void revise(std::vector<HeldFit>& points, const HeldFit& found);
   double crossing(HeldFit low, HeldFit high, double threshold);
+  bool is_flat_before(double distance, const std::vector<HeldFit>& points, double threshold);
 
   const ProfileProblem& problem_;
   std::size_t index_;
@@ -64,6 +67,23 @@ double Side::crossing(HeldFit low, HeldFit high, double threshold) {
   return high.z - low.z < 0.1 * threshold ? distance : infinite;
 }
 
+// Whether z is all but level where it passes the threshold: half as far out it is as high but for
+// `flat`. The place of such an end rests on digits of chi2 that mean nothing.
+bool Side::is_flat_before(double distance, const std::vector<HeldFit>& points, double threshold) {
+  const bool logarithmic = fits_.coordinate().is_logarithmic();
+  const double half = logarithmic ? distance - std::log(2.0) : 0.5 * distance;
+  if (!(half > 0)) return false;
+  const auto after =
+      std::ranges::find_if(points, [&](const HeldFit& point) { return point.distance >= half; });
+  if (after == points.begin() || after == points.end()) return false;
+  if (std::prev(after)->z < (1 - flat) * threshold && after->z < (1 - flat) * threshold) {
+    return false;
+  }
+  const HeldFit before = *std::prev(after), beyond = *after;
+  const HeldFit point = fits_.at(half, before, &beyond);
+  return point.settled && point.z > (1 - flat) * threshold;
+}
+
 // How far a side is explored.
 double Side::reach(double& step) const {
   if (fits_.coordinate().is_logarithmic()) {
@@ -81,7 +101,7 @@ double Side::reach(double& step) const {
   // A standard error can be anything where the problem is degenerate; the curve's range cannot.
   const auto [low, high] = std::minmax_element(problem_.curve.x.begin(), problem_.curve.x.end());
   step = std::min(step, *high - *low);
-  return reach_of_errors * std::max(*high - *low, std::abs(fits_.centre()));
+  return reach_of_values * std::max(*high - *low, std::abs(fits_.centre()));
 }
 
 // Where a search met a lower branch of z, the points before it may belong to the higher one.
@@ -137,7 +157,8 @@ void Side::find_ends(double step, double ends[2]) {
     ends[level] = fits_.direction() * infinite;
     if (above == points.end()) continue;
     const double distance = crossing(*inside, *above, threshold);
-    if (std::isfinite(distance)) ends[level] = fits_.parameter(distance);
+    if (!std::isfinite(distance) || is_flat_before(distance, points, threshold)) continue;
+    ends[level] = fits_.parameter(distance);
   }
 }
 

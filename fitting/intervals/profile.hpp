@@ -16,6 +16,7 @@ struct ProfileProblem {
   double variance = 0;            // of a residual: 1 where errors were given
   double thresholds[2] = {0, 0};  // sqrt of how much cost / variance may rise, ascending
   SolverOptions solver;
+  double level_weight = 1;  // DependentErrors::level_weight, on which the thresholds rest
 };
 
 struct ParameterProfile {

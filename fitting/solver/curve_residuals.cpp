@@ -41,13 +41,23 @@ double Transform::slope(double u) const {
   return 1;
 }
 
+void weigh_level(const std::vector<double>& weights, double level_weight,
+                 Eigen::Ref<Eigen::MatrixXd> columns) {
+  if (level_weight == 1) return;
+  const Eigen::Map<const Eigen::VectorXd> level(weights.data(),
+                                                static_cast<Eigen::Index>(weights.size()));
+  const Eigen::RowVectorXd means = level.transpose() * columns / level.squaredNorm();
+  columns -= (1 - level_weight) * level * means;
+}
+
 CurveResiduals::CurveResiduals(const Model& model, const Curve& curve, ParameterValues values,
-                               const std::vector<bool>& free)
+                               const std::vector<bool>& free, double level_weight)
     : model_(model),
       curve_(curve),
       fixed_values_(std::move(values)),
       target_(curve.x),
       weight_(curve.x.size(), 1.0),
+      level_weight_(level_weight),
       logarithmic_(model.residual_scale() == ResidualScale::logarithmic) {
   for (std::size_t j = 0; j < free.size(); ++j) {
     transforms_.emplace_back(model.parameters()[j]);
@@ -65,6 +75,7 @@ void CurveResiduals::values(const Eigen::VectorXd& u, Eigen::VectorXd& r) const 
     const double f = model_.value(curve_.t[i], p.data());
     r[static_cast<Eigen::Index>(i)] = ((logarithmic_ ? std::log(f) : f) - target_[i]) * weight_[i];
   }
+  weigh_level(weight_, level_weight_, r);
 }
 
 void CurveResiduals::values_and_jacobian(const Eigen::VectorXd& u, Eigen::VectorXd& r,
@@ -82,6 +93,8 @@ void CurveResiduals::values_and_jacobian(const Eigen::VectorXd& u, Eigen::Vector
       jacobian(row, column) = factor * gradient[free_[j]] * slope[column];
     }
   }
+  weigh_level(weight_, level_weight_, r);
+  weigh_level(weight_, level_weight_, jacobian);
 }
 
 Eigen::VectorXd CurveResiduals::to_variables(const ParameterValues& p) const {

@@ -30,8 +30,10 @@ class Transform {
 class CurveResiduals final : public Residuals {
  public:
   /// values: [n_parameters], those that are not free keep theirs; free: [n_parameters].
+  /// level_weight: in (0, 1], of the weighted mean of the residuals against all else; below 1 where
+  /// all points share an error.
   CurveResiduals(const Model& model, const Curve& curve, ParameterValues values,
-                 const std::vector<bool>& free);
+                 const std::vector<bool>& free, double level_weight = 1);
 
   Eigen::Index n_residuals() const override { return static_cast<Eigen::Index>(target_.size()); }
   Eigen::Index n_variables() const override { return static_cast<Eigen::Index>(free_.size()); }
@@ -44,6 +46,8 @@ class CurveResiduals final : public Residuals {
   ParameterValues to_parameters(const Eigen::VectorXd& u) const;
   /// dp/du of the free parameters, [n_variables].
   Eigen::VectorXd slopes(const Eigen::VectorXd& u) const;
+  /// 1 / error of X or ln X, [n_points].
+  const std::vector<double>& weights() const { return weight_; }
   /// Norm of what the residuals are a difference of.
   double data_norm() const;
 
@@ -55,7 +59,13 @@ class CurveResiduals final : public Residuals {
   std::vector<Transform> transforms_;  // [n_parameters]
   std::vector<double> target_;         // X, or ln X
   std::vector<double> weight_;         // 1 / error of the target
+  double level_weight_;
   bool logarithmic_;
 };
+
+/// Multiplies the component of each column along the weights [n_points] by level_weight: points of
+/// which all share an error are independent afterwards.
+void weigh_level(const std::vector<double>& weights, double level_weight,
+                 Eigen::Ref<Eigen::MatrixXd> columns);
 
 }  // namespace jostle::inline fitting

@@ -11,7 +11,23 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double hopeless = 10;  // times the least cost on a grid, however coarse
+constexpr double hopeless = 10;       // times the least cost on a grid, however coarse
+constexpr double most_work = 1.2e7;   // of a grid: places times points times parameters squared
+constexpr std::size_t sampled = 128;  // points of a curve, by Model::starts()
+
+// Leaves each axis of a linear or fixed parameter its one value, and the last axes of a grid that
+// is too large their middle one.
+void thin(const Model& model, std::span<const double> fixed, std::size_t points, Grid& grid) {
+  const std::size_t most = most_places(grid.axes.size(), points);
+  std::size_t places = 1;
+  for (std::size_t j = 0; j < grid.axes.size(); ++j) {
+    std::vector<double>& axis = grid.axes[j];
+    if (model.parameters()[j].linear) axis = {0};
+    if (!std::isnan(fixed[j])) axis = {fixed[j]};
+    if (places * axis.size() > most) axis = {axis[axis.size() / 2]};
+    places *= axis.size();
+  }
+}
 
 // Costs on a grid, the first axis running fastest.
 class Landscape {
@@ -79,12 +95,25 @@ bool Landscape::is_valley(std::size_t index) const {
 
 }  // namespace
 
+std::size_t most_places(std::size_t n_parameters, std::size_t points) {
+  const double p = static_cast<double>(n_parameters), n = static_cast<double>(points);
+  return static_cast<std::size_t>(std::max(1.0, most_work / (n * p * p)));
+}
+
+long long evaluations_of_starts(const Model& model, const Curve& curve,
+                                std::span<const double> fixed) {
+  const std::size_t points = std::min(curve.t.size(), sampled);
+  Grid grid{.axes = model.candidates(curve)};
+  thin(model, fixed, points, grid);
+  double places = 1;
+  for (const std::vector<double>& axis : grid.axes) places *= static_cast<double>(axis.size());
+  const double share = static_cast<double>(points) / static_cast<double>(curve.t.size());
+  return std::llround(share * places * static_cast<double>(1 + grid.axes.size()));
+}
+
 std::vector<ParameterValues> best_of_grid(const Model& model, const Curve& curve,
                                           std::span<const double> fixed, Grid grid, std::size_t n) {
-  for (std::size_t j = 0; j < grid.axes.size(); ++j) {
-    if (model.parameters()[j].linear) grid.axes[j] = {0};
-    if (!std::isnan(fixed[j])) grid.axes[j] = {fixed[j]};
-  }
+  thin(model, fixed, curve.t.size(), grid);
   Landscape landscape(model, curve, fixed, grid);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < landscape.costs.size(); ++i) {

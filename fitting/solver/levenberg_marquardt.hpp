@@ -26,7 +26,7 @@ class Residuals {
 enum class StepScaling { largest, first, current };
 
 /// The budget of all descents of a fit together: evaluations of the residuals, a Jacobian counted
-/// as one for every variable.
+/// as one for every variable, and a search of starts as what it is worth.
 struct EvaluationBudget {
   long long left = 0, used = 0;
   bool spent() const { return left <= 0; }

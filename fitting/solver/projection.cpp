@@ -3,14 +3,15 @@
 #include <cmath>
 
 #include "fitting/numbers.hpp"
+#include "fitting/solver/curve_residuals.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
 
-namespace {}  // namespace
-
-Projection::Projection(const Model& model, const Curve& curve, std::span<const double> fixed)
-    : model_(model), curve_(curve) {
+Projection::Projection(const Model& model, const Curve& curve, std::span<const double> fixed,
+                       double level_weight)
+    : model_(model), curve_(curve), level_weight_(level_weight), weight_(curve.t.size(), 1.0) {
+  for (std::size_t i = 0; i < curve.sigma.size(); ++i) weight_[i] = 1 / curve.sigma[i];
   const std::vector<Parameter>& parameters = model.parameters();
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     if (parameters[j].linear && std::isnan(fixed[j])) linear_.push_back(j);
@@ -25,7 +26,7 @@ double Projection::operator()(ParameterValues& p) {
   std::vector<double> gradient(p.size());
   for (Eigen::Index i = 0; i < rest_.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double weight = curve_.sigma.empty() ? 1 : 1 / curve_.sigma[k];
+    const double weight = weight_[k];
     const double f = model_.value_and_gradient(curve_.t[k], p.data(), gradient.data());
     rest_[i] = weight * (curve_.x[k] - f);
     for (std::size_t j = 0; j < linear_.size(); ++j) {
@@ -33,6 +34,8 @@ double Projection::operator()(ParameterValues& p) {
     }
   }
   if (!basis_.allFinite() || !rest_.allFinite()) return infinite;
+  weigh_level(weight_, level_weight_, rest_);
+  weigh_level(weight_, level_weight_, basis_);
   if (!linear_.empty()) solve(p);
   const double cost = rest_.squaredNorm();
   return std::isfinite(cost) ? cost : infinite;

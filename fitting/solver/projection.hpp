@@ -15,7 +15,8 @@ class Projection {
  public:
   /// A parameter with a finite value in `fixed` [n_parameters] is not solved for; NaN marks those
   /// that are free.
-  Projection(const Model& model, const Curve& curve, std::span<const double> fixed);
+  Projection(const Model& model, const Curve& curve, std::span<const double> fixed,
+             double level_weight = 1);
 
   /// Fills the linear entries of p; returns the weighted sum of squares of X - model, infinite
   /// where there is none or a linear parameter leaves its bounds.
@@ -29,6 +30,8 @@ class Projection {
   std::vector<std::size_t> linear_;
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
+  double level_weight_;
+  std::vector<double> weight_;  // [n_points]
 };
 
 }  // namespace jostle::inline fitting

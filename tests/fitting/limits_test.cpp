@@ -21,18 +21,20 @@ const Estimate* named(const std::vector<Estimate>& estimates, const std::string&
 }
 
 // 0.574 - 0.02 / (1 + c t), or with a logarithm that sets in at tau: realizations of 400 taps with
-// AR(1) noise.
-Curve approach(int n_realizations, double rho, double tau, int number) {
+// AR(1) noise of 0.001, and levels of their own with a deviation of `level` times the noise.
+Curve approach(int n_realizations, double rho, double tau, int number, double level = 0) {
   constexpr double c = 0.02;
   Noise noise(static_cast<std::uint64_t>(number));
   std::vector<double> t, values, memory(static_cast<std::size_t>(n_realizations));
   for (double& state : memory) state = noise();
+  std::vector<double> levels(memory.size(), 0.0);
+  for (double& own : levels) own = level > 0 ? 1e-3 * level * noise() : 0;
   for (int tap = 1; tap <= 400; ++tap) {
     t.push_back(tap);
     const double grown = std::isfinite(tau) ? c * tau * std::log1p(tap / tau) : c * tap;
-    for (double& state : memory) {
-      values.push_back(0.574 - 0.02 / (1 + grown) + 1e-3 * state);
-      state = rho * state + std::sqrt(1 - rho * rho) * noise();
+    for (std::size_t r = 0; r < memory.size(); ++r) {
+      values.push_back(0.574 - 0.02 / (1 + grown) + levels[r] + 1e-3 * memory[r]);
+      memory[r] = rho * memory[r] + std::sqrt(1 - rho * rho) * noise();
     }
   }
   return mean_curve(std::move(t), std::move(values), static_cast<std::size_t>(n_realizations));
@@ -76,6 +78,35 @@ void check_coverage(int n_realizations, double rho, double tau, int ensembles) {
   // ensembles: intervals hold the truth in up to (1 + level) / 2 of them (Chernoff 1954,
   // doi:10.1214/aoms/1177728725).
   CHECK(held[0] <= 0.84 * ensembles + margin(0.84));
+}
+
+// X_inf and dX of a hyperbola whose realizations keep to levels of their own.
+void check_coverage_with_levels(int n_realizations, double level, int ensembles) {
+  constexpr double truth[] = {0.574, 0.02};
+  int held[2][2] = {{0, 0}, {0, 0}}, at_limit = 0;
+  for (int number = 1; number <= ensembles; ++number) {
+    const Fit found =
+        std::get<Fit>(fit(InverseLog(), approach(n_realizations, 0, never, number, level)));
+    at_limit += found.limit.has_value();
+    for (std::size_t j = 0; j < 2; ++j) {
+      for (std::size_t confidence = 0; confidence < 2; ++confidence) {
+        held[j][confidence] += holds(found.estimates[j].intervals[confidence], truth[j]);
+      }
+    }
+  }
+  const auto percent = [&](int count) { return 100.0 * count / ensembles; };
+  std::printf(
+      "hyperbola, M %2d  level %3.1f  at the limit %3d of %3d  X_inf 68 %%: %5.1f  95 %%: %5.1f  "
+      "dX 68 %%: %5.1f  95 %%: %5.1f\n",
+      n_realizations, level, at_limit, ensembles, percent(held[0][0]), percent(held[0][1]),
+      percent(held[1][0]), percent(held[1][1]));
+  std::fflush(stdout);
+  INFO(n_realizations << " realizations, level " << level);
+  const auto margin = [&](double rate) { return 3 * std::sqrt(rate * (1 - rate) * ensembles); };
+  for (std::size_t j = 0; j < 2; ++j) {
+    CHECK(held[j][0] >= 0.62 * ensembles - margin(0.62));
+    CHECK(held[j][1] >= 0.95 * ensembles - margin(0.95));
+  }
 }
 
 }  // namespace
@@ -195,6 +226,19 @@ TEST_CASE("X_inf near the limit, in many ensembles", "[nightly]") {
   for (const int n_realizations : {3, 4, 10, 20}) {
     for (const double rho : {0.0, 0.99}) {
       for (const double tau : {400.0, 800.0, never}) check_coverage(n_realizations, rho, tau, 200);
+    }
+  }
+}
+
+TEST_CASE("X_inf near the limit where realizations keep to levels of their own", "[statistics]") {
+  check_coverage_with_levels(4, 0.5, 24);
+  check_coverage_with_levels(4, 3, 24);
+}
+
+TEST_CASE("X_inf near the limit with levels, in many ensembles", "[nightly]") {
+  for (const int n_realizations : {3, 4, 6}) {
+    for (const double level : {0.0, 0.5, 3.0}) {
+      check_coverage_with_levels(n_realizations, level, 200);
     }
   }
 }
