@@ -14,8 +14,8 @@ namespace jostle::inline cli {
 namespace {
 
 constexpr const char* verdict_legend =
-    "\na(b): b, in the last digits of a, is half the 68 % interval; not identifiable: the data set "
-    "no limit. docs/fitting.md says what the rest means.\n";
+    "\na(b): b, in the last digits of a, is half the 68 % interval; -: that interval is open; not "
+    "identifiable: the data set no limit. docs/fitting.md describes the rest.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -117,7 +117,7 @@ Json fit_json(const FitOutcome& outcome) {
                  {"weighted_points", number(fit.weighted_size)},
                  {"memory", number(fit.memory.time)},
                  {"bins", fit.n_bins},
-                 {"sigma_given", fit.sigma_given},
+                 {"sigma_given", fit.sigma_given && fit.n_realizations == 0},
                  {"logarithmic", fit.logarithmic},
                  {"residual_sum", number(fit.residual_sum)},
                  {"reduced_chi2", number(fit.reduced_chi2)},
@@ -152,6 +152,11 @@ Json fit_json(const FitOutcome& outcome) {
                        {"statement", fit.limit->statement},
                        {"parameters", parameters(fit.limit->estimates)}};
   }
+  // As in every other report the limit leads, where the least squares are there.
+  object["reported"] = fit.limit ? object["limit"]
+                                 : Json{{"model", fit.model},
+                                        {"formula", fit.formula},
+                                        {"parameters", parameters(fit.estimates)}};
   if (outcome.resampled) {
     object["resamples"] = outcome.resampled->resamples;
     object["resamples_failed"] = outcome.resampled->failed;

@@ -42,6 +42,11 @@ class Fit:
         return None if one is None else Fit(one["model"], one["formula"], _parameters(one), None, one)
 
     @property
+    def reported(self) -> Fit:
+        """The fit with which every report leads: that of the limit where the least squares are there, else this."""
+        return self.limit or self
+
+    @property
     def restated(self) -> Fit | None:
         """The same fit in the parameters of the law that draws the same curves (eq. 4 for eq. 3), if any."""
         one = self.report.get("restated")

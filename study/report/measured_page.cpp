@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "fitting/report.hpp"
-#include "fitting/value_text.hpp"
 #include "study/report/html_text.hpp"
 #include "study/report/page_json.hpp"
 
@@ -48,16 +47,6 @@ std::string figure_html(const PageFigure& figure) {
       html_text(figure.caption), base64(bytes));
 }
 
-std::string value_cell(const Estimate& estimate) {
-  if (!estimate.has_value()) return "not determined";
-  return value_with_error(estimate.value, estimate.half_width());
-}
-
-std::string limits_cell(const Estimate& estimate) {
-  if (estimate.identifiability <= Identifiability::not_examined) return "-";
-  return limits_text(estimate.intervals[1].lower, estimate.intervals[1].upper, 5);
-}
-
 std::string formula_html(const std::string& formula, const std::string& source) {
   return fmt::format("<p><code>X = {}</code> {}</p>\n", html_text(formula), html_text(source));
 }
@@ -67,19 +56,18 @@ std::string estimates_html(const std::vector<Estimate>& estimates) {
       "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>statement</th></tr>\n";
   for (const Estimate& estimate : estimates) {
     text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        html_text(estimate.parameter.name), html_text(value_cell(estimate)),
-                        html_text(limits_cell(estimate)), html_text(estimate.statement));
+                        html_text(estimate.parameter.name), html_text(estimate_text(estimate)),
+                        html_text(interval_text(estimate, 1)), html_text(estimate.statement));
   }
   return text + "</table>\n";
 }
 
 std::string law_html(const Fit& fit) {
   std::string text = fmt::format("<h2>{}</h2>\n", html_text(fit.model));
-  text += formula_html(fit.formula, fit.source) + estimates_html(fit.estimates);
-  if (fit.restated) {
-    text += fmt::format("<p>The same curve as {}:</p>\n", html_text(fit.restated->model));
-    text += formula_html(fit.restated->formula, fit.restated->source);
-    text += estimates_html(fit.restated->estimates);
+  text += formula_html(fit.formula, fit.source);
+  for (const ParameterTable& table : parameter_tables(fit)) {
+    if (!table.heading.empty()) text += paragraph(table.heading + ":");
+    text += estimates_html(table.estimates);
   }
   return text + listed(fit.remarks);
 }
@@ -103,7 +91,9 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
   for (const PageFigure& figure : figures) text += figure_html(figure);
   for (const Fit& fit : fits) text += law_html(fit);
   text += listed(refusals);
-  text += "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval. ";
+  text +=
+      "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: that "
+      "interval is open. ";
   return text +
          html_text(fmt::format("Made {} by jostle {} ({}): {}", by.started, by.version,
                                by.git_revision, by.command_line)) +

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "engine/numbers.hpp"
 #include "fitting/report.hpp"
+#include "fitting/value_text.hpp"
 #include "results/file/layout.hpp"
 #include "study/results_input.hpp"
 
@@ -39,6 +41,27 @@ ResampledErrors resampled_errors(const Model& model, const RealizationCurves& be
   return errors;
 }
 
+constexpr double noticed_difference = 1.25;  // of two errors of one parameter
+
+// Where errors of resampled realizations differ from those of the profiles, and by how much at
+// most.
+void remark_on_resampled(const ResampledErrors& resampled, Fit& fit) {
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    const double error = fit.estimates[j].error, other = resampled.errors[j];
+    if (!fit.estimates[j].has_value() || !(error > 0 && other > 0)) continue;
+    if (!std::isfinite(error) || !std::isfinite(other)) continue;
+    if (std::max(error / other, other / error) <= noticed_difference) continue;
+    names.push_back(fmt::format("{} ({}, profile {})", fit.estimates[j].parameter.name,
+                                number_text(other, 2), number_text(error, 2)));
+  }
+  if (names.empty()) return;
+  fit.remarks.push_back(fmt::format(
+      "Standard errors from resamples and from profiles differ by more than 25 %: {}. The law is "
+      "far from linear here, or misses the curve; quote the longer error.",
+      fmt::join(names, ", ")));
+}
+
 FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& manner) {
   FitOptions options;
   options.fixed = manner.fixed;
@@ -51,6 +74,7 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
   const RealizationCurves behind{curve.t, weighted.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
   outcome.resampled = resampled_errors(model, behind, *found, manner.resampling);
+  remark_on_resampled(*outcome.resampled, std::get<Fit>(outcome.result));
   return outcome;
 }
 
@@ -300,6 +324,7 @@ std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner
     }
     const Fit& fit = std::get<Fit>(outcome.result);
     table.notes.emplace_back("law", fit.formula);
+    table.notes.emplace_back("reported_law", fit.limit ? fit.limit->formula : fit.formula);
     table.notes.emplace_back("source", fit.source);
     table.notes.emplace_back("ended", describe(fit.reason));
     table.notes.emplace_back("realizations", fmt::to_string(source.curve.n_realizations));

@@ -25,7 +25,7 @@ class Results(Case):
                 self.assertEqual(fit["points"], 40)
                 self.assertEqual(fit["resamples"], 3)
                 self.assertEqual((fit["realizations"], fit["error_dof"]), (3, 2))
-                self.assertTrue(fit["sigma_given"])
+                self.assertFalse(fit["sigma_given"])
 
     def test_a_point_is_chosen_by_number_or_by_value(self):
         texts = []

@@ -38,13 +38,13 @@ std::string interval(double low, double high) {
   return typeset_number(low) + " to " + typeset_number(high);
 }
 
-/// The value with half of its 68 % interval, or alone where the interval is lopsided.
+/// The value with half of its 68 % interval.
 std::string estimate(const Parameters& parameters, std::size_t j) {
   const double value = parameters.value(j);
-  if (!std::isfinite(value)) return "not determined";
-  const double low = parameters.low(j, 0), high = parameters.high(j, 0), half = (high - low) / 2;
-  const bool is_lopsided = !std::isfinite(half) || half > 4 * std::min(value - low, high - value);
-  return is_lopsided ? typeset_number(value) : typeset_with_error(value, half);
+  if (!std::isfinite(value)) return "-";
+  const double half = (parameters.high(j, 0) - parameters.low(j, 0)) / 2;
+  if (!std::isfinite(half)) return typeset_number(value) + ", error unknown";
+  return typeset_with_error(value, half);
 }
 
 Json parameter_table(const Parameters& parameters, const std::string& law) {

@@ -105,6 +105,12 @@ NamedColumns named_columns(ColumnRoles& roles) {
   return found;
 }
 
+void note_laws(const NamedColumns& found, ColumnRoles& roles) {
+  for (const std::size_t column : found.laws) {
+    roles.notes.push_back(column_text(roles, column) + " is a fitted law and is not used.");
+  }
+}
+
 void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
   const auto& names = roles.names;
   if (!found.others.empty()) {
@@ -116,15 +122,13 @@ void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles
   }
   roles.x = {only_column(path, names, found.x, "X")};
   if (!found.sigma.empty()) roles.sigma = only_column(path, names, found.sigma, "sigma");
-  for (const std::size_t column : found.laws) {
-    roles.notes.push_back(column_text(roles, column) + " is a fitted law and is not used.");
-  }
+  note_laws(found, roles);
 }
 
 void take_realizations(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
   const auto& names = roles.names;
   std::vector<std::size_t> columns = found.others;
-  columns.insert(columns.end(), found.laws.begin(), found.laws.end());
+  note_laws(found, roles);
   // A heading t, X, X, ... names every realization X.
   const bool all_x = columns.empty() && found.sigma.empty() && found.x.size() >= 2;
   if (all_x) columns = found.x;
