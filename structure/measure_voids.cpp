@@ -189,21 +189,25 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
   for (const double s : sigma) theory.push_back(gotoh_void_probability(phi, s));
   Measurement out;
   out.places = {{"sigma", sigma, "R", "radius of the random sphere"}};
-  out.quantities = {{.name = "p0",
-                     .places = "sigma",
-                     .values = found.probability,
-                     .long_name = "chance that a random sphere contains no centre",
-                     .source = "Philippe & Bideau 2001, fig. 9"},
-                    {.name = "p0_points_error",
-                     .places = "sigma",
-                     .values = found.error,
-                     .long_name = "of one packing's p0, from its random points",
-                     .with_error = false},
-                    {.name = "p0_gotoh",
-                     .places = "sigma",
-                     .values = theory,
-                     .long_name = "the same of the Percus-Yevick fluid of this packing fraction",
-                     .source = "Philippe & Bideau 2001, eqs. 8, 9, the sign of 2 Phi corrected"}};
+  out.quantities = {
+      {.name = "p0",
+       .places = "sigma",
+       .values = found.probability,
+       .long_name = "chance that a random sphere contains no centre; beyond sigma = 1 "
+                    "of spheres that reach no place where no centre may be",
+       .source = "Philippe & Bideau 2001, fig. 9",
+       .beyond = not_a_number},
+      {.name = "p0_points_error",
+       .places = "sigma",
+       .values = found.error,
+       .long_name = "of one packing's p0, from its random points",
+       .beyond = not_a_number,
+       .with_error = false},
+      {.name = "p0_gotoh",
+       .places = "sigma",
+       .values = theory,
+       .long_name = "the same of the Percus-Yevick fluid of this packing fraction",
+       .source = "Philippe & Bideau 2001, eqs. 8, 9, the sign of 2 Phi corrected"}};
   add_single("phi", phi, "packing fraction of the region", out);
   return out;
 }

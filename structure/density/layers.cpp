@@ -12,22 +12,67 @@ namespace jostle::inline structure {
 
 namespace {
 
-const double spacing = std::sqrt(2.0 / 3);
+const double spacing = std::sqrt(2.0 / 3);   // of layers
+const double row = std::numbers::sqrt3 / 2;  // spacing of the rows of a layer
 
-// Where centres can be.
-double reachable_area(const Container& container) {
-  const Boundary boundary(container);
-  if (boundary.sides == Sides::cylinder) {
-    const double reach = boundary.axis() - sphere_radius;
-    return std::numbers::pi * reach * reach;
-  }
-  const double margin = boundary.side_margin();
-  return (boundary.width_x - 2 * margin) * (boundary.width_y - 2 * margin);
+constexpr double rounding = 1e-9;
+
+// Places a unit apart on a line of some length, the first `first` from its beginning.
+double places_on(double length, double first) {
+  return std::max(0.0, std::floor(length - first + rounding) + 1);
 }
 
-// Spheres of a full layer: at least one, as in a tube no wider than a sphere.
+// Places of a close-packed layer on a rectangle, with a row along its side of length `along`.
+double places_in_rectangle(double along, double across) {
+  const double rows = std::floor(across / row + rounding) + 1;
+  const double shifted = std::floor(rows / 2);
+  return (rows - shifted) * places_on(along, 0) + shifted * places_on(along, 0.5);
+}
+
+// Places of a close-packed layer in a disc whose middle is at (x, y), a place being at (0, 0).
+double places_around(double x, double y, double radius) {
+  double places = 0;
+  const double reach = radius * (1 + rounding);
+  const auto first = static_cast<long>(std::ceil((y - reach) / row));
+  const auto last = static_cast<long>(std::floor((y + reach) / row));
+  for (long j = first; j <= last; ++j) {
+    const double up = static_cast<double>(j) * row - y;
+    const double half = std::sqrt(std::max(0.0, reach * reach - up * up));
+    const double middle = x - (j % 2 != 0 ? 0.5 : 0);
+    places += std::floor(middle + half) - std::ceil(middle - half) + 1;
+  }
+  return places;
+}
+
+// The most places of a close-packed layer in a disc, over places of its middle in a cell of the
+// layer. The middle is at a place, between two or among three of them, or somewhere else.
+double places_in_disc(double radius) {
+  constexpr int steps = 24;  // a multiple of 6
+  double most = 0;
+  for (int i = 0; i < steps; ++i) {
+    for (int j = 0; j < steps; ++j) {
+      const double a = static_cast<double>(i) / steps, b = static_cast<double>(j) / steps;
+      most = std::max(most, places_around(a + 0.5 * b, b * row, radius));
+    }
+  }
+  return most;
+}
+
+// Spheres of a full layer. Between walls whole rows fit, and the area of a footprint counts too
+// few, as places at its edge have half of their cells outside.
 double full_layer(const Container& container) {
-  return std::max(1.0, reachable_area(container) * 2 / std::numbers::sqrt3);
+  const Boundary boundary(container);
+  const double along_x = boundary.width_x - 2 * boundary.side_margin();
+  const double along_y = boundary.width_y - 2 * boundary.side_margin();
+  switch (boundary.sides) {
+    case Sides::walls:
+      return std::max(places_in_rectangle(along_x, along_y), places_in_rectangle(along_y, along_x));
+    case Sides::cylinder:
+      return places_in_disc(0.5 * along_x);
+    case Sides::none:
+      break;
+  }
+  return along_x * along_y / row;
 }
 
 // Of ascending heights those in [low, high).

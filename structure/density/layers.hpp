@@ -21,8 +21,7 @@ struct LayerRule {
   /// `tolerance` of that height. Centres at even heights have a share of 0.245.
   double tolerance = 0.1;
   double least_share = 0.6;
-  /// And they are at least this part of a full layer, 2/sqrt(3) a unit of area: of the footprint,
-  /// or between walls of the part of it that centres can reach. Keeps a partial top layer out.
+  /// And they are at least this part of a full layer. Keeps a partial top layer out.
   double least_filling = 0.7;
   bool operator==(const LayerRule&) const = default;
 
@@ -39,10 +38,13 @@ struct LayerRule {
 /// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are
 /// a little farther apart within them: so each is sought from the one found below it.
 struct Layer {
-  double height = 0;   // of hcp
-  double found = 0;    // mean height of the centres near the place that the layer below points to
-  double filling = 0;  // number of centres between mid-planes over that of a full layer
-  double share = 0;    // of them within the tolerance of `found`; 0 of none
+  double height = 0;  // of hcp
+  double found = 0;   // mean height of the centres near the place that the layer below points to
+  /// Number of centres between mid-planes over that of a full layer: 2/sqrt(3) per unit of area of
+  /// a periodic footprint. Between walls the most places of a close-packed layer with rows along a
+  /// wall; in a tube the most over places of its axis in the layer.
+  double filling = 0;
+  double share = 0;  // of them within the tolerance of `found`; 0 of none
 };
 
 /// All layers up to the highest centre. Throws std::invalid_argument for a fully periodic box,

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/bed/slab.hpp"
+#include "engine/numbers.hpp"
+
 namespace jostle::inline structure {
 
 namespace {
@@ -23,6 +26,13 @@ bool within_period(double displacement, double period) {
 }
 
 }  // namespace
+
+HeightWindow accessible_heights(const Packing& packing) {
+  if (Boundary(packing.container).periodic_z) return {-infinite, infinite};
+  double lowest = sphere_radius;
+  for (const Vec3& r : packing.centres) lowest = std::min(lowest, r.z);
+  return {lowest, std::min(top_height(packing), 2 * mean_height(packing) - sphere_radius)};
+}
 
 AccessibleFootprint::AccessibleFootprint(const Packing& packing) : boundary_(packing.container) {
   const double margin = boundary_.side_margin();
@@ -46,6 +56,14 @@ AccessibleFootprint::AccessibleFootprint(const Packing& packing) : boundary_(pac
     }
     area_ = std::numbers::pi * radius_ * radius_;
   }
+}
+
+double AccessibleFootprint::depth(double x, double y) const {
+  if (boundary_.sides == Sides::cylinder) {
+    return radius_ - std::hypot(x - boundary_.axis(), y - boundary_.axis());
+  }
+  if (boundary_.sides == Sides::none) return infinite;
+  return std::min({x - low_x_, high_x_ - x, y - low_y_, high_y_ - y});
 }
 
 double AccessibleFootprint::overlap(double dx, double dy) const {

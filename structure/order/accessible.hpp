@@ -11,6 +11,11 @@
 // in diameters.
 namespace jostle::inline structure {
 
+/// The heights between which centres of a bed may lie: from 1/2 above the floor, or lower where
+/// soft spheres press into it, to 2<Z> - 1/2, or the highest centre below that. None of them where
+/// the box is periodic upwards.
+HeightWindow accessible_heights(const Packing& packing);
+
 /// The part of the footprint where centres may lie: at least 1/2 from walls (less where soft
 /// spheres press into them), all of it where sides are periodic.
 class AccessibleFootprint {
@@ -18,6 +23,9 @@ class AccessibleFootprint {
   explicit AccessibleFootprint(const Packing& packing);
 
   double area() const { return area_; }
+  /// Distance of a point from the nearest place beside it where no centre may be, negative outside;
+  /// infinite where sides are periodic.
+  double depth(double x, double y) const;
   /// Area of the points from which the displacement leads to a point of the footprint, over the
   /// whole area: in [0, 1]. A periodic direction admits displacements of up to half a period.
   double overlap(double dx, double dy) const;

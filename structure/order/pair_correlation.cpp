@@ -34,13 +34,6 @@ struct Heights {
   HeightWindow accessible;  // of centres that shells reach
 };
 
-// The lowest and the highest place of centres.
-HeightWindow centre_heights(const Packing& packing) {
-  double lowest = sphere_radius;
-  for (const Vec3& r : packing.centres) lowest = std::min(lowest, r.z);
-  return {lowest, std::min(top_height(packing), 2 * mean_height(packing) - sphere_radius)};
-}
-
 Heights heights_of(const Packing& packing, const PairCorrelationSettings& settings) {
   const HeightWindow centres = settings.heights.value_or(bulk_heights(packing, settings.r_max));
   if (!(centres.low <= centres.high)) {
@@ -56,7 +49,7 @@ Heights heights_of(const Packing& packing, const PairCorrelationSettings& settin
     }
     return {centres, {0, boundary.height}};
   }
-  const HeightWindow all = centre_heights(packing);
+  const HeightWindow all = accessible_heights(packing);
   const Heights heights{{std::max(centres.low, all.low), std::min(centres.high, all.high)},
                         {std::max(all.low, centres.low - settings.r_max),
                          std::min(all.high, centres.high + settings.r_max)}};

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/slab.hpp"
+#include "engine/numbers.hpp"
 #include "structure/density/sphere_cuts.hpp"
+#include "structure/order/accessible.hpp"
 
 namespace jostle::inline structure {
 namespace {
@@ -115,6 +116,40 @@ Vec3 random_point(const Container& container, const Region& region, RandomStream
   }
 }
 
+// Of one radius: how many were drawn that lie where centres may be, and how many of them were
+// empty.
+struct RandomSpheres {
+  double radius;
+  std::uint64_t counted = 0, empty = 0;
+};
+
+void draw_spheres(const Packing& packing, const Region& region, std::uint64_t points, StreamKey key,
+                  std::vector<RandomSpheres>& of_radius) {
+  if (of_radius.empty()) return;
+  const Boundary boundary(packing.container);
+  const AccessibleFootprint footprint(packing);
+  const HeightWindow heights = accessible_heights(packing);
+  CellGrid grid;
+  grid.build(boundary, std::ranges::max(of_radius, {}, &RandomSpheres::radius).radius,
+             static_cast<std::uint32_t>(packing.centres.size()),
+             [&](std::uint32_t i) { return packing.centres[i]; });
+  RandomStream random(key);
+  for (std::uint64_t p = 0; p < points; ++p) {
+    const Vec3 r = random_point(packing.container, region, random);
+    const double room =
+        std::min({footprint.depth(r.x, r.y), r.z - heights.low, heights.high - r.z});
+    double nearest = infinite;
+    grid.for_each_near(r, [&](std::uint32_t i) {
+      nearest = std::min(nearest, squared_distance(boundary, r, packing.centres[i]));
+    });
+    for (RandomSpheres& one : of_radius) {
+      if (room < one.radius) continue;
+      ++one.counted;
+      one.empty += nearest >= one.radius * one.radius ? 1 : 0;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
@@ -188,41 +223,25 @@ double mean_pore_volume(std::span<const Pore> pores) {
 VoidProbability void_probability(const Packing& packing, const Region& region,
                                  std::span<const double> sigma, std::uint64_t points,
                                  StreamKey key) {
-  const Boundary boundary(packing.container);
-  const double longest = sphere_radius * (sigma.empty() ? 1 : std::ranges::max(sigma));
-  CellGrid grid;
-  grid.build(boundary, std::max(longest, sphere_radius),
-             static_cast<std::uint32_t>(packing.centres.size()),
-             [&](std::uint32_t i) { return packing.centres[i]; });
-  std::vector<double> reaches;  // squared, ascending
-  for (const double s : sigma) reaches.push_back(s * s * sphere_radius * sphere_radius);
-  std::ranges::sort(reaches);
-  std::vector<std::uint64_t> reached(sigma.size() + 1, 0);  // points by how many reaches are empty
-  RandomStream random(key);
-  for (std::uint64_t p = 0; p < points; ++p) {
-    const Vec3 r = random_point(packing.container, region, random);
-    double nearest = std::numeric_limits<double>::infinity();
-    grid.for_each_near(r, [&](std::uint32_t i) {
-      nearest = std::min(nearest, squared_distance(boundary, r, packing.centres[i]));
-    });
-    ++reached[static_cast<std::size_t>(std::ranges::upper_bound(reaches, nearest) -
-                                       reaches.begin())];
-  }
-  for (std::size_t k = reached.size() - 1; k > 0; --k) reached[k - 1] += reached[k];
   VoidProbability result;
   result.sigma.assign(sigma.begin(), sigma.end());
-  for (std::size_t s = 0; s < sigma.size(); ++s) {
-    if (sigma[s] <= 1) {
-      result.probability.push_back(1 - filled_part(packing, region, sigma[s]));
+  std::vector<RandomSpheres> larger;  // than the packing's
+  for (const double s : sigma) {
+    if (s > 1) larger.push_back({s * sphere_radius});
+  }
+  draw_spheres(packing, region, points, key, larger);
+  auto drawn = larger.begin();
+  for (const double s : sigma) {
+    if (s <= 1) {
+      result.probability.push_back(1 - filled_part(packing, region, s));
       result.error.push_back(0);
-    } else {
-      const auto rank = static_cast<std::size_t>(
-          std::ranges::lower_bound(reaches, sigma[s] * sigma[s] * sphere_radius * sphere_radius) -
-          reaches.begin());
-      const double p = static_cast<double>(reached[rank + 1]) / static_cast<double>(points);
-      result.probability.push_back(p);
-      result.error.push_back(std::sqrt(p * (1 - p) / static_cast<double>(points)));
+      continue;
     }
+    const auto n = static_cast<double>(drawn->counted);
+    const double p = n > 0 ? static_cast<double>(drawn->empty) / n : not_a_number;
+    result.probability.push_back(p);
+    result.error.push_back(std::sqrt(p * (1 - p) / n));
+    ++drawn;
   }
   return result;
 }

@@ -14,6 +14,7 @@
 #include "config/scene.hpp"
 #include "ensemble/analysis/structure_tables.hpp"
 #include "ensemble/parallel.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/particle_columns.hpp"
@@ -110,6 +111,27 @@ class Measurer {
   std::uint32_t read_realization_ = 0;
 };
 
+/// Where a part of the structure was measured. Few parts count in the region.
+std::string region_note(std::string_view part, const StructureSettings& settings) {
+  if (part == "layers") return "all heights, from side to side";
+  if (part == "pair_correlation") {
+    return "of each packing: central spheres from side to side, at heights at least r_max above "
+           "1/2 and below 2<Z>, or in the middle half of a lower bed; all of a fully periodic box";
+  }
+  if (part == "sides") {
+    const auto& heights = settings.sides->heights;
+    return heights ? finite_text("heights {:g} to {:g}", heights->low, heights->high)
+                   : "of each packing: heights 2 to 0.8 of 2<Z>";
+  }
+  if (settings.region && part != "profile") return resolved(settings).at("region").dump();
+  const std::string heights =
+      settings.region
+          ? finite_text("heights {:g} to {:g}", settings.region->low, settings.region->high)
+          : "of each packing: heights 1 to 10 but at most 2<Z> - 1";
+  return part == "profile" ? "phi_region " + heights + ", from side to side"
+                           : heights + ", 1 from walls; all of a fully periodic box";
+}
+
 /// The tables, each with what it was measured with.
 std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ensemble,
                              const StructureSettings& settings, int threads) {
@@ -119,11 +141,7 @@ std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ense
   for (Table& table : tables) {
     const Json* part = written.find(table.name.substr(prefix.size()));
     table.notes.emplace_back("settings", part->dump());
-    table.notes.emplace_back(
-        "region", settings.region
-                      ? written.at("region").dump()
-                      : "of each packing: heights 1 to 10 but at most 2<Z> - 1, 1 from walls; all "
-                        "of a fully periodic box");
+    table.notes.emplace_back("region", region_note(table.name.substr(prefix.size()), settings));
   }
   return tables;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "engine/bed/boundary.hpp"
 #include "structure/snapshot_statistics.hpp"
 #include "tests/structure/density/profile_samples.hpp"
 #include "tests/structure/reference_deposit.hpp"
@@ -79,6 +80,61 @@ TEST_CASE("Layers of a crystal lie at the heights of hcp and are full") {
   const std::vector<double> n = height_histogram(packing);
   for (std::size_t k = 0; k < 5; ++k) {
     CHECK(n[static_cast<std::size_t>(hcp_layer_height(k) / 0.1)] == Approx(0.2).epsilon(1e-14));
+  }
+}
+
+namespace {
+
+// Places of a triangular lattice of spacing 1 in a footprint that centres can reach, the most over
+// 60 x 60 places of its corner: by brute force.
+std::size_t most_places(const Container& container, bool rows_along_y) {
+  const Boundary boundary(container);
+  std::size_t most = 0;
+  for (int a = 0; a < 60; ++a) {
+    for (int b = 0; b < 60; ++b) {
+      std::size_t places = 0;
+      for (int j = -14; j < 14; ++j) {
+        for (int i = -14; i < 14; ++i) {
+          const double along = boundary.axis() + i + 0.5 * (j % 2 != 0) + a / 60.0;
+          const double across = boundary.axis() + row * (j + 2 * b / 60.0);
+          const Vec3 place = rows_along_y ? Vec3{across, along, 0.5} : Vec3{along, across, 0.5};
+          places += boundary_depth(boundary, place) <= 1e-9;
+        }
+      }
+      most = std::max(most, places);
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("A full layer between walls and in a tube has the filling 1") {
+  for (const Container& container : {Container{WalledBox{5, 5}},
+                                     {WalledBox{7, 7}},
+                                     {WalledBox{4.3, 7.9}},
+                                     {WalledBox{9.3, 6.5}},
+                                     {WalledBox{1, 6}},
+                                     {Cylinder{1}},
+                                     {Cylinder{3}},
+                                     {Cylinder{5}},
+                                     {Cylinder{5.6}},
+                                     {Cylinder{9.3}}}) {
+    const auto one = static_cast<double>(layers({container, {{0.5, 0.5, 0.5}}})[0].filling);
+    CAPTURE(width_x(container), width_y(container));
+    CHECK(1 / one == Approx(std::max(most_places(container, false), most_places(container, true)))
+                         .epsilon(1e-9));
+  }
+  // The layers of crystals: of a lattice with a row along x, and the next, which lies in its holes.
+  for (const double width : {5.0, 7.0, 9.3, 16.0}) {
+    const Packing between_walls = crystal(WalledBox{width, width}, 2000);
+    const std::vector<Layer> all = layers(between_walls);
+    CHECK(all[0].filling == Approx(1).epsilon(1e-12));
+    CHECK(all[1].filling > 0.8);
+    for (const Layer& layer : all) CHECK(layer.filling < 1 + 1e-12);
+    for (const Layer& layer : layers(crystal(Cylinder{width}, 2000))) {
+      CHECK(layer.filling < 1 + 1e-12);
+    }
   }
 }
 
