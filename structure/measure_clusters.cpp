@@ -1,3 +1,4 @@
+#include <cmath>
 #include <stdexcept>
 
 #include "engine/numbers.hpp"
@@ -17,8 +18,12 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
   for (std::size_t k = 0; k < found.cells.size(); ++k) {
     n.push_back(found.cells[k]);
     independent.push_back(found.independent[k]);
-    per_cell.push_back(found.variance[k] / n.back() / independent.back());
-    relative.push_back(per_cell.back() / found.of_members[k]);
+    const auto varying = [&](double variance, double mean) {
+      return std::pow(zero_within_rounding(std::sqrt(variance), mean), 2);
+    };
+    per_cell.push_back(varying(found.variance[k], found.mean[k]) / n.back() / independent.back());
+    const double of_members = varying(found.of_members[k], found.mean[k] / n.back());
+    relative.push_back(of_members > 0 ? per_cell.back() / of_members : not_a_number);
     chi.push_back(per_cell.back() / (found.mean[k] / n.back() - 1 - least_free_volume));
     clusters.push_back(static_cast<double>(found.clusters[k]));
   }
@@ -40,7 +45,8 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .values = relative,
        .long_name =
            "variance of the volume of a cluster over its cells and over shared_cells, over that of "
-           "the single cells it is of: 1 where cells are independent",
+           "the single cells it is of: 1 where cells are independent, no value where they do not "
+           "vary",
        .beyond = not_a_number},
       {.name = "shared_cells",
        .places = "cells",

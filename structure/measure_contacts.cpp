@@ -106,7 +106,9 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .long_name = "gamma of g(1 + h) as h^-gamma, from this gap to the window's end"},
       {.name = "gap_exponent",
        .values = {gap_exponent(gaps, settings.window.low, settings.window.high, weights)},
-       .long_name = "gamma of g(1 + h) as h^-gamma, gaps in the window"},
+       .long_name =
+           "gamma of g(1 + h) as h^-gamma, gaps in the window; no value of fewer than ten, or "
+           "where all are of one size"},
       {.name = "contacts",
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},

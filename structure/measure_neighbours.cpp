@@ -114,7 +114,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
        .places = "r",
        .values = pairs.g(),
        .long_name = "pair correlation, corrected for floor, surface and sides; pairs of all "
-                    "packings over those that an ideal gas would have",
+                    "packings over those of an uncorrelated packing with the same heights",
        .source = "Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641",
        .pooling = Pooling::weighted,
        .weights = pairs.expected,
@@ -134,7 +134,7 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
       {.name = "density",
        .values = {pairs.density},
        .units = "1/diameter^3",
-       .long_name = "centres in the accessible region that shells sample, that g is relative to",
+       .long_name = "mean number of centres in the accessible region that shells sample",
        .pooling = Pooling::weighted,
        .weights = {centres}},
       {.name = "centres",

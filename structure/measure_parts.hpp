@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "structure/measure.hpp"
@@ -37,6 +38,12 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings);
+
+/// A deviation, or 0 where it is rounding noise beside the size of what deviates.
+inline double zero_within_rounding(double deviation, double size) {
+  constexpr double rounding = 1e-10;
+  return std::abs(deviation) <= rounding * std::abs(size) ? 0 : deviation;
+}
 
 /// k + 1/2 times `width`, or k times it, k = 0 .. n - 1.
 std::vector<double> middles_of_bins(std::size_t n, double width);

@@ -99,7 +99,7 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
                      .values = density(inner.fractions, fraction_bin, n_fractions),
                      .long_name = "probability density of local packing fractions"}};
   const double free_mean = mean_of(inner.free_volumes);
-  const double sigma = deviation_of(inner.free_volumes, free_mean);
+  const double sigma = zero_within_rounding(deviation_of(inner.free_volumes, free_mean), free_mean);
   const double above_least = free_mean - least_free_volume;
   add_single("mean_faces", mean_of(inner.faces), "faces a cell", out, "Rosato et al. 2010, fig. 8");
   add_single("mean_volume", mean_of(inner.volumes), "volume of a cell", out, "", "diameters^3");
@@ -125,8 +125,9 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
              out);
   add_single(
       "inconsistent_cells", static_cast<double>(cells.inconsistent),
-      "cells with a face that is not as large from the other side: beside the curved wall of a "
-      "cylinder, or where voro++ could not make them out",
+      "of all cells, those with a face that is not as large from the other side: beside the curved "
+      "wall of a cylinder, or where voro++ could not make them out; volumes of the region's cells "
+      "are right all the same",
       out);
   return out;
 }

@@ -48,7 +48,7 @@ MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
         if (quantity == nullptr) continue;
         const bool weighted = example.pooling == Pooling::weighted;
         const double weight = weighted ? quantity->weight_at(place) : 1;
-        if (!(weight > 0)) continue;
+        if (weight == 0 || std::isnan(weight)) continue;
         terms.emplace_back(quantity->at(place) * weight, weight);
         top += terms.back().first;
         bottom += terms.back().second;

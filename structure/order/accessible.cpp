@@ -100,7 +100,10 @@ StepTable shares_inside(const std::vector<double>& coordinates, double low, doub
 
 FootprintShares::FootprintShares(const AccessibleFootprint& footprint,
                                  const std::vector<Vec3>& centres, double reach)
-    : sides_(footprint.boundary_.sides), reach_(reach) {
+    : footprint_(footprint),
+      sides_(footprint.boundary_.sides),
+      n_centres_(centres.size()),
+      reach_(reach) {
   if (sides_ == Sides::cylinder) fill_disc(footprint, centres);
   if (sides_ != Sides::walls) return;
   std::vector<double> x, y;
@@ -149,6 +152,20 @@ double FootprintShares::operator()(double dx, double dy, double overlap) const {
   const double* const row = &disc_[i * n_steps_ + j];
   const double* const next = row + n_steps_;
   return (1 - u) * ((1 - v) * row[0] + v * row[1]) + u * ((1 - v) * next[0] + v * next[1]);
+}
+
+double FootprintShares::without_pair(double dx, double dy, double overlap, double x,
+                                     double y) const {
+  if (sides_ == Sides::none || n_centres_ <= 2) return overlap;
+  const auto n = static_cast<double>(n_centres_);
+  const auto others = [n](double share, bool latter_inside) {
+    return std::max(0.0, (n * share - 1 - (latter_inside ? 1 : 0)) / (n - 2));
+  };
+  if (sides_ == Sides::cylinder) {
+    return others((*this)(dx, dy, overlap), footprint_.depth(x + dx, y + dy) >= 0);
+  }
+  return others(x_(dx), footprint_.low_x_ <= x + dx && x + dx <= footprint_.high_x_) *
+         others(y_(dy), footprint_.low_y_ <= y + dy && y + dy <= footprint_.high_y_);
 }
 
 std::vector<Vec3> even_directions(int n) {

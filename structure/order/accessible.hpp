@@ -72,11 +72,17 @@ class FootprintShares {
   /// `overlap`: the footprint's of that displacement, which is that of centres where sides are
   /// periodic. Between walls the shares along x and y are taken for independent.
   double operator()(double dx, double dy, double overlap) const;
+  /// The share of all centres but two: those that are the displacement apart, of which the latter
+  /// is at (x, y). A pair at a displacement has it inside by itself.
+  double without_pair(double dx, double dy, double overlap, double x, double y) const;
+  std::size_t n_centres() const { return n_centres_; }
 
  private:
   void fill_disc(const AccessibleFootprint& footprint, const std::vector<Vec3>& centres);
 
+  AccessibleFootprint footprint_;
   Sides sides_;
+  std::size_t n_centres_;
   StepTable x_, y_;  // between walls
   // In a cylinder, at even steps along x and y from -reach_ on.
   double reach_ = 0, step_ = 0;

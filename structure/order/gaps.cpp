@@ -98,16 +98,19 @@ double gap_exponent(std::span<const double> gaps, double low, double high,
                     std::span<const double> weights) {
   constexpr std::size_t fewest = 10;
   const double range = std::log(high / low);
-  double sum = 0, all = 0;
+  double sum = 0, all = 0, least = high, most = low;
   std::size_t n = 0;
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     if (gaps[k] < low || gaps[k] > high) continue;
     const double weight = weights.empty() ? 1 : weights[k];
     sum += weight * std::log(gaps[k] / low) / range;
     all += weight;
+    least = std::min(least, gaps[k]);
+    most = std::max(most, gaps[k]);
     ++n;
   }
-  if (n < fewest) return std::numeric_limits<double>::quiet_NaN();
+  constexpr double one_size = 1e-6;  // as in a crystal: these have no law
+  if (n < fewest || most - least < one_size) return std::numeric_limits<double>::quiet_NaN();
   const double mean = sum / all - 0.5;
   // Of ln h the density is as h^(1 - gamma) (1 + h)^2.
   constexpr double steepest = 1e4;

@@ -28,8 +28,9 @@ unsigned least_contacts_of(const Container& container);
 
 /// The exponent gamma of a g(1 + h) that falls as h^-gamma between two limits, 0 < low < high, of
 /// gaps h: their number falls as h^-gamma (1 + h)^2, the shell's area, and gamma is that of maximum
-/// likelihood of those within, where the mean of ln h is the one observed. NaN of fewer than ten.
-/// Gaps need no order. `weights`: how often each counts, [n_gaps]; empty: once.
+/// likelihood of those within, where the mean of ln h is the one observed. NaN of fewer than ten,
+/// or where all are of one size. Gaps need no order. `weights`: how often each counts, [n_gaps];
+/// empty: once.
 double gap_exponent(std::span<const double> gaps, double low, double high,
                     std::span<const double> weights = {});
 

@@ -13,6 +13,7 @@
 #include "engine/bed/slab.hpp"
 #include "engine/numbers.hpp"
 #include "structure/order/accessible.hpp"
+#include "structure/order/height_pairs.hpp"
 #include "structure/order/neighbours.hpp"
 
 namespace jostle::inline structure {
@@ -32,6 +33,7 @@ double narrowest_period(const Boundary& boundary) {
 struct Heights {
   HeightWindow centres;     // of central spheres
   HeightWindow accessible;  // of centres that shells reach
+  HeightWindow all;         // of all centres that partners may be
 };
 
 Heights heights_of(const Packing& packing, const PairCorrelationSettings& settings) {
@@ -47,12 +49,13 @@ Heights heights_of(const Packing& packing, const PairCorrelationSettings& settin
       throw std::invalid_argument("g(r): the heights must lie within the box: 0 to " +
                                   std::to_string(boundary.height));
     }
-    return {centres, {0, boundary.height}};
+    return {centres, {0, boundary.height}, {0, boundary.height}};
   }
   const HeightWindow all = accessible_heights(packing);
   const Heights heights{{std::max(centres.low, all.low), std::min(centres.high, all.high)},
                         {std::max(all.low, centres.low - settings.r_max),
-                         std::min(all.high, centres.high + settings.r_max)}};
+                         std::min(all.high, centres.high + settings.r_max)},
+                        all};
   constexpr double least_depth = 1.1;
   if (heights.accessible.high - heights.accessible.low < least_depth) {
     throw std::invalid_argument("g(r): centres lie between the heights " + std::to_string(all.low) +
@@ -101,77 +104,122 @@ std::vector<Vec3> between(const std::vector<Vec3>& centres, HeightWindow heights
   return found;
 }
 
-/// How much of the accessible region displacements can use.
+/// How much of the accessible region displacements can use, and how many pairs an uncorrelated
+/// packing has there.
 class Displacements {
  public:
   Displacements(const Packing& packing, const Heights& heights, double r_max)
       : footprint_(packing),
+        heights_(heights.all),
+        central_(between(packing.centres, heights.centres)),
         sampled_(between(packing.centres, heights.accessible)),
         shares_(footprint_, sampled_, r_max) {
     const Boundary boundary(packing.container);
     if (boundary.periodic_z) {
       half_height_ = 0.5 * boundary.height * (1 + 1e-9);
+      pairs_per_height_ =
+          static_cast<double>(central_.size() * (packing.centres.size() - 1)) / boundary.height;
       return;
     }
-    std::vector<double> z;
-    for (const Vec3& r : between(packing.centres, heights.centres)) z.push_back(r.z);
+    std::vector<double> z, partners;
+    for (const Vec3& r : central_) z.push_back(r.z);
+    for (const Vec3& r : between(packing.centres, heights.all)) partners.push_back(r.z);
     std::ranges::sort(z);
     upright_ = shares_inside(z, heights.accessible.low, heights.accessible.high, r_max);
+    uncorrelated_ = HeightPairs(z, partners, heights.all, r_max);
   }
 
   struct Use {
-    double share = 0;       // of central spheres that have that place in the region
-    double even_share = 0;  // that share, evenly spread spheres counted along
-    double crowding = 1;    // density of the partners there over the mean
+    double even_share = 0;   // of central spheres that have that place in the region, evenly
+                             // spread spheres counted along
+    double grown_share = 0;  // that share, of a region grown beyond floor and surface
+    double pairs = 0;        // per volume of displacements, of an uncorrelated packing
   };
   Use operator()(Vec3 way) const {
     if (half_height_ > 0 && std::abs(way.z) > half_height_) return {};
     const double overlap = footprint_.overlap(way.x, way.y);
     if (overlap <= 0) return {};
-    const double up = half_height_ > 0 ? 1 : upright_(way.z);
-    const double share = shares_(way.x, way.y, overlap);
-    return {up * share, up * evened(share, overlap),
-            evened(shares_(-way.x, -way.y, overlap), overlap) / overlap};
+    const auto n = static_cast<double>(sampled_.size());
+    const double share = evened(shares_(way.x, way.y, overlap), n, overlap);
+    if (half_height_ > 0) return {share, share, share * pairs_per_height_ / footprint_.area()};
+    return {upright_(way.z) * share, uncorrelated_.share(way.z) * share,
+            uncorrelated_.density(way.z) * share / footprint_.area()};
+  }
+
+  /// What a pair counts: over the share of central spheres in the grown region, and the density of
+  /// the partners there over the mean, as the other spheres give them.
+  double weight(Vec3 way, Vec3 from, Vec3 to) const {
+    const double overlap = footprint_.overlap(way.x, way.y);
+    const double up = half_height_ > 0 ? 1 : uncorrelated_.share(way.z);
+    const double n = std::max(0.0, static_cast<double>(sampled_.size()) - 2);
+    const double share =
+        evened(shares_.without_pair(way.x, way.y, overlap, to.x, to.y), n, overlap);
+    const double crowding =
+        evened(shares_.without_pair(-way.x, -way.y, overlap, from.x, from.y), n, overlap) / overlap;
+    return 1 / (std::max(up * share, least_share) * crowding);
+  }
+
+  /// Share of the central spheres that have that place in the region, not evened.
+  double share(Vec3 way) const {
+    constexpr std::size_t few = 300;
+    const double overlap = footprint_.overlap(way.x, way.y);
+    if (overlap <= 0) return 0;
+    if (half_height_ > 0) {
+      return std::abs(way.z) > half_height_ ? 0 : shares_(way.x, way.y, overlap);
+    }
+    if (central_.size() > few) return upright_(way.z) * shares_(way.x, way.y, overlap);
+    constexpr double edge = StepTable::step;
+    const auto inside = std::ranges::count_if(central_, [&](const Vec3& r) {
+      const double z = r.z + way.z;
+      return z >= heights_.low - edge && z <= heights_.high + edge &&
+             footprint_.depth(r.x + way.x, r.y + way.y) >= -edge;
+    });
+    return static_cast<double>(inside) / static_cast<double>(central_.size());
   }
 
   const AccessibleFootprint& footprint() const { return footprint_; }
-  std::size_t n_sampled() const { return sampled_.size(); }
 
  private:
   /// Shares of few spheres scatter: some that are evenly spread are counted along.
-  double evened(double share, double overlap) const {
+  static double evened(double share, double n, double overlap) {
     constexpr double evenly_spread = 20;
-    const auto n = static_cast<double>(sampled_.size());
     return (n * share + evenly_spread * overlap) / (n + evenly_spread);
   }
 
   AccessibleFootprint footprint_;
-  std::vector<Vec3> sampled_;
+  HeightWindow heights_;
+  std::vector<Vec3> central_, sampled_;
   FootprintShares shares_;
   StepTable upright_;
-  double half_height_ = 0;  // of a box that is periodic upwards
+  HeightPairs uncorrelated_;
+  double half_height_ = 0, pairs_per_height_ = 0;  // of a box that is periodic upwards
 };
 
 double shell_volume(double low, double high) {
   return 4 * std::numbers::pi / 3 * (high * high * high - low * low * low);
 }
 
-/// The part of the shell from `low` to `high` that is sampled, in [0, 1].
-double sampled_part(const Displacements& displacements, const std::vector<Vec3>& directions,
-                    double low, double high) {
+struct Shell {
+  double sampled = 0;   // part of it, in [0, 1]
+  double expected = 0;  // pairs of an uncorrelated packing, weighted as those found
+};
+
+Shell shell_of(const Displacements& displacements, const std::vector<Vec3>& directions, double low,
+               double high) {
   constexpr double thickest = 0.05;
   const int n = static_cast<int>(std::ceil((high - low) / thickest - 1e-9));
-  double volume = 0;
+  Shell cut;
   for (int k = 0; k < n; ++k) {
     const double inner = low + (high - low) * k / n, outer = low + (high - low) * (k + 1) / n;
-    double sum = 0;
+    const double volume = shell_volume(inner, outer) / static_cast<double>(directions.size());
     for (const Vec3& direction : directions) {
-      const double share = displacements(0.5 * (inner + outer) * direction).even_share;
-      sum += std::min(1.0, share / least_share);
+      const Displacements::Use use = displacements(0.5 * (inner + outer) * direction);
+      cut.sampled += volume * std::min(1.0, use.even_share / least_share);
+      cut.expected += volume * use.pairs / std::max(use.grown_share, least_share);
     }
-    volume += shell_volume(inner, outer) * sum / static_cast<double>(directions.size());
   }
-  return volume / shell_volume(low, high);
+  cut.sampled /= shell_volume(low, high);
+  return cut;
 }
 
 void count_pairs(const Packing& packing, const Heights& heights, const Displacements& displacements,
@@ -181,22 +229,20 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
   const NeighbourFinder finder(packing, static_cast<double>(n_bins) * pairs.bin_width);
   const double bins_per_length = 1 / pairs.bin_width;
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    const double z = packing.centres[i].z;
-    if (z < heights.centres.low || z > heights.centres.high) continue;
+    const Vec3 from = packing.centres[i];
+    if (from.z < heights.centres.low || from.z > heights.centres.high) continue;
     ++pairs.n_centres;
     finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
       const double height = packing.centres[j].z;
-      if (j == i || height < heights.accessible.low - edge ||
-          height > heights.accessible.high + edge) {
-        return;
-      }
-      const Displacements::Use use = displacements(way);
+      if (j == i || height < heights.all.low - edge || height > heights.all.high + edge) return;
       const auto bin =
           static_cast<std::size_t>(std::sqrt(distance_squared) * bins_per_length + early);
-      if (use.share <= 0 || bin >= n_bins) return;
+      if (bin >= n_bins) return;
+      const double share = displacements.share(way);
+      if (share <= 0) return;
       ++pairs.counts[bin];
-      pairs.neighbours[bin] += 1 / std::max(use.share, least_share);
-      pairs.found[bin] += 1 / (std::max(use.even_share, least_share) * use.crowding);
+      pairs.neighbours[bin] += 1 / std::max(share, least_share);
+      pairs.found[bin] += displacements.weight(way, from, packing.centres[j]);
     });
   }
 }
@@ -291,16 +337,13 @@ PairCorrelation pair_correlation(const Packing& packing, const PairCorrelationSe
     pairs.r.push_back((static_cast<double>(k) + 0.5) * settings.bin_width);
   }
   count_pairs(packing, heights, displacements, pairs);
-  // An ideal gas of as many spheres: of n there are n - 1 others.
-  const auto n = static_cast<double>(displacements.n_sampled());
-  const double others = n > 0 ? pairs.density * (n - 1) / n : 0;
   const std::vector<Vec3> all_directions = even_directions(2000);
   for (std::size_t k = 0; k < n_bins; ++k) {
     const double low = static_cast<double>(k) * settings.bin_width, high = low + settings.bin_width;
-    const double part =
-        pairs.n_centres > 0 ? sampled_part(displacements, all_directions, low, high) : 0;
-    pairs.shells.push_back(static_cast<double>(pairs.n_centres) * part);
-    pairs.expected.push_back(pairs.shells.back() * others * shell_volume(low, high));
+    const Shell cut =
+        pairs.n_centres > 0 ? shell_of(displacements, all_directions, low, high) : Shell{};
+    pairs.shells.push_back(static_cast<double>(pairs.n_centres) * cut.sampled);
+    pairs.expected.push_back(cut.expected);
   }
   return pairs;
 }

@@ -33,13 +33,13 @@ struct PairCorrelation {
   std::vector<std::uint64_t> counts;  // neighbours found around all central spheres, [n_bins]
   std::vector<double> neighbours;     // as many as whole shells around them would have, [n_bins]
   std::vector<double> found;          // these, as if centres crowded nowhere at the sides, [n_bins]
-  std::vector<double> expected;       // what an ideal gas would have, [n_bins]
+  std::vector<double> expected;       // what an uncorrelated packing would have, [n_bins]
   std::vector<double> shells;  // central spheres, by the part of their shells sampled, [n_bins]
   double bin_width = 0;
   double density = 0;           // centres a cubic diameter, of the heights that the shells sample
   std::uint64_t n_centres = 0;  // central spheres
 
-  /// g of each bin, found / expected: 1 for an ideal gas. NaN where nothing is expected.
+  /// g of each bin, found / expected: 1 for an uncorrelated packing. NaN where nothing is expected.
   std::vector<double> g() const;
 
   /// Mean number of other centres up to the end of each bin around a sphere whose shells are whole.
@@ -61,11 +61,16 @@ struct PairCorrelation {
 /// numbers come out exactly. A displacement that fewer than a quarter of the central spheres can
 /// make counts as if a quarter could, in pairs and in what is expected.
 ///
-/// Density: that of the accessible footprint between the heights sampled, weighted by 1 at heights
-/// of central spheres and falling linearly to 0 at the last height sampled. Volumes of spheres are
-/// counted, not centres: the density does not jump where a height cuts a layer. Where centres crowd
-/// at the sides, the partners of a pair at d are denser than the mean by n(-d) / n over what evenly
-/// spread points have (adapted intensity: Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641).
+/// Expected: the pairs of an uncorrelated packing with the heights of this one. A sphere keeps its
+/// height and is anywhere in the footprint (height_pairs.hpp). The number is unbiased for few
+/// spheres and for any profile, as beds with a crowded floor have. For g the heights reach 1 beyond
+/// floor and surface, as far as layers are spread. Where centres crowd at the sides, the partners
+/// of a pair at d are denser than the mean by n(-d) / n over what evenly spread points have, the
+/// pair itself not counted (adapted intensity: Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641).
+///
+/// `density`: that of the accessible footprint between the heights sampled, weighted by 1 at
+/// heights of central spheres and falling linearly to 0 at the last height sampled. Volumes of
+/// spheres are counted, not centres: the density does not jump where a height cuts a layer.
 ///
 /// Along periodic directions a pair is taken to its nearest image, and shells end at half a period.
 /// The sphere's own images are no neighbours. Throws std::invalid_argument where centres have no

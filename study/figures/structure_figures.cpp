@@ -26,6 +26,7 @@ struct PartPlot {
   const char* beside = nullptr;  // another curve of the same table
   const char* beside_name = "";
   std::optional<double> rule{};
+  bool pooled = false;  // a ratio of sums over packings
 };
 
 /// Numbers of a packing against the tap, in one figure.
@@ -83,7 +84,8 @@ const std::vector<Part>& parts() {
          .x_label = "distance r (diameters)",
          .y_label = "g(r)",
          .from_zero = true,
-         .rule = 1}},
+         .rule = 1,
+         .pooled = true}},
        {}},
       {"order",
        {{"q6_at_height", "height", "Bond order by height", "height z (diameters)", "mean q_6"},
@@ -174,7 +176,10 @@ void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plo
   FigurePanel panel{
       .title = plot.title,
       .caption = sentence(table.long_name(plot.y)) +
-                 "; means over realizations at some of the kept taps, with their standard errors.",
+                 (plot.pooled ? "; over all realizations, at some of the kept taps, with jackknife "
+                                "errors."
+                              : "; means over realizations at some of the kept taps, with their "
+                                "standard errors."),
       .source = table.source(plot.y),
       .x = {plot.x_label, plot.x_kind},
       .y = {plot.y_label, plot.y_kind, plot.from_zero}};

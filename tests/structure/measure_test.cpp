@@ -146,6 +146,12 @@ TEST_CASE("A perfect crystal is one everywhere") {
   CHECK(single(part(all, "order"), "fcc") == 1);
   CHECK(single(part(all, "order"), "q6") == Approx(0.57452426).epsilon(1e-7));
   CHECK(single(part(all, "voronoi"), "mean_faces") == 12);
+  // Cells of one size: no noise is printed as a variance, and no ratio of it.
+  CHECK(single(part(all, "voronoi"), "sigma_free_volume") == 0);
+  for (const double variance : along(part(all, "clusters"), "variance")) CHECK(variance == 0);
+  for (const double ratio : along(part(all, "clusters"), "relative_variance")) {
+    CHECK(std::isnan(ratio));
+  }
   CHECK(single(part(all, "voronoi"), "mean_free_volume") ==
         Approx(3 * std::numbers::sqrt2 / std::numbers::pi - 1).epsilon(1e-9));
   // Two tetrahedral sites and one octahedral a sphere.
