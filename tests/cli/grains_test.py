@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, EVERY, PORTABLE, STOPPED, UNFOLDED, Case, changed
+from support import BAD_INPUT, BROKEN, EVERY, PORTABLE, STOPPED, UNFOLDED, Case, changed
 
 GRAINS = {
     "name": "grains",
@@ -246,7 +246,7 @@ class Grains(Case):
                              ("below", -0.01, "sphere 1 lies outside the container")):
             moved = [second[0], *first[1:3], str(z), *second[4:]]
             (self.folder / f"{name}.xyz").write_text("\n".join([*lines[:3], " ".join(moved), *lines[4:]]))
-            self.assertIn(why, self.jostle("structure", f"{name}.xyz", expect=BAD_INPUT).stderr)
+            self.assertIn(why, self.jostle("structure", f"{name}.xyz", expect=BROKEN).stderr)
 
     def test_check_says_what_the_settings_come_to(self):
         text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout

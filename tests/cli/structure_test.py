@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, FAILED, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, FAILED, TINY, Case, changed
 
 PARTS = ["clusters", "coordination", "holes", "layers", "order", "pair_correlation", "pores", "profile", "sides",
          "void_probability", "voronoi"]
@@ -246,10 +246,10 @@ class Structure(Case):
                                   (["tiny.h5", "--settings", "none.json"], "nor is it a JSON"),
                                   (["tiny.h5", "tiny.h5"], "one results file"),
                                   (["scene.json"], "neither a results file"),
-                                  (["radii.xyz"], "must be in diameters"),
                                   (["tiny.h5", "--sweep-point", 9], "9")):
             with self.subTest(arguments=arguments):
                 self.assertIn(answer, self.structure(*arguments, expect=BAD_INPUT).stderr)
+        self.assertIn("must be in diameters", self.structure("radii.xyz", expect=BROKEN).stderr)  # by the reader
         self.write(changed(TINY, name="bare", snapshots={"taps": [0], "keep": ["coordination"]}))
         self.run_scene()
         self.assertIn("no packings are kept",
