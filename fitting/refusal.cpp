@@ -70,7 +70,7 @@ std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std:
   if (model.residual_scale() == ResidualScale::logarithmic && !curve.present.empty()) {
     return Refusal{RefusalKind::bad_curve,
                    "realizations have gaps, and their levels are taken in X, but " + model.name() +
-                       " is fitted in ln X: leave out rows with gaps (--gaps drop-row)"};
+                       " is fitted in ln X: leave out the rows with gaps"};
   }
   text = model.refusal(curve);
   if (!text.empty()) return Refusal{RefusalKind::bad_domain, text};

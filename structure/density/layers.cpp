@@ -75,6 +75,16 @@ double full_layer(const Container& container) {
   return along_x * along_y / row;
 }
 
+// Spheres of a close-packed layer by the area that centres can reach. A layer that lies in the
+// holes of a full one has fewer places: in a tube of 5 d 12 after 19, where this is 14.5.
+double layer_by_area(const Container& container) {
+  const Boundary boundary(container);
+  const double along_x = boundary.width_x - 2 * boundary.side_margin();
+  const double along_y = boundary.width_y - 2 * boundary.side_margin();
+  const double share = boundary.sides == Sides::cylinder ? 0.25 * std::numbers::pi : 1;
+  return std::max(1.0, share * along_x * along_y / row);
+}
+
 // Of ascending heights those in [low, high).
 std::span<const double> between(const std::vector<double>& heights, double low, double high) {
   const auto first = std::ranges::lower_bound(heights, low);
@@ -136,11 +146,12 @@ std::vector<Layer> layers(const Packing& packing, double tolerance) {
 
 std::size_t grown_layers(const Packing& packing, const LayerRule& rule) {
   const std::vector<Layer> all = layers(packing, rule.tolerance);
+  const double by_area = full_layer(packing.container) / layer_by_area(packing.container);
   std::size_t grown = 0;
   for (double expected = sphere_radius; grown < all.size(); ++grown) {
     const Layer& layer = all[grown];
     if (std::abs(layer.found - expected) > rule.tolerance || layer.share < rule.least_share ||
-        layer.filling < rule.least_filling) {
+        layer.filling * by_area < rule.least_filling) {
       break;
     }
     expected = layer.found + spacing;

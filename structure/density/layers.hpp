@@ -21,7 +21,9 @@ struct LayerRule {
   /// `tolerance` of that height. Centres at even heights have a share of 0.245.
   double tolerance = 0.1;
   double least_share = 0.6;
-  /// And they are at least this part of a full layer. Keeps a partial top layer out.
+  /// And they are at least this part of a close-packed layer on the area that centres can reach:
+  /// in narrow containers a layer in the holes of a full one has fewer places. Keeps a partial top
+  /// layer out.
   double least_filling = 0.7;
   bool operator==(const LayerRule&) const = default;
 
