@@ -210,7 +210,7 @@ class Structure(Case):
         bulk = "heights 1 to 10 but at most 2<Z> - 1"
         given = {"profile": "phi_region heights 0.5 to 2, from side to side",
                  "sides": "of each packing: heights 2 to 0.8 of 2<Z>",
-                 "layers": "all heights, from side to side", "coordination": '{"from_sides":0,"heights":[0.5,2]}'}
+                 "layers": "all heights, from side to side", "coordination": '{"heights":[0.5,2],"from_sides":0}'}
         default = {**given, "profile": f"phi_region of each packing: {bulk}, from side to side",
                    "coordination": f"of each packing: {bulk}, 1 from walls; all of a fully periodic box"}
         for region, expected in (({"heights": [0.5, 2], "from_sides": 0}, given), (None, default)):
