@@ -12,7 +12,7 @@ target_compile_options(
 # The trial loop joins conditions with | where a branch would cost.
 target_compile_options(jostle_options
                        INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
-# What takes the place of intrinsics, and of calls that only Linux has, is then used here as well.
+# The twins of intrinsics, and of calls that only Linux has, are then used here as well.
 if(JOSTLE_PORTABLE)
   target_compile_definitions(jostle_options INTERFACE JOSTLE_PORTABLE)
 endif()

@@ -116,7 +116,7 @@ bool keeps_default(const Scene& scene) {
          written_part(default_snapshots(scene.grains.has_value())).at("keep");
 }
 
-// What is kept by default depends on the engine: where that is swept, it is not spelled out.
+// The engine decides what is kept by default: where it is swept, "keep" is not spelled out.
 constexpr auto snapshots_field = irregular(
     "snapshots",
     [](const Reader& in, Scene& scene) {

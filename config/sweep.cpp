@@ -49,7 +49,7 @@ std::string location(const Json& written_sweep, const std::string& pointer) {
   return pointer_to(pointer_to("/sweep/zip", group), pointer);
 }
 
-/// Whether a point has grains where the scene has trials, whose `relax` is not for them.
+/// Tells of a point that has grains where the scene has trials: `relax` is not for them.
 bool has_grains(const SweepPoint& point) {
   return std::ranges::any_of(point.values, [](const auto& set) {
     const auto& [pointer, value] = set;

@@ -34,7 +34,7 @@ constexpr Range strictly_between(double low, double high) {
   return {low, high, false, false};
 }
 
-/// What scenes call the enumerators.
+/// The names of the enumerators in scenes.
 template <class Enum, std::size_t n>
 using NameTable = std::array<std::pair<std::string_view, Enum>, n>;
 
@@ -142,7 +142,7 @@ constexpr ListOf<Form> list_of(Form form, std::size_t least, std::size_t most,
 
 // The fields of a part.
 
-/// What is rarely said of a field.
+/// Rare properties of a field.
 struct Notes {
   std::string_view required = {};  // what a key that must be there holds; empty: it may be absent
   bool unless_default = false;     // written only where the value is not the default

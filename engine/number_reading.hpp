@@ -9,7 +9,7 @@ namespace jostle::inline engine {
 std::from_chars_result read_decimal(const char* begin, const char* end, double& value,
                                     std::chars_format format = std::chars_format::general);
 
-/// What takes its place without std::from_chars: strtod in the locale "C", with the same results.
+/// Its twin without std::from_chars: strtod in the locale "C", with the same results.
 namespace portable {
 std::from_chars_result read_decimal(const char* begin, const char* end, double& value,
                                     std::chars_format format);

@@ -34,7 +34,7 @@ struct FitOptions {
   /// parameter is one. Fewer are allowed where their work would exceed max_work. A fit that reaches
   /// the end of them is not settled, or has intervals left open, and says so.
   long long max_evaluations = 200000;
-  /// Of a law of more than 5 parameters: evaluations times points times parameters squared. An
+  /// A law of more than 5 parameters has this limit of evaluations x points x parameters^2. An
   /// evaluation of such a law at a point takes as long as it has parameters, and so does a step.
   double max_work = 2e9;
   SolverOptions solver = {};
@@ -150,6 +150,7 @@ enum class RefusalKind {
   too_few_points,
   constant_curve,
   bad_domain,
+  gaps,  // realizations have gaps that the law cannot do with
   no_start
 };
 

@@ -68,7 +68,7 @@ std::optional<Refusal> refuse_curve(const Model& model, const Curve& curve, std:
     return Refusal{RefusalKind::constant_curve, constant.str()};
   }
   if (model.residual_scale() == ResidualScale::logarithmic && !curve.present.empty()) {
-    return Refusal{RefusalKind::bad_curve,
+    return Refusal{RefusalKind::gaps,
                    "realizations have gaps, and their levels are taken in X, but " + model.name() +
                        " is fitted in ln X: leave out the rows with gaps"};
   }

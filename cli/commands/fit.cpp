@@ -232,6 +232,15 @@ Json source_json(const FittedCurve& fitted) {
   return object;
 }
 
+/// The option that helps where every law was refused, on a line of its own; or nothing.
+std::string remedy(const FittedCurve& fitted) {
+  const bool gaps = std::ranges::any_of(fitted.outcomes, [](const FitOutcome& outcome) {
+    const auto* refusal = std::get_if<Refusal>(&outcome.result);
+    return refusal != nullptr && refusal->kind == RefusalKind::gaps;
+  });
+  return gaps ? "\n  --gaps drop-row leaves them out" : "";
+}
+
 int run_fits(const FitArguments& arguments) {
   require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
   require_measured_output(arguments.measured, arguments.input, arguments.force);
@@ -251,7 +260,7 @@ int run_fits(const FitArguments& arguments) {
     const FittedCurve fitted = fit_curve(models, source, manner);
     const std::string refusal = refusal_of_all(fitted);
     any = any || refusal.empty();
-    if (!refusal.empty()) refusals += (refusals.empty() ? "" : "\n") + refusal;
+    if (!refusal.empty()) refusals += (refusals.empty() ? "" : "\n") + refusal + remedy(fitted);
     if (arguments.json) {
       curves.push_back(source_json(fitted));
     } else if (refusal.empty()) {

@@ -37,7 +37,7 @@ std::string read_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What the child does before it becomes python3.
+/// The child does this before it becomes python3.
 class FileActions {
  public:
   FileActions(const fs::path& folder, const fs::path& messages) {

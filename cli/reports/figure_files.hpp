@@ -28,7 +28,7 @@ std::string write_figures(std::span<const ResultsFile> files, const FigureFolder
 std::string figure_catalogue(std::span<const ResultsFile> files, const std::string& sweep_point,
                              const Provenance& by);
 
-/// Likewise for the fits of a measured curve, which `input` holds.
+/// Does so for the fits of a measured curve, which `input` holds.
 std::string write_figures(const FittedCurve& measured, const std::string& input,
                           const FigureFolder& folder, const Provenance& by);
 

@@ -152,7 +152,7 @@ Json fit_json(const FitOutcome& outcome) {
                        {"statement", fit.limit->statement},
                        {"parameters", parameters(fit.limit->estimates)}};
   }
-  // As in every other report the limit leads, where the least squares are there.
+  // The limit leads where the least squares are there, in every report.
   object["reported"] = fit.limit ? object["limit"]
                                  : Json{{"model", fit.model},
                                         {"formula", fit.formula},

@@ -78,7 +78,8 @@ void describe_field(const Field<Part, Value, Form>& field, ObjectSchema& out,
   std::optional<Json> otherwise;
   if constexpr (!is_optional<Value> || has_absence<Form>) {
     if (field.notes.required.empty()) otherwise = written_default(field.form, Part{}.*field.member);
-    // What is written only where it is not the default has none worth naming if that is empty.
+    // A value that is written only where it is not the default needs no default in the schema if
+    // that is empty.
     if (field.notes.unless_default && (*otherwise == Json("") || *otherwise == Json::object()))
       otherwise.reset();
   }

@@ -20,7 +20,7 @@ std::string allowed(Range range) {
                      range.high_included ? "at most" : "below", range.high);
 }
 
-/// Whether the character is one of a class: "a-z0-9_".
+/// Tells whether the character is one of a class: "a-z0-9_".
 bool is_in(std::string_view characters, char c) {
   for (std::size_t i = 0; i < characters.size(); ++i) {
     const bool is_range = i + 2 < characters.size() && characters[i + 1] == '-';

@@ -15,7 +15,7 @@
 // it reads; value_schema() gives the JSON Schema (draft-07) of what it accepts.
 namespace jostle::inline config {
 
-/// What a schema describes at one place and refers to from others.
+/// Schemas that stand at one place and that others refer to.
 class Definitions {
  public:
   /// A reference to the definition, which `describe` makes where it is not known yet; without a
@@ -140,7 +140,7 @@ struct ObjectSchema {
 
 /// The schema {"anyOf": [one, other]}.
 Json either(Json one, Json other);
-/// That at most one of the keys may be given.
+/// A schema that admits at most one of the keys.
 Json at_most_one_of(const std::vector<std::string>& keys);
 
 }  // namespace jostle::inline config

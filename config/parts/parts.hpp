@@ -25,7 +25,7 @@ Json written_part(const PackingFile& file);
 Json part_schema(std::type_identity<PackingFile> type, Definitions& definitions);
 /// The start as the engine has it; the packing of a file is read later.
 Start engine_start(const StartChoice& choice);
-/// What scenes call the kind of start: "pour", ...
+/// The name of the kind of start in scenes: "pour", ...
 std::string key_of(const StartChoice& start);
 
 bool read_part(const Reader& in, ProtocolLine& line);

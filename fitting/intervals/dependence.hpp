@@ -16,7 +16,7 @@ struct DependentErrors {
   /// [n_variables], > 0: the variance of each variable over what independent points of unit
   /// variance would give it, with the level weighed. A profile's threshold grows by its root.
   Eigen::VectorXd inflation;
-  /// Of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
+  /// The weight of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
   double level_weight = 1;
   /// Of Student's t; infinite where the errors are known.
   double dof = std::numeric_limits<double>::infinity();

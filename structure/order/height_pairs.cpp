@@ -77,7 +77,7 @@ HeightPairs::HeightPairs(const std::vector<double>& centres, const std::vector<d
   for (long i = 0; i < n_bins; ++i) {
     const double n = central[static_cast<std::size_t>(i)];
     if (n == 0) continue;
-    // What a sphere of this bin spreads itself is not counted.
+    // A sphere of this bin does not count what it spreads itself.
     const long first = std::max(0L, i - 2 * kernel_steps);
     const long last = std::min(n_bins - 1, i + 2 * kernel_steps);
     std::vector<double> near_end;

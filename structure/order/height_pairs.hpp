@@ -13,8 +13,8 @@ namespace jostle::inline structure {
 /// density that they have on average. The kernel is a triangle of half-width 1, twiced (2 K - K *
 /// K: Stuetzle & Mittal 1979, Smoothing Techniques for Curve Estimation, 176): it keeps the second
 /// moment, so that a density which ends at floor and surface has the pairs that it had before.
-/// What is spread farther than 1 beyond the accessible heights is reflected. A sphere is not its
-/// own partner: the pairs are unbiased for packings of few spheres too.
+/// The part that is spread farther than 1 beyond the accessible heights is reflected. No sphere is
+/// its own partner: the pairs are unbiased for packings of few spheres too.
 class HeightPairs {
  public:
   static constexpr double reach_beyond = 1;

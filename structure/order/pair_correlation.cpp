@@ -146,8 +146,8 @@ class Displacements {
             uncorrelated_.density(way.z) * share / footprint_.area()};
   }
 
-  /// What a pair counts: over the share of central spheres in the grown region, and the density of
-  /// the partners there over the mean, as the other spheres give them.
+  /// The weight of a pair: 1 over the share of central spheres in the grown region, and over the
+  /// density of the partners there relative to the mean, as the other spheres give them.
   double weight(Vec3 way, Vec3 from, Vec3 to) const {
     const double overlap = footprint_.overlap(way.x, way.y);
     const double up = half_height_ > 0 ? 1 : uncorrelated_.share(way.z);

@@ -116,7 +116,7 @@ Vec3 random_point(const Container& container, const Region& region, RandomStream
   }
 }
 
-// Of one radius: how many were drawn that lie where centres may be, and how many of them were
+// The random spheres of one radius: how many lie where centres may be, and how many of them are
 // empty.
 struct RandomSpheres {
   double radius;

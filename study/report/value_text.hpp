@@ -7,8 +7,9 @@
 // python/jostle/plot/values.py give the same texts (tests/data/value_texts.json).
 namespace jostle::inline study {
 
-/// So many significant digits, trailing zeros dropped; from 1e6 on and below 1e-4 with a power of
-/// ten. A whole number below 1e6 has all its digits, NaN is "–", an infinite value "no limit".
+/// A number of so many significant digits, trailing zeros dropped; from 1e6 on and below 1e-4 with
+/// a power of ten. A whole number below 1e6 has all its digits, NaN is "–", an infinite value "no
+/// limit".
 std::string typeset_number(double value, int digits = 4);
 
 /// "0.5913(12)": the error's first two digits, in units of the value's last digit. The value alone,

@@ -23,7 +23,7 @@ class SmallInputs(Case):
         return {table["name"].split("/")[-1]: table
                 for table in json.loads(self.jostle(*arguments, "--json").stdout)["tables"]}
 
-    # As scenes name them: beds in extended XYZ (kind: extended_xyz_test.py).
+    # Beds in extended XYZ, named as scenes do (kind: extended_xyz_test.py).
 
     def measured(self, name):
         tables = self.tables("structure", name, "--part", "profile,coordination")

@@ -13,7 +13,7 @@
 namespace jostle::inline engine {
 
 using FourFloats = float __attribute__((vector_size(16)));
-/// What a comparison of four gives: 0 or -1 each.
+/// The result of comparing four: 0 or -1 each.
 using FourMask = std::int32_t __attribute__((vector_size(16)));
 
 #define JOSTLE_INLINE [[gnu::always_inline]] inline

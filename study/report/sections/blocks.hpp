@@ -12,7 +12,7 @@
 // A page is sections of blocks: figures, tables and sentences. report/src/blocks.js shows them.
 namespace jostle::inline study {
 
-/// What a page is made of: a file, and the figures of the catalogue, which blocks name by their
+/// The parts of a page: a file, and the figures of the catalogue, which blocks name by their
 /// places.
 struct PageContent {
   const DrawnFile& file;
@@ -39,7 +39,7 @@ class Blocks {
   std::vector<Json> list_;
 };
 
-/// Which figures of a section; `subject` empty: of any.
+/// Figures of a section; an empty `subject` means any.
 struct WantedFigures {
   std::string section{};
   std::optional<std::uint32_t> point{};
@@ -61,7 +61,7 @@ Json details_block(const std::string& summary, const Blocks& blocks, bool is_ope
 Json definitions_block(const std::string& kind,
                        const std::vector<std::pair<std::string, std::string>>& rows);
 
-/// What a refused table states, and which it is; null where none was refused.
+/// The names and statements of the refused tables; null where none was refused.
 Json refusals_block(const DrawnFile& file, const std::vector<TableView>& tables);
 
 /// The blocks of each sweep point, of which the page shows one.

@@ -3,7 +3,7 @@
 #include "study/report/sections/sections.hpp"
 #include "study/report/value_text.hpp"
 
-// What was measured inside the kept packings.
+// The structure measured inside the kept packings.
 namespace jostle::inline study {
 namespace {
 

@@ -108,7 +108,7 @@ void kill_while_going_on(long stride) {
 
 }  // namespace
 
-// What is on disk after call n is what is there before call n + 1, so that killing before every
+// The disk after call n is the disk before call n + 1, so that killing before every
 // call and after the last one is killing before and after every call.
 TEST_CASE("killed before, within or after any write, fsync, rename or removal, nothing is lost",
           "[slow]") {

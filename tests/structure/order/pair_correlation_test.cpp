@@ -9,7 +9,6 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
-#include "structure/order/accessible.hpp"
 #include "tests/structure/order/close_packings.hpp"
 #include "tests/structure/random_points.hpp"
 #include "tests/structure/reference_deposit.hpp"
@@ -207,28 +206,6 @@ TEST_CASE("The lattice between walls that had four neighbours has six") {
       CHECK(neighbours_up_to(pairs, 1.22) == Approx(6).epsilon(1e-9));
       CHECK(neighbours_up_to(pairs, 1.72) == Approx(18).epsilon(1e-9));
     }
-  }
-}
-
-TEST_CASE("The overlap of a footprint is that of random points", "[statistics]") {
-  const auto container =
-      GENERATE(values<Container>({WalledBox{5, 7}, WalledBox{1.6, 3}, Cylinder{6}, Cylinder{2}}));
-  constexpr unsigned n = 40'000;
-  const AccessibleFootprint footprint({container, {}});
-  const Packing points = random_points(container, 2, n);
-  const Boundary boundary(container);
-  for (const auto& [dx, dy] : {std::pair{0.3, 0.0}, {1.1, -0.4}, {0.5, 0.9}, {-2.0, 1.5}}) {
-    double inside = 0;
-    for (Vec3 r : points.centres) {
-      r.x += dx;
-      r.y += dy;
-      const bool within = r.x >= 0 && r.y >= 0 && r.x <= boundary.width_x &&
-                          r.y <= boundary.width_y && clear_of_boundaries(boundary, r);
-      inside += within ? 1 : 0;
-    }
-    const double share = footprint.overlap(dx, dy);
-    CAPTURE(dx, dy);
-    CHECK(std::abs(inside / n - share) <= 4 * std::sqrt(share * (1 - share) / n));
   }
 }
 

@@ -11,8 +11,8 @@
 #define JOSTLE_KERNELS tested_words
 #include "engine/monte_carlo/kernel/word_lanes.hpp"
 
-// What takes the place of intrinsics against what this build uses. Where that is the same, as with
-// JOSTLE_PORTABLE, against the definition alone.
+// Compares the twins of intrinsics with what this build uses; where it uses the twins themselves,
+// as with JOSTLE_PORTABLE, with the definition alone.
 using namespace jostle;
 
 namespace {
