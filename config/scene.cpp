@@ -195,7 +195,8 @@ constexpr auto measured_fields() {
       snapshots_field,
       field("motion", &Scene::motion, Object<MotionChoice>{},
             "Displacements over many taps, measured while the bed is tapped: mean square "
-            "displacements, overlaps and chi_4 (docs/analysis.md). Nothing is kept without this "
+            "displacements, overlaps and chi_4 (docs/reference/analyses.md). Nothing is kept "
+            "without this "
             "key",
             {.title = "Motion of the spheres",
              .examples = R"([{}, {"overlap_lengths": [0.05, 0.1, 0.3], "layers": 10}])"}),
@@ -215,11 +216,11 @@ constexpr auto measured_fields() {
             "run ends",
             {.title = "Fits"}),
       field("analyse", &Scene::analyse, Object<Analyses>{},
-            "What the run ends with, at every sweep point: docs/analysis.md",
+            "What the run ends with, at every sweep point: docs/reference/analyses.md",
             {.title = "Analyses"}),
       field("structure", &Scene::structure, Object<StructureSettings>{},
             "What the run ends with measuring in the kept packings, averaged over realizations; "
-            "parts that are not named are not measured. docs/structure.md",
+            "parts that are not named are not measured. docs/reference/structure.md",
             {.title = "Structure",
              .examples = R"([{"profile": {}, "pores": {"bin_width": 0.01}}])"})};
 }
@@ -261,7 +262,7 @@ std::string scene_schema() {
               {"title", "jostle scene"},
               {"description",
                "One study of a tapped packing of equal hard spheres. Lengths in sphere diameters, "
-               "angles in radians. docs/scene.md explains every key."}};
+               "angles in radians. docs/reference/scene.md explains every key."}};
   schema.update(object_schema(scene_fields(), definitions).json());
   schema["definitions"] = definitions.all();
   return schema.dump(2) + '\n';

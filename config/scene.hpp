@@ -20,7 +20,7 @@
 #include "ensemble/target_precision.hpp"
 #include "structure/measure.hpp"
 
-// A scene: one JSON file, read into plain aggregates. docs/scene.md describes every key.
+// A scene: one JSON file, read into plain aggregates. docs/reference/scene.md describes every key.
 namespace jostle::inline config {
 
 /// "start": {"file": ...}: a packing saved by an earlier run (.h5, .hdf5: point, realization, tap)
@@ -102,7 +102,7 @@ struct SnapshotChoice {
   bool operator==(const SnapshotChoice&) const = default;
 };
 
-/// How the motion of spheres is followed while they are tapped. docs/analysis.md.
+/// How the motion of spheres is followed while they are tapped. docs/reference/analyses.md.
 struct MotionChoice {
   std::optional<TapChoice> origins;                  // absent: 0 and two a decade
   std::optional<TapChoice> lags;                     // absent: ten a decade
@@ -144,7 +144,7 @@ std::vector<std::string> competing_laws();
 /// A law fitted to the mean of an observable against taps, at every sweep point, when a run ends.
 struct FitRequest {
   std::string observable;   // as the scene calls it
-  std::string model;        // of docs/fitting.md, or "all": every law of relaxation
+  std::string model;        // of docs/reference/laws.md, or "all": every law of relaxation
   std::uint64_t first = 1;  // tap
   std::optional<std::uint64_t> last = std::nullopt;  // tap; absent: the last one
   bool operator==(const FitRequest&) const = default;
@@ -174,7 +174,7 @@ constexpr auto asked_for(std::vector<AnalysisRequest<Settings>> Part::*member,
                Settings::about.text, {.unless_default = unless_empty});
 }
 
-/// What a run ends with, at every sweep point. docs/analysis.md.
+/// What a run ends with, at every sweep point. docs/reference/analyses.md.
 struct Analyses {
   std::vector<AnalysisRequest<SteadySettings>> steady;
   std::vector<AnalysisRequest<SpectrumSettings>> spectrum;

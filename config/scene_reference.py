@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/scene-reference.md from the schema on standard input; --check only compares the two."""
+"""Writes docs/reference/scene-keys.md from the schema on standard input; --check only compares the two."""
 
 import json
 import pathlib
@@ -7,7 +7,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCHEMA = json.load(sys.stdin)
-PAGE = ROOT / "docs/scene-reference.md"
+PAGE = ROOT / "docs/reference/scene-keys.md"
 HEAD = """# Scene reference
 
 Every key of a scene, as the schema has it (`jostle schema`); [scene.md](scene.md) explains what they mean
@@ -157,6 +157,6 @@ def page():
 if __name__ == "__main__":
     if sys.argv[1:] == ["--check"]:
         if PAGE.read_text() != page():
-            sys.exit("docs/scene-reference.md is not what the schema makes: ./dev scene-reference")
+            sys.exit("docs/reference/scene-keys.md is not what the schema makes: ./dev scene-reference")
     else:
         PAGE.write_text(page())

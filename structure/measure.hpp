@@ -13,8 +13,8 @@
 #include "structure/region.hpp"
 #include "structure/voids/bernal_holes.hpp"
 
-// The structure of a packing, part by part: docs/structure.md says what each quantity means.
-// Lengths in diameters.
+// The structure of a packing, part by part: docs/reference/structure.md says what each quantity
+// means. Lengths in diameters.
 namespace jostle::inline structure {
 
 inline constexpr Range bin_width_range = between(0.001, 10);  // of heights and distances, diameters

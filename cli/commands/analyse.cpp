@@ -344,7 +344,7 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
       "Tables are kept in the file they come from, under /analysis; what they mean:\n"
-      "docs/analysis.md. Exit code 2 where no analysis was possible.");
+      "docs/reference/analyses.md. Exit code 2 where no analysis was possible.");
 }
 
 }  // namespace jostle::inline cli

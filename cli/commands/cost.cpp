@@ -169,7 +169,8 @@ void add_cost(Command& app, int& code) {
       "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour "
       "between\n"
       "walls. Of discrete elements: rest, time step, stiffness, half the spheres. jostle report\n"
-      "of the results draws accuracy against time; docs/accuracy.md says how to read it.");
+      "of the results draws accuracy against time; docs/explanation/accuracy.md says how to read "
+      "it.");
   command.run([arguments, &code] { code = run_cost(*arguments); });
 }
 

@@ -330,9 +330,10 @@ void add_fit(Command& app, int& code) {
   command.add_option("--sweep-point", a.point,
                      "Its number, or NAME=VALUE of the sweep (default: every point)");
   command
-      .add_option("--model", a.model,
-                  "A law of docs/fitting.md, or all: every law of relaxation (default); with "
-                  "--law also that")
+      .add_option(
+          "--model", a.model,
+          "A law of docs/reference/laws.md, or all: every law of relaxation (default); with "
+          "--law also that")
       .offers(model_names());
   add_law_options(command, a);
   command.add_option("--range", a.range,
@@ -378,7 +379,8 @@ void add_fit(Command& app, int& code) {
       "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"
       "  jostle fit measured.csv --model kww --independent --page measured.html\n"
       "\n"
-      "Fits of results are kept in their file, under /fits; what a report means: docs/fitting.md.\n"
+      "Fits of results are kept in their file, under /fits; what a report means: "
+      "docs/reference/laws.md.\n"
       "Exit code 2 where no law could be fitted.");
   command.run([=, &code] {
     arguments->resampling_asked_for = (resample.count() > 0 && arguments->resample != "none") ||

@@ -146,7 +146,7 @@ void add_structure(Command& app, int& code) {
       "  jostle structure fig9.h5 --settings '{\"pores\": {\"bin_width\": 0.01}}'\n"
       "\n"
       "Tables are kept in the results file, under /structure; what they mean:\n"
-      "docs/structure.md. Exit code 2 where nothing could be measured.");
+      "docs/reference/structure.md. Exit code 2 where nothing could be measured.");
   command.run([arguments, &code] { code = measure_structure(*arguments); });
 }
 

@@ -46,7 +46,7 @@ constexpr std::tuple fit_fields{
         [](ObjectSchema& out, Definitions&) {
           out.properties["model"] = described_as(
               words_schema(fitted_models()), "",
-              "A law of docs/fitting.md; all: those that compete, eqs. 3 and 4 as one.",
+              "A law of docs/reference/laws.md; all: those that compete, eqs. 3 and 4 as one.",
               std::nullopt, "");
           out.required.emplace_back("model");
         }),

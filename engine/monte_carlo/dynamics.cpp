@@ -22,7 +22,7 @@ HeightWindow stop_window(const Stop& stop, const Packing& bed) {
 }
 
 // The same for the relaxation of the start itself, when there is no bed yet to take quantiles of:
-// those of a uniform bed (docs/decisions/stop-window-of-the-start.md).
+// those of a uniform bed (docs/developers/decisions/stop-window-of-the-start.md).
 HeightWindow start_stop_window(const Stop& stop, const Packing& packing) {
   const auto* rule = std::get_if<BulkFractionStop>(&stop.rule);
   if (rule == nullptr) return {0, 0};

@@ -1,4 +1,4 @@
-"""The program's commands as functions. docs/cli.md says what each does."""
+"""The program's commands as functions. docs/reference/commands.md says what each does."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     """Fits laws to the mean curve of an observable at every sweep point, or to a measured curve (CSV).
 
     Kept in the file under /fits unless store=False; a Results that is open shows them once it is opened
-    anew. range: "first:last" of t. The laws and what a report means: docs/fitting.md.
+    anew. range: "first:last" of t. The laws and what a report means: docs/reference/laws.md.
 
     model: a law, or "all" (default). law: one of your own, a formula of t and of parameters that start at
     `start` and stay between `bounds`, (lower, upper), None for no bound; it is called law_name ("own").
@@ -226,7 +226,7 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
             store: bool = True, live: bool = False, wait: str | None = None,
             program: Path | None = None) -> list[Table]:
     """what: "steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes" or "memory" of observables, or
-    "motion", which is of none; docs/analysis.md and docs/volumes.md have the equations.
+    "motion", which is of none; docs/reference/analyses.md and docs/reference/volumes.md have the equations.
 
     Kept in the files under /analysis unless store=False.
     """
@@ -246,7 +246,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
               settings: Mapping[str, Any] | None = None, tap: Sequence[int] | None = None,
               sweep_point: int | str | None = None, threads: int | None = None, store: bool = True,
               live: bool = False, wait: str | None = None, program: Path | None = None) -> list[Table]:
-    """What kept packings, or extended XYZ files, look like inside; docs/structure.md says what.
+    """What kept packings, or extended XYZ files, look like inside; docs/reference/structure.md says what.
 
     Kept in a results file under /structure unless store=False.
     """
@@ -260,7 +260,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
 @takes_arguments
 def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool = False,
            force: bool = False, threads: int | None = None, program: Path | None = None) -> Path:
-    """Writes one page for a browser that shows all that results hold; docs/report.md says what. Returns
+    """Writes one page for a browser that shows all that results hold; docs/reference/report.md says what. Returns
     `output`."""
     call(["report", *_option("output", path_text(output, "output")),
           *_options(live=_live(results, live), force=force, threads=threads)], _paths(results), program=program)

@@ -51,7 +51,7 @@ class Fault(NamedTuple):
 class ProgramError(JostleError):
     """The program refused or failed.
 
-    exit_code: as in docs/cli.md (2 bad input, 4 files, disk, memory); negative: the signal that
+    exit_code: as in docs/reference/commands.md (2 bad input, 4 files, disk, memory); negative: the signal that
     killed it. stderr: all that it said. command: its command line.
     """
 

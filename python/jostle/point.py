@@ -226,7 +226,7 @@ class Point:
     @property
     def motion(self) -> Columns:
         """What was found of the motion of spheres, and its axes, by name: overlap, [waiting_time, lag,
-        overlap_length, realization]; the others are in docs/format.md. Empty where it was not followed."""
+        overlap_length, realization]; the others are in docs/reference/file-format.md. Empty where it was not followed."""
         group = self._file.get(f"motion/{self._name}", {})
         return Columns([name for name in group if name not in ("realization", "direction")],
                        lambda name: group[name][()], f"motion of sweep point {self.index}", self._results)
@@ -238,7 +238,7 @@ class Point:
         """What is kept of packings besides positions: tap: [tap]; coordination: [tap, realization];
         height_histogram: [tap, realization, height], fraction of all centres in a bin; height: [height],
         the middle of a bin, diameters; of discrete elements also the granular temperature and the forces
-        of the bed (docs/format.md)."""
+        of the bed (docs/reference/file-format.md)."""
         group = self._file.get(f"snapshots/{self._name}", {})
         axes = ("realization", "wall", "direction", "arm", "force")
         return Columns([name for name in group if name not in axes],

@@ -32,7 +32,7 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     """Raises SceneError with every fault of a scene; else says what it means.
 
     pilot: also try some taps (up to ten seconds, of grains a minute) for estimates of time and memory.
-    Without the program, the JSON Schema is asked where jsonschema is installed; docs/scene.md lists what
+    Without the program, the JSON Schema is asked where jsonschema is installed; docs/reference/scene.md lists what
     it cannot see.
     """
     try:

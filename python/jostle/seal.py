@@ -1,4 +1,4 @@
-"""The last line of a results file: the SHA-256 of everything before it (docs/format.md)."""
+"""The last line of a results file: the SHA-256 of everything before it (docs/reference/file-format.md)."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ struct ExtendedXyzHeader {
 };
 
 /// Reads a comment line. Throws std::invalid_argument: whatever changes the meaning of the
-/// positions is understood or refused (docs/format.md#extended-xyz).
+/// positions is understood or refused (docs/reference/file-format.md#extended-xyz).
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment);
 
 /// Words between blanks.

@@ -19,8 +19,8 @@ struct PackingSelector {
 };
 
 /// Reads one packing: from our HDF5, or from extended XYZ (name ends in .xyz or .extxyz), by the
-/// rules of docs/format.md#extended-xyz. Throws ResultsError if there is no such packing or it is
-/// malformed; overlaps are not looked for.
+/// rules of docs/reference/file-format.md#extended-xyz. Throws ResultsError if there is no such
+/// packing or it is malformed; overlaps are not looked for.
 Packing read_packing(const std::string& path, const PackingSelector& selector = {});
 
 /// Writes one frame of extended XYZ that reads back to the same bits.

@@ -11,7 +11,7 @@
 #include "ensemble/sink.hpp"
 #include "results/study.hpp"
 
-// Names inside a results file; docs/format.md describes them.
+// Names inside a results file; docs/reference/file-format.md describes them.
 namespace jostle::inline results {
 
 /// Attribute `jostle_format` of the root; raised when a reader of the old layout would go wrong.

@@ -16,7 +16,8 @@
 namespace jostle::inline results {
 namespace {
 
-// The limits of scenes, which docs/scene.md gives, and beyond them what no scene comes to.
+// The limits of scenes, which docs/reference/scene.md gives, and beyond them what no scene comes
+// to.
 constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
 constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols

@@ -7,7 +7,7 @@
 #include "study/figures/figure.hpp"
 
 // Figures as JSON, which the page and the Python module jostle.plot draw, and as CSV.
-// docs/catalogue.md describes both.
+// docs/developers/catalogue.md describes both.
 namespace jostle::inline study {
 
 /// Digits of numbers: as many as are needed to read the same number, or 7, which a page has room

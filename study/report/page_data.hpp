@@ -16,8 +16,8 @@ struct PageRoom {
 };
 
 /// The data that a page shows of a results file: what was run, the figures of the catalogue,
-/// derived tables and packings. docs/report.md names its members. `digest`: of the file, or empty.
-/// Packings are looked at on so many threads. Throws ResultsError.
+/// derived tables and packings. docs/reference/report.md names its members. `digest`: of the file,
+/// or empty. Packings are looked at on so many threads. Throws ResultsError.
 Json page_data(const ResultsFile& file, const std::string& digest, const PageRoom& room,
                int threads);
 

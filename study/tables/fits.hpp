@@ -42,8 +42,8 @@ struct FittedCurve {
   LawComparison comparison = {};
 };
 
-/// A model of docs/fitting.md, or for "all" every law of an approach to a final value. Empty where
-/// there is none of that name.
+/// A model of docs/reference/laws.md, or for "all" every law of an approach to a final value. Empty
+/// where there is none of that name.
 std::vector<std::unique_ptr<Model>> models_named(const std::string& name);
 
 std::vector<FitOutcome> fit_models(const std::vector<std::unique_ptr<Model>>& models,

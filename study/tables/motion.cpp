@@ -21,7 +21,7 @@ std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint3
     throw BadInput(
         file.path() +
         ": its scene does not follow the motion of spheres, and what was not followed cannot be "
-        "found afterwards; give a new run's scene the key \"motion\" (docs/analysis.md)");
+        "found afterwards; give a new run's scene the key \"motion\" (docs/reference/analyses.md)");
   }
   std::vector<Table> tables;
   for (const std::uint32_t point : points) {

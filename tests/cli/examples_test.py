@@ -160,7 +160,7 @@ class Examples(Case):
         (self.folder / "volumes.csv").write_text("t,X\n" + "".join(
             f"{0.01 * t},{30 * math.exp(-0.1 * t) + 0.01 * math.cos(t * t)}\n" for t in range(20)))
         n = 0
-        pages = [page for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md")))
+        pages = [page for page in (SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md")))
                  if documented(page.read_text())]
         for page in some(pages, 4):
             found = documented(page.read_text())

@@ -65,7 +65,7 @@ std::set<std::string> words_of_code(const std::string& page) {
 }  // namespace
 
 TEST_CASE("The reference of scenes has every key and every word of the schema") {
-  const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
+  const std::string page = text_of(SOURCE_ROOT "/docs/reference/scene.md");
   const Json schema = Json::parse(scene_schema());
   const std::set<std::string> quoted = words_of_code(page);
   std::set<std::string> words;
@@ -87,7 +87,7 @@ TEST_CASE("The reference of scenes has every key and every word of the schema") 
 }
 
 TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
-  const std::string page = text_of(SOURCE_ROOT "/docs/scene.md");
+  const std::string page = text_of(SOURCE_ROOT "/docs/reference/scene.md");
   const StepAdaptation adapt;
   const BulkFractionStop bulk;
   const MeanHeightStop mean_height;

@@ -9,8 +9,8 @@ namespace jostle {
 
 namespace {
 
-/// The rules that JSON Schema cannot express, as docs/scene.md lists them: by a part of the
-/// message.
+/// The rules that JSON Schema cannot express, as docs/reference/scene.md lists them: by a part of
+/// the message.
 const std::vector<std::string> cross_field_messages{
     "written twice in one object",
     "is empty: the first number must be the lower",

@@ -71,7 +71,7 @@ def curves_of(table, picture):
 
 
 def series(name, index, points, **look):
-    """A series of the catalogue (docs/catalogue.md)."""
+    """A series of the catalogue (docs/developers/catalogue.md)."""
     colour = {"light": COLOURS[index % len(COLOURS)], "dark": COLOURS[index % len(COLOURS)]}
     x, y, low, high = (list(column) for column in zip(*points))
     return {"name": name, "colour": colour, "mark": "joined", "dash": 0, "symbol": index, "x": x, "y": y,

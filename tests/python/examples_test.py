@@ -32,7 +32,7 @@ class Examples(Case):
                     self.assertGreater(os.path.getsize(made), 1000, made)
 
     def test_the_page_names_them(self):
-        page = (SOURCE / "docs/python.md").read_text()
+        page = (SOURCE / "docs/reference/python.md").read_text()
         for name in SMALL:
             self.assertIn(f"(../examples/{name}.py)", page)
 

@@ -170,7 +170,7 @@ class Figures(Case):
 
 class Student(unittest.TestCase):
     def test_factors_are_those_of_the_tables(self):
-        """docs/analysis.md; scipy.stats.t.ppf((1 + 0.6827) / 2, dof)."""
+        """docs/reference/analyses.md; scipy.stats.t.ppf((1 + 0.6827) / 2, dof)."""
         for dof, expected in ((1, 1.8373), (2, 1.3213), (9, 1.0592), (1000, 1.0005)):
             self.assertAlmostEqual(factor(dof), expected, places=3)
         self.assertEqual(factor(float("inf")), 1)

@@ -11,7 +11,7 @@
 using namespace jostle;
 
 TEST_CASE("The page of the format quotes the numbers of its formats as they are") {
-  const std::string page = read_text_file(SOURCE_ROOT "/docs/format.md");
+  const std::string page = read_text_file(SOURCE_ROOT "/docs/reference/file-format.md");
   for (const std::string& quoted : {fmt::format("its format's number ({})", part_format),
                                     fmt::format("**layout {}**", layout_version),
                                     fmt::format("`{}`", keeps_what_point_keeps)}) {
@@ -21,7 +21,7 @@ TEST_CASE("The page of the format quotes the numbers of its formats as they are"
 }
 
 TEST_CASE("The page of the format names all that snapshots keep of spheres and by height") {
-  const std::string page = read_text_file(SOURCE_ROOT "/docs/format.md");
+  const std::string page = read_text_file(SOURCE_ROOT "/docs/reference/file-format.md");
   for (const SphereVector& one : sphere_vectors) {
     INFO(one.name);
     CHECK(page.find(fmt::format("{}/value`", one.name)) != std::string::npos);

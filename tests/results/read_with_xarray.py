@@ -122,7 +122,7 @@ def check_sweep_values_are_coordinates(path):
 
 
 def check_h5md(path):
-    """The required elements of H5MD 1.1, and what docs/format.md adds."""
+    """The required elements of H5MD 1.1, and what docs/reference/file-format.md adds."""
     with h5py.File(path, "r") as file:
         assert file.attrs["jostle_format"] == 1
         assert file["h5md"].attrs["version"].tolist() == [1, 1]

@@ -25,7 +25,7 @@ class PolarDirections {
   using Bins = DirectionBins<n_sectors>;
 
   /// Rejection-free sampling begins below this acceptance ratio. Measured where both samplers cost
-  /// the same (docs/performance.md).
+  /// the same (docs/developers/performance.md).
   static constexpr double least_acceptance = 0.015;
   /// Obstacles higher than that above a centre hardly ever bound a step that does not rise, and are
   /// left out; so are those farther than 1 + obstacle_reach of the longest step. Diameters.

@@ -9,7 +9,7 @@
 #include "ensemble/analysis/ordering/log_rank.hpp"
 #include "ensemble/analysis/ordering/times.hpp"
 
-// Ordering kinetics as tables. docs/analysis.md, "Ordering".
+// Ordering kinetics as tables. docs/reference/analyses.md, "Ordering".
 namespace jostle::inline ensemble {
 
 /// Takes all taps of one realization after another.

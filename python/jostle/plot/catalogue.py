@@ -15,7 +15,7 @@ from ..results import Results
 @takes_arguments
 def figures(results: Results | Path, *, point: int | str | None = None,
             program: Path | None = None) -> dict[str, dict[str, Any]]:
-    """The figures that the page of `jostle report` shows, by name, as docs/catalogue.md describes them; draw()
+    """The figures that the page of `jostle report` shows, by name, as docs/developers/catalogue.md describes them; draw()
     draws one. point: those of one sweep point alone, by its number or as "NAME=VALUE"."""
     path = results.path if isinstance(results, Results) else path_text(results)
     live = isinstance(results, Results) and results.live

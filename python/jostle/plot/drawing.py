@@ -1,4 +1,4 @@
-"""Figures of the catalogue (docs/catalogue.md), which `jostle report --catalogue` describes, as matplotlib draws them.
+"""Figures of the catalogue (docs/developers/catalogue.md), which `jostle report --catalogue` describes, as matplotlib draws them.
 
 Texts are text: no character of a figure begins mathematics or a command. "N_c", "Φ_b" get their subscript.
 """

@@ -101,7 +101,7 @@ std::vector<std::string> faults_of_the_names(const OwnLaw& law) {
   }
   if (!is_word(law.name) || make_model(law.name) || law.name == "all") {
     faults.push_back(fmt::format(
-        "the law cannot be called \"{}\": a word that is no law's name of docs/fitting.md",
+        "the law cannot be called \"{}\": a word that is no law's name of docs/reference/laws.md",
         law.name));
   }
   return faults;

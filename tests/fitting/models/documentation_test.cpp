@@ -25,11 +25,11 @@ bool contains(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("the documentation of fits quotes its example as it is compiled") {
-  CHECK(contains(read_text("docs/fitting.md"), read_text("docs/examples/own_model.cpp")));
+  CHECK(contains(read_text("docs/reference/laws.md"), read_text("docs/examples/own_model.cpp")));
 }
 
 TEST_CASE("the documentation of fits lists every model with its parameters") {
-  const std::string text = read_text("docs/fitting.md");
+  const std::string text = read_text("docs/reference/laws.md");
   for (const auto& model : all_models()) {
     CHECK(contains(text, '`' + model->name() + '`'));
     CHECK(contains(text, model->formula()));

@@ -163,7 +163,7 @@ TEST_CASE("An own law gives the parameters, intervals and words of the law that 
   }
 }
 
-TEST_CASE("A formula is read as docs/fitting.md says") {
+TEST_CASE("A formula is read as docs/reference/laws.md says") {
   const double p[] = {2.0, 3.0};
   const std::pair<const char*, double> values[] = {
       {"-t^2 + 0*(a + b)", -25},  {"a^b^2 + 0*t", 512}, {"ln(exp(b)) + log(1) + 0*(a + t)", 3},
