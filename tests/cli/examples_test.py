@@ -50,6 +50,10 @@ INSTEAD_IN_DOCS = {
     "jostle run config/scenes/quickstart.json": "jostle run config/scenes/quickstart.json --force",
     "jostle run my-scene.json --resume": "jostle run small.json -o my-scene.h5 --resume",
     "jostle run mine.json --resume": "jostle run small.json -o mine.h5 --resume",
+    "jostle run my-scene.json": "jostle run small.json -o my-scene.h5",
+    "jostle run mine.json": "jostle run small.json -o mine.h5",
+    "jostle run bell.json": "jostle info bell.h5",
+    "jostle run scene.json --retry-failed": "jostle run scene.json -o retried.h5 --retry-failed",
     "jostle check my-scene.json": "jostle check my-scene.json --no-pilot",
     "jostle cost scene.json": "jostle cost scene.json --replicates 2",
     "jostle cost scene.json --target 0.001 --observable bottom_fraction":
