@@ -29,9 +29,9 @@ def resolved(schema):
 
 
 def variants(schema):
-    """What a value may be, one schema a kind."""
+    """The alternatives of a value, one schema per kind; alternatives that only require keys are one kind."""
     for key in ("anyOf", "oneOf"):
-        if key in schema:
+        if any(set(part) != {"required"} for part in schema.get(key, [])):
             return [one for part in schema[key] for one in variants(resolved(part))]
     return [schema]
 

@@ -127,7 +127,7 @@ constexpr std::tuple snapshot_fields{
     field("contact_cut", &SnapshotChoice::contact_cut, Number{between(1, 3), "diameters"},
           "Centres within this distance count as neighbours"),
     field("bin_width", &SnapshotChoice::bin_width, Number{between(0.001, 10), "diameters"},
-          "Of the height histogram")};
+          "Width of bins of height: height histogram and granular temperatures")};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 """What the documents must keep to: one version everywhere, an index of every page, links that lead somewhere."""
 
+import json
 import os
 import pathlib
 import re
@@ -57,6 +58,19 @@ class Documents(unittest.TestCase):
         made = subprocess.run([sys.executable, SOURCE / "config/scene_reference.py", "--check"],
                               input=schema.decode(), capture_output=True, text=True)
         self.assertEqual((made.returncode, made.stderr), (0, ""))
+
+    def test_the_scene_reference_has_every_key_of_the_schema(self):
+        def keys(schema):
+            if isinstance(schema, list):
+                return {key for part in schema for key in keys(part)}
+            if not isinstance(schema, dict):
+                return set()
+            return set(schema.get("properties", {})) | {key for part in schema.values() for key in keys(part)}
+
+        schema = subprocess.run([os.environ["JOSTLE"], "schema"], capture_output=True, check=True).stdout
+        rows = re.findall(r"(?m)^\| `([^`]*)` \|", (SOURCE / "docs/reference/scene-keys.md").read_text())
+        named = {row.split("/")[-1].removesuffix("[]") for row in rows}
+        self.assertEqual(sorted(keys(json.loads(schema)) - named), [])
 
     def test_links_lead_somewhere(self):
         wrong, n = [], 0
