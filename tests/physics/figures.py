@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the reduced scenes of the papers' figures and judges what came out in docs/physics-results.md.
+"""Runs the reduced scenes of the papers' figures and judges what came out in docs/validation.md.
 
 figures.py JOSTLE FOLDER PAGE [--hours H] [FIGURE ...]: results are kept in FOLDER, and a finished
 one is not run again. After H hours the run under way stops, and the next call goes on with it.

@@ -1,4 +1,4 @@
-"""Numbers and tables as docs/physics-results.md has them."""
+"""Numbers and tables as docs/validation.md has them."""
 import numpy as np
 
 from verdicts import AGREES, Estimate, Statement, judge, p_text

@@ -1,4 +1,4 @@
-"""Verdicts of docs/physics-results.md are right as often as they say, at the smallest ensembles."""
+"""Verdicts of docs/validation.md are right as often as they say, at the smallest ensembles."""
 import os
 import pathlib
 

@@ -1,0 +1,82 @@
+"""The published figures: what a page says of each, beside its statements (claims_pb.py, claims_dr.py)."""
+import dataclasses
+
+PB, DR = "philippe-bideau-2001", "rosato-dybenko-2010"
+
+
+@dataclasses.dataclass(frozen=True)
+class Figure:
+    title: str
+    runs: tuple        # names of ./dev physics, the first is the figure's own
+    scene: str         # full size, or what stands for it
+    size: str
+    taps: str
+    realizations: str  # here / the paper's
+    key: str           # index or words of the key statement
+    silence: str       # what was read into the paper's silence
+
+
+WALLS = "Sides are walls, eta = 1e-5 and a test every 100 sweeps end a relaxation: the paper prints neither."
+LIFT = "The bulk window, the first step and its reset are not printed."
+GRAIN = "K1, column, window and the diameter (0.02 m) are not printed."
+
+FIGURES = {
+    "pb2": Figure("PB 2: Phi_b against taps", ("pb2",), f"{PB}/fig2", "1024 (4096)", "10 000", "4 / 10",
+                  "growth is slower for smaller eps: gain of 100 taps", WALLS),
+    "pb3": Figure("PB 3: spectrum and sigma_Z of the mean height", ("pb3",), f"{PB}/fig3", "1024 (4096)", "12 000", "4 / -",
+                  "the spectrum falls as f^-s, s from 1 to 1.5: at eps^(1/2) = 0.30", WALLS +
+                  " Strengths and taps are ours."),
+    "pb4": Figure("PB 4: bell and branches", ("pb4-bell", "pb4-hysteresis", "pb4-turns", "pb4-eta"),
+                  f"{PB}/fig4-bell", "1024 (4096)", "4000; 1000 a step", "4 / 10",
+                  "its maximum lies between 0.1 and 0.2", WALLS + " Steps of the branches are 0.05 for 0.025."),
+    "pb5": Figure("PB 5: ageing", ("pb5",), f"{PB}/fig5", "1024 (4096)", "2000", "48 / 10",
+                  "A falls with age, 30 to 100 taps, lag 100", WALLS + " Strength and ages are ours."),
+    "pb6": Figure("PB 6: vertical profile", ("pb6-8",), f"{PB}/fig6-8", "4096", "1000 (4000)", "4 / 10",
+                  "density falls upward (alpha > 0)", WALLS),
+    "pb7": Figure("PB 7: transverse profile", ("pb6-8", "pb6-8-periodic"), f"{PB}/fig6-8", "4096", "1000 (4000)",
+                  "4 / 10", "layers at the walls: third gap", WALLS),
+    "pb8": Figure("PB 8: lateral and central increase", ("pb6-8",), f"{PB}/fig6-8", "4096", "1000 (4000)",
+                  "4 / 10", "the central increase is below the lateral, tap 1000",
+                  WALLS + " The four strengths are ours."),
+    "pb9": Figure("PB 9: P0(sigma)", ("pb9",), f"{PB}/fig9", "4096", "400 (4000)", "3 / 1",
+                  "Phi = 58.4 % at the start", "The strength (0.02) is ours; \"hardly\" and \"near\" are read as 0.03."),
+    "pb10": Figure("PB 10: pores", ("pb10",), f"{PB}/fig10", "4096", "9999", "3 / 1",
+                   "the tail shrinks (v0 falls)", "Pores are Voronoi vertices in the box; the count by four centres "
+                   "in the box waits for the next run."),
+    "pb-moves": Figure("PB sec. II: settings of the move", ("pb-moves",), f"{PB}/reduced/moves", "4096", "30",
+                       "3 / -", "theta_0 = pi/4 compacts most", "Strength, taps and the margin of 0.002 are ours."),
+    "pb-sides": Figure("PB text: walls or periodic", ("pb-sides", "pb-widths"), f"{PB}/reduced/sides",
+                       "1024 (4096)", "300", "12 / -",
+                       "fig. 4, periodic: Phi_c is largest at an intermediate strength (here: after 300 taps)", WALLS),
+    "dr2": Figure("DR 2: lift or dilation", ("dr2-wide", "dr2", "dr-shakes", "dr-widths"), f"{DR}/fig2",
+                  "3456, 1536", "1500; 350", "4, 8 / 20", "the lift densifies faster, 12 d, tap 1500", LIFT),
+    "dr3": Figure("DR 3: neighbours against Phi", ("dr3",), f"{DR}/fig6", "3456", "600", "4 / 20",
+                  "N_c rises with Phi", LIFT),
+    "dr4": Figure("DR 4: densities at five lifts", ("dr4",), f"{DR}/fig4", "1536 (3456)", "400 (10 000)", "3 / 20",
+                  "that lift is near 0.25 to 0.3 (0.05)", LIFT),
+    "dr5": Figure("DR 5: from a crystal", ("dr5",), f"{DR}/fig5", "1600 (3456)", "500 (10 000)", "4 / 20",
+                  "at about the lift of fig. 4 (0.2 to 0.35)", LIFT),
+    "dr6": Figure("DR 6: n(y/d) and densities", ("dr6-windows", "dr6", "dr6-published", "dr6-readings"),
+                  f"{DR}/reduced/fig6-windows", "3456", "250; 600 (90 000)", "20, 4 / 20",
+                  "rho = 0.597 after 250 taps, 0 to 15 d", "The fraction is that from the floor to 15 d. This window "
+                  "and a first step of 0.2 d were chosen on other beds by the printed 0.567, 0.578 and 0.597; the beds "
+                  "here have a seed of their own and test them. The stop of a relaxation watches the middle 60 % of the "
+                  "spheres. With a stop that watches 0 to 15 d beds loosen; without the state right after the tap "
+                  "they reach 0.583 after 250 taps."),
+    "dr7": Figure("DR 7: pours against friction", ("dr7-9", "dr7-columns"), f"{DR}/fig7-9", "3456", "0", "4 / 20",
+                  "0.6088 +- 0.0035 at a friction of 0.1 (its range)", GRAIN + " Here K1 = 1e5 N/m, column 0.2, the "
+                  "middle 60 %; 0.005 is the spread of published random packings."),
+    "dr8": Figure("DR 8: neighbours", ("dr7-9",), f"{DR}/fig7-9", "3456", "0", "4 / 20",
+                  "mean of the neighbours 7.27 +- 0.06", GRAIN + " The cut is 1.05 d, the middle of the bed."),
+    "dr10": Figure("DR 10: Phi at Gamma = 2", ("dr10-14",), f"{DR}/fig10", "1728 (3456)", "200 (898)", "4 / 20",
+                   "Phi = 0.609 at the start (0.0035)", GRAIN),
+    "dr11": Figure("DR 11: Phi at Gamma = 0.5", ("dr10-14",), f"{DR}/fig10", "1728 (3456)", "200 (898)", "4 / 20",
+                   "almost nothing at Gamma = 0.5 (0.0091, a tenth of the gain at 2)", GRAIN),
+    "dr13": Figure("DR 12 to 14: layers", ("dr10-14",), f"{DR}/fig10", "1728 (3456)", "200 (898)", "4 / 20",
+                   "layers grow from the floor at Gamma = 2: the third, tap 100", GRAIN),
+    "dr15": Figure("DR 15: improvement over (a/d, f)", ("dr15",), f"{DR}/fig15", "820 (8000)", "2 s", "3 / -",
+                   "the improvement is at most about 5 % (5.5 %)", GRAIN + " The time of vibration is ours."),
+    "both-engines": Figure("Both engines on the same beds (ours)", ("both-engines",), "both-engines", "768", "30",
+                           "6 / -", "", "No figure of a paper; outside the score."),
+}
+NO_DATA = "PB 1 is a sketch. DR 1 and 9 have no statement that is tested; no snapshot of 90 000 taps is at hand."

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Stores what runs found as small CSV files, from which docs/validation is made on any machine.
+
+reduce.py sections PAGE FOLDER: the tables of a page of figures.py, one folder per run.
+reduce.py series FILE FOLDER OBSERVABLE ...: series of a results file at log-spaced taps, per realization."""
+import csv
+import hashlib
+import json
+import pathlib
+import re
+import sys
+
+from pictures import tables_of
+
+HERE = pathlib.Path(__file__).resolve().parent
+REDUCED = HERE / "reduced"
+NOTES = {"about": r"`\./dev physics [^`]*`, (.*?)\n\n", "here": r"\*\*Here\*\*: (.*?) \*\*The paper",
+         "paper": r"\*\*The paper\*\*: (.*?)(?: \*\*Full size|\n\n)", "remark": r"\*\*Remark\*\*: (.*)"}
+VERDICTS = "statement of the paper"
+
+
+def write_table(path, header, rows):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([header, *rows])
+
+
+def read_table(path):
+    with path.open(newline="") as file:
+        return list(csv.reader(file))
+
+
+def reduce_sections(page, folder):
+    """Writes the tables of each section: statements.csv (found numbers and tests) and 1.csv, 2.csv, ..."""
+    for part in re.split(r"^## ", page.read_text(), flags=re.M)[1:]:
+        name, text = part.split("\n", 1)
+        notes = {key: found[1].strip() if (found := re.search(pattern, text, re.S)) else ""
+                 for key, pattern in NOTES.items()}
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        kept = folder / name / "notes.json"
+        if not notes["remark"] and kept.exists():  # a remark is written by hand
+            notes["remark"] = json.loads(kept.read_text())["remark"]
+        kept.write_text(json.dumps(notes, indent=1) + "\n")
+        number = 0
+        for header, *rows in tables_of(text):
+            if header[0] == VERDICTS:
+                write_table(folder / name / "statements.csv", ["statement", "found", "test"],
+                            [row[:3] for row in rows])
+            else:
+                number += 1
+                write_table(folder / name / f"{number}.csv", header, rows)
+
+
+def text_of(dataset):
+    value = dataset[()]
+    value = value.flat[0] if hasattr(value, "flat") else value
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def taps_to_keep(last):
+    """0 to 5 and then about eight taps per decade, the taps that the papers print, and the last."""
+    spaced = {round(10**(k / 8)) for k in range(60)} | {50, 100, 200, 250, 400, 800, 898, 1000}
+    return [tap for tap in sorted({0, 1, 2, 3, 4, 5, last} | spaced) if tap <= last]
+
+
+def reduce_series(path, folder, observables):
+    """Writes series.csv (one row per point, realization and tap) and scene.csv with the origin."""
+    import h5py
+    with h5py.File(path) as file:
+        rows = []
+        for point, group in enumerate(file["observables"][name] for name in sorted(file["observables"])):
+            columns = [group[name][:] for name in observables]
+            for realization in range(columns[0].shape[1]):
+                rows += [[point, realization, tap, *(f"{column[tap, realization]:.5f}" for column in columns)]
+                         for tap in taps_to_keep(len(columns[0]) - 1)]
+        labels = [label.decode() for label in file["sweep/label"][:]]
+        scene = text_of(file["scene/verbatim"])
+        origin = [["sha256 of the scene", hashlib.sha256(scene.encode()).hexdigest()],
+                  ["revision", text_of(file["provenance/git_revision"])],
+                  ["version", text_of(file["provenance/version"])],
+                  ["run", str(file["provenance"].attrs["run_id"])]]
+        histograms = []
+        if "snapshots" in file and "height_histogram" in file["snapshots/point_0000"]:
+            for point in sorted(file["snapshots"]):
+                group = file["snapshots"][point]
+                for tap, mean in zip(group["tap"][:], group["height_histogram"][:].mean(axis=1)):
+                    histograms += [[int(point[-4:]), int(tap), f"{z:.2f}", f"{share:.5f}"]
+                                   for z, share in zip(group["height"][:], mean) if share > 0]
+    write_table(folder / "series.csv", ["point", "realization", "tap", *observables], rows)
+    write_table(folder / "origin.csv", ["key", "value"], origin + [[f"point {k}", label] for k, label in enumerate(labels)])
+    if histograms:
+        write_table(folder / "heights.csv", ["point", "tap", "height", "share"], histograms)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "sections":
+        reduce_sections(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
+    else:
+        reduce_series(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:])

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Writes docs/validation.md, docs/validation/*.md and their figures from tests/physics/reduced.
+
+validation.py [DOCS]: into DOCS, docs of this project by default."""
+import json
+import pathlib
+import re
+import sys
+import textwrap
+
+from drawings import draw_figure, draw_overview
+from page_text import table
+from published import FIGURES, NO_DATA
+from reduce import REDUCED
+from scores import (DECIDED, STATUS, all_scores, counts, false_discoveries, p_text, status_of_figure)
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LONG = 118
+
+
+def wrapped(text):
+    return "\n".join(textwrap.wrap(text, LONG, break_long_words=False, break_on_hyphens=False))
+
+
+def verdicts(scores):
+    """The table of statements, tests and status words."""
+    rows = []
+    for s in scores:
+        marks = " (post hoc)" * s.claim.post_hoc + (" (reduced)" if not s.claim.full else "")
+        found = s.found if len(s.found) < 70 else s.found[:67].rsplit(" ", 1)[0] + " ..."
+        rows.append([s.claim.text + marks, found.replace("|", "/"), s.test, p_text(s.p), f"**{s.status}**"])
+    return table(["statement", "found", "test", "p", "status"], rows)
+
+
+def notes_of(run):
+    path = REDUCED / run / "notes.json"
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def origin_of(run):
+    path = REDUCED / run / "origin.csv"
+    if not path.exists():
+        return "only the printed numbers of this run survive; its scene's checksum and revision are not known"
+    values = dict(line.split(",", 1) for line in path.read_text().splitlines())
+    return f"scene SHA-256 {values['sha256 of the scene'][:16]}..., revision {values['revision']}"
+
+
+def page_of(name, figure, scores):
+    own = [s for s in scores if s.claim.own]
+    papers = [s for s in scores if not s.claim.own]
+    parts = [f"# {figure.title}", "[All figures](../validation.md)", f"![{figure.title}]({name}.svg)",
+             wrapped(f"Black circles are the paper's printed numbers. Status: **{status_of_figure(scores)}**."
+                     if papers else "This comparison is outside the score.")]
+    if papers:
+        parts += ["## The paper's statements", verdicts(papers)]
+    parts += ["## Readings", wrapped(figure.silence)]
+    if own:
+        parts += ["## Own questions, outside the score", verdicts(own)]
+    parts += ["## Runs", f"Scene: [{figure.scene}](../../config/scenes/{figure.scene}.json)"]
+    for run in figure.runs:
+        notes = notes_of(run)
+        command = f"`./dev physics {run}`" if run != "dr6-windows" else \
+            "`jostle run config/scenes/rosato-dybenko-2010/reduced/fig6-windows.json`"
+        lines = [f"- {command}: {notes.get('here', '3456 spheres in 12 x 12 d, 250 taps, 20 realizations.')}"]
+        lines.append(f"  Reduced data: [{run}](../../tests/physics/reduced/{run}); {origin_of(run)}.")
+        parts.append("\n".join("\n".join(textwrap.wrap(line, LONG, subsequent_indent="  ", initial_indent=""))
+                               for line in lines))
+    remarks = [(run, notes_of(run)["remark"]) for run in figure.runs if notes_of(run).get("remark")]
+    if remarks:
+        parts.append("## Remarks on the runs")
+        parts += [wrapped(f"**{run}**: " + without_links(remark)) for run, remark in remarks]
+    return "\n\n".join(parts) + "\n"
+
+
+def without_links(text):
+    return re.sub(r"\[([^\]]*)\]\(#[^)]*\)", r"\1", text)
+
+
+HEAD = """# Validation: the published figures
+
+Each row compares a figure of PB (Philippe and Bideau, Phys. Rev. E 63, 051304, 2001) or DR (Rosato et al.,
+Phys. Rev. E 81, 061301, 2010) with runs of this program. a(b): b is the standard error in the last digits.
+`tests/physics/validation.py` makes these pages from [reduced data](../tests/physics/reduced) in seconds.
+"""
+WORDS = """A statement is *reproduced* if its test at 5 % shows it, and *not reproduced* if the test rejects it.
+*Compatible*: a test that can only reject, with 80 % power for the stated difference, did not. *Qualitatively*: the sign
+of a change is found, the printed size is rejected; for a figure, at most half of its decided statements fail.
+*Underpowered*: the data decide nothing. Margins and contrasts are stated in each row; those chosen after a look at
+the data are marked post hoc.
+"""
+
+
+def overview_page(scores):
+    found = counts(scores)
+    total = sum(found.values())
+    decided = sum(found[word] for word in DECIDED)
+    kept, tested, expected = false_discoveries([s for s in scores if not s.claim.own])
+    rows = []
+    for name, figure in FIGURES.items():
+        mine = [s for s in scores if s.claim.figure == name]
+        papers = [s for s in mine if not s.claim.own]
+        if not papers:
+            continue
+        key = next(s for s in papers if s.claim.text == figure.key)
+        known = [s for s in papers if s.status in DECIDED]
+        value = key.found if len(key.found) < 40 else key.found[:36].rsplit(" ", 1)[0] + " ..."
+        thumbnail = f'<img src="validation/{name}.svg" width="120" alt="{figure.title}">'
+        rows.append([f"[{figure.title}](validation/{name}.md)", thumbnail, figure.size, figure.taps, figure.realizations,
+                     f"{key.claim.text}: {value}", f"{len(known)} of {len(papers)}", f"**{status_of_figure(mine)}**"])
+    scoreboard = ", ".join(f"{found[word]} {word}" for word in STATUS)
+    parts = [HEAD.strip(), wrapped(f"**{decided} of {total} statements are decided ({100 * decided / total:.0f} %)**: "
+                                   f"{scoreboard}."), "![Overview of all statements](validation/overview.svg)",
+             table(["figure", "drawn", "spheres (paper)", "taps (paper)", "M here / paper", "key statement: found",
+                    "decided", "status"], rows), WORDS.strip(),
+             wrapped(f"Of {tested} statements decided by a p-value {kept} remain with the false discovery rate held at 5 % "
+                     "(Benjamini and Hochberg 1995); testing each at 5 % makes "
+                     f"at most {100 * expected:.0f} % of the decisions false, if every tested statement were undecidable."),
+             wrapped("The runs of most figures are no longer at hand: their reduced data are the numbers that an earlier "
+                     "page printed (means and errors over realizations). DR 6 has series per realization. " + NO_DATA),
+             "Not scored: [both engines on the same beds](validation/both-engines.md)."]
+    return "\n\n".join(parts) + "\n"
+
+
+def main(docs):
+    scores = all_scores()
+    folder = docs / "validation"
+    folder.mkdir(parents=True, exist_ok=True)
+    names = [name for name in FIGURES if any(s.claim.figure == name and not s.claim.own for s in scores)]
+    draw_overview(scores, names, folder / "overview.svg")
+    for name, figure in FIGURES.items():
+        draw_figure(name, folder / f"{name}.svg")
+        (folder / f"{name}.md").write_text(page_of(name, figure, [s for s in scores if s.claim.figure == name]))
+    (docs / "validation.md").write_text(overview_page(scores))
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs")
