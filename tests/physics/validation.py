@@ -60,7 +60,7 @@ def page_of(name, figure, scores):
     for run in figure.runs:
         notes = notes_of(run)
         command = f"`./dev physics {run}`" if run != "dr6-windows" else \
-            "`jostle run config/scenes/rosato-dybenko-2010/reduced/fig6-windows.json`"
+            "the scene above, by `jostle run`"
         lines = [f"- {command}: {notes.get('here', '3456 spheres in 12 x 12 d, 250 taps, 20 realizations.')}"]
         lines.append(f"  Reduced data: [{run}](../../tests/physics/reduced/{run}); {origin_of(run)}.")
         parts.append("\n".join("\n".join(textwrap.wrap(line, LONG, subsequent_indent="  ", initial_indent=""))
