@@ -111,34 +111,34 @@ set(JOSTLE_PUBLIC_HEADERS
     structure/voids/voronoi.hpp
     study/available_cpus.hpp
     study/bad_input.hpp
-    study/cluster/job_plan.hpp
-    study/cluster/shards.hpp
-    study/cost/cost_run.hpp
-    study/cost/cost_study.hpp
-    study/cost/pilot.hpp
-    study/cost/scene_pilot.hpp
-    study/merge.hpp
-    study/observable_series.hpp
+    study/drawing/page/page.hpp
+    study/planning/cost_run.hpp
+    study/planning/cost_study.hpp
+    study/planning/job_plan.hpp
+    study/planning/pilot.hpp
+    study/planning/scene_pilot.hpp
+    study/planning/shards.hpp
     study/provenance.hpp
-    study/report/page.hpp
     study/results_input.hpp
-    study/run.hpp
-    study/scenes/scene_file.hpp
-    study/scenes/scene_tables.hpp
-    study/scenes/scene_warnings.hpp
+    study/running/merge.hpp
+    study/running/run.hpp
+    study/running/scene_file.hpp
+    study/running/scene_tables.hpp
+    study/running/scene_warnings.hpp
+    study/running/self_checks.hpp
     study/seconds.hpp
-    study/self_checks.hpp
     study/tables/analyse.hpp
-    study/tables/derived_value.hpp
     study/tables/fit_source.hpp
     study/tables/fits.hpp
-    study/tables/half_widths.hpp
     study/tables/laws/own_law.hpp
     study/tables/measured/curve_columns.hpp
     study/tables/measured/curve_file.hpp
     study/tables/measured/delimited_text.hpp
     study/tables/motion.hpp
+    study/tables/observable_series.hpp
+    study/tables/points/derived_value.hpp
+    study/tables/points/half_widths.hpp
+    study/tables/points/sweep.hpp
     study/tables/structure.hpp
-    study/tables/sweep.hpp
     study/tables/target_precision.hpp
     study/version.hpp)

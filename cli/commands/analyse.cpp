@@ -20,7 +20,7 @@
 #include "study/provenance.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/motion.hpp"
-#include "study/tables/sweep.hpp"
+#include "study/tables/points/sweep.hpp"
 
 namespace jostle::inline cli {
 

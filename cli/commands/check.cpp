@@ -20,10 +20,10 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
-#include "study/cost/scene_pilot.hpp"
-#include "study/scenes/grain_summary.hpp"
-#include "study/scenes/scene_file.hpp"
-#include "study/scenes/scene_warnings.hpp"
+#include "study/planning/scene_pilot.hpp"
+#include "study/running/grain_summary.hpp"
+#include "study/running/scene_file.hpp"
+#include "study/running/scene_warnings.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
 #include "study/available_cpus.hpp"
-#include "study/cost/cost_run.hpp"
+#include "study/planning/cost_run.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

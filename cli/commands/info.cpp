@@ -18,7 +18,7 @@
 #include "results/live_run.hpp"
 #include "results/results_file.hpp"
 #include "study/amounts.hpp"
-#include "study/scenes/stored_scene.hpp"
+#include "study/running/stored_scene.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -15,10 +15,10 @@
 #include "results/merge.hpp"
 #include "study/available_cpus.hpp"
 #include "study/bad_input.hpp"
-#include "study/cluster/shards.hpp"
-#include "study/merge.hpp"
+#include "study/planning/shards.hpp"
 #include "study/provenance.hpp"
-#include "study/scenes/scene_tables.hpp"
+#include "study/running/merge.hpp"
+#include "study/running/scene_tables.hpp"
 
 namespace jostle::inline cli {
 namespace {

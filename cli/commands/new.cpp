@@ -17,7 +17,7 @@
 #include "results/checkpoints/output_path.hpp"
 #include "results/export/input_file.hpp"
 #include "study/provenance.hpp"
-#include "study/scenes/scene_file.hpp"
+#include "study/running/scene_file.hpp"
 
 namespace jostle::inline cli {
 namespace {

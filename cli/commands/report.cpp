@@ -12,8 +12,8 @@
 #include "results/results_file.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
+#include "study/drawing/page/page.hpp"
 #include "study/provenance.hpp"
-#include "study/report/page.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -31,9 +31,9 @@
 #include "study/available_cpus.hpp"
 #include "study/number_text.hpp"
 #include "study/provenance.hpp"
-#include "study/run.hpp"
-#include "study/scenes/scene_warnings.hpp"
-#include "study/scenes/stored_scene.hpp"
+#include "study/running/run.hpp"
+#include "study/running/scene_warnings.hpp"
+#include "study/running/stored_scene.hpp"
 
 namespace jostle::inline cli {
 namespace {

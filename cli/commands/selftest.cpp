@@ -7,7 +7,7 @@
 #include "results/checkpoints/scratch_folder.hpp"
 #include "results/error.hpp"
 #include "study/bad_input.hpp"
-#include "study/self_checks.hpp"
+#include "study/running/self_checks.hpp"
 
 namespace jostle::inline cli {
 namespace {

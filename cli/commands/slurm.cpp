@@ -19,8 +19,8 @@
 #include "results/checkpoints/output_path.hpp"
 #include "results/export/printable.hpp"
 #include "results/slurm_job.hpp"
-#include "study/cluster/job_plan.hpp"
-#include "study/cost/scene_pilot.hpp"
+#include "study/planning/job_plan.hpp"
+#include "study/planning/scene_pilot.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

@@ -14,7 +14,7 @@
 #include "results/export/input_file.hpp"
 #include "study/available_cpus.hpp"
 #include "study/provenance.hpp"
-#include "study/scenes/scene_file.hpp"
+#include "study/running/scene_file.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/structure.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/json/json.hpp"
-#include "study/figures/catalogue.hpp"
+#include "study/drawing/figures/catalogue.hpp"
 
 namespace jostle::inline cli {
 

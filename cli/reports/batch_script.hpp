@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "study/cluster/job_plan.hpp"
+#include "study/planning/job_plan.hpp"
 
 namespace jostle::inline cli {
 

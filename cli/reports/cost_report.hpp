@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/tables/layout.hpp"
-#include "study/cost/cost_study.hpp"
+#include "study/planning/cost_study.hpp"
 
 namespace jostle::inline cli {
 

@@ -12,8 +12,8 @@
 #include "results/checkpoints/output_path.hpp"
 #include "results/error.hpp"
 #include "results/export/printable.hpp"
-#include "study/figures/figures.hpp"
-#include "study/report/study_words.hpp"
+#include "study/drawing/drawn/study_words.hpp"
+#include "study/drawing/figures/figures.hpp"
 #include "study/results_input.hpp"
 
 namespace jostle::inline cli {

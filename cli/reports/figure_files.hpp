@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "results/results_file.hpp"
-#include "study/figures/catalogue.hpp"
+#include "study/drawing/figures/catalogue.hpp"
 #include "study/tables/fits.hpp"
 
 namespace jostle::inline cli {

@@ -5,8 +5,8 @@
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/python_plot.hpp"
-#include "study/figures/figures.hpp"
-#include "study/report/measured_page.hpp"
+#include "study/drawing/figures/figures.hpp"
+#include "study/drawing/page/measured_page.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/value_text.hpp"
 #include "study/amounts.hpp"
-#include "study/report/thinning.hpp"
+#include "study/drawing/drawn/thinning.hpp"
 
 namespace jostle::inline cli {
 namespace {

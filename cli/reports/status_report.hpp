@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/json/json.hpp"
-#include "study/cluster/shards.hpp"
+#include "study/planning/shards.hpp"
 
 namespace jostle::inline cli {
 

@@ -12,7 +12,7 @@
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "fitting/value_text.hpp"
-#include "study/tables/half_widths.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/tables/layout.hpp"
-#include "study/scenes/scene_tables.hpp"
+#include "study/running/scene_tables.hpp"
 
 namespace jostle::inline cli {
 

@@ -11,7 +11,7 @@
 #include "results/export/printable.hpp"
 #include "study/provenance.hpp"
 #include "study/results_input.hpp"
-#include "study/run.hpp"
+#include "study/running/run.hpp"
 
 namespace jostle::inline cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/terminal/clock_thread.hpp"
-#include "study/run.hpp"
+#include "study/running/run.hpp"
 
 namespace jostle::inline cli {
 

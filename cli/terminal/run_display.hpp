@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/terminal/progress_display.hpp"
-#include "study/run.hpp"
+#include "study/running/run.hpp"
 
 namespace jostle::inline cli {
 

@@ -6,7 +6,7 @@
 
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/run.hpp"
-#include "study/scenes/scene_file.hpp"
+#include "study/running/scene_file.hpp"
 #include "study/tables/fits.hpp"
 
 /// Keeps the first observable of every realization, tap after tap.

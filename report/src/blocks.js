@@ -1,4 +1,4 @@
-// Sections of blocks, which the program describes (study/report/sections/): what each kind looks like.
+// Sections of blocks, which the program describes (study/drawing/page/sections/): what each kind looks like.
 import {chooser, dataTable, element} from "./dom.js";
 import {packingPanel} from "./packing/panel.js";
 import {written} from "./typeset.js";

@@ -1,4 +1,4 @@
-// Draws a panel of the catalogue (study/figures/catalogue.hpp): series with errors on axes that know taps.
+// Draws a panel of the catalogue (study/drawing/figures/catalogue.hpp): series with errors on axes that know taps.
 import * as Plot from "@observablehq/plot";
 import {nice, ticks as ticksOf} from "d3-array";
 import {element} from "./dom.js";

@@ -12,9 +12,9 @@
 #include "ensemble/analysis/hysteresis.hpp"
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
-#include "study/scenes/point_scenes.hpp"
-#include "study/tables/ordering.hpp"
-#include "study/tables/over_points.hpp"
+#include "study/tables/points/ordering.hpp"
+#include "study/tables/points/over_points.hpp"
+#include "study/tables/points/point_scenes.hpp"
 
 namespace jostle::inline study {
 

@@ -10,7 +10,7 @@
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/results_file.hpp"
-#include "study/observable_series.hpp"
+#include "study/tables/observable_series.hpp"
 
 namespace jostle::inline study {
 

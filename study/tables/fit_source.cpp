@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/observable_series.hpp"
+#include "study/tables/observable_series.hpp"
 
 namespace jostle::inline study {
 

@@ -7,8 +7,8 @@
 #include "config/json/json_text.hpp"
 #include "ensemble/analysis/memory/memory.hpp"
 #include "study/bad_input.hpp"
-#include "study/observable_series.hpp"
-#include "study/tables/over_points.hpp"
+#include "study/tables/observable_series.hpp"
+#include "study/tables/points/over_points.hpp"
 
 namespace jostle::inline study {
 

@@ -13,10 +13,10 @@
 #include "ensemble/protocol_steps.hpp"
 #include "results/file/layout.hpp"
 #include "study/bad_input.hpp"
-#include "study/observable_series.hpp"
 #include "study/tables/analyse.hpp"
-#include "study/tables/over_points.hpp"
-#include "study/tables/sweep.hpp"
+#include "study/tables/observable_series.hpp"
+#include "study/tables/points/over_points.hpp"
+#include "study/tables/points/sweep.hpp"
 
 namespace jostle::inline study {
 

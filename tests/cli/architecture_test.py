@@ -22,6 +22,10 @@ MAY_INCLUDE = {
             "cli"},
 }
 
+# The rooms of study, and the rooms that each may include; its root holds what all of them use.
+STUDY_MAY_INCLUDE = {"tables": set(), "running": {"tables"}, "drawing": {"tables", "running"},
+                     "planning": {"tables", "running"}}
+
 # What else only some may see.
 RESERVED = {
     r"hdf5|H5\w*\.h": {"results"},
@@ -76,6 +80,19 @@ class Architecture(unittest.TestCase):
     def test_own_headers_are_named_from_the_root_and_follow_the_arrows(self):
         wrong = [f"{file} includes {name}" for file, quote, name in includes()
                  if quote == '"' and name.split("/")[0] not in MAY_INCLUDE[file.parts[0]]]
+        self.assertEqual(wrong, [])
+
+    def test_rooms_of_study_follow_their_arrows(self):
+        rooms = {path.name for path in (SOURCE / "study").iterdir() if path.is_dir()}
+        self.assertEqual(rooms, set(STUDY_MAY_INCLUDE))
+        wrong = []
+        for file, quote, name in includes():
+            target = pathlib.PurePath(name).parts
+            if quote != '"' or file.parts[0] != "study" or target[0] != "study" or len(target) < 3:
+                continue
+            room = file.parts[1] if len(file.parts) > 2 else "the root"
+            if target[1] not in STUDY_MAY_INCLUDE.get(room, set()) | {room}:
+                wrong.append(f"{file} includes {name}")
         self.assertEqual(wrong, [])
 
     def test_every_type_is_defined_once(self):

@@ -20,7 +20,7 @@ FOR_PROGRAMS_TO_READ = ("nan", "inf", "-inf")
 NOT_STATED = "a number of it is not finite"
 
 # Who writes numbers for programs, or is the formatter.
-FOR_PROGRAMS = {"study/figures/catalogue.cpp", "study/report/page_json.cpp",
+FOR_PROGRAMS = {"study/drawing/figures/catalogue.cpp", "study/drawing/page/page_json.cpp",
                 "config/grids.cpp", "ensemble/statistics/finite_text.hpp"}
 LIBRARIES = ("ensemble", "config", "results", "study", "cli")
 # A format of a floating number within a literal: {:.2g}, {:+.1f}, {:>8.3e}.

@@ -198,7 +198,7 @@ class Sources(Case):
         "results/hdf5/child_process.cpp": "/dev/null",
         "results/hdf5/writable_file.cpp": "a TemporaryFile, which is there",
         "results/slurm_job.cpp": "/dev/null",
-        "study/self_checks.cpp": "a file of its own in a scratch folder",
+        "study/running/self_checks.cpp": "a file of its own in a scratch folder",
     }
 
     def sources(self):

@@ -1,4 +1,4 @@
-#include "study/scenes/scene_file.hpp"
+#include "study/running/scene_file.hpp"
 #include "study/tables/measured/curve_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

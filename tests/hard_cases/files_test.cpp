@@ -6,7 +6,7 @@
 #include "results/export/packing_file.hpp"
 #include "results/live_run.hpp"
 #include "results/tables.hpp"
-#include "study/scenes/scene_file.hpp"
+#include "study/running/scene_file.hpp"
 #include "study/tables/measured/curve_file.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/engine/sample_packings.hpp"

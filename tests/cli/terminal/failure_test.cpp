@@ -5,7 +5,7 @@
 
 #include "cli/terminal/standard_streams.hpp"
 #include "results/error.hpp"
-#include "study/run.hpp"
+#include "study/running/run.hpp"
 
 using namespace jostle;
 

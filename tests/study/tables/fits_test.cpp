@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "config/scene.hpp"
-#include "study/tables/derived_value.hpp"
+#include "study/tables/points/derived_value.hpp"
 #include "tests/fitting/noise.hpp"
 
 using namespace jostle;

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ensemble/statistics/finite_text.hpp"
+#include "study/drawing/figures/builders.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+bool is_any_finite(const std::vector<double>& values) {
+  return std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
+}
+
+/// Names of the columns that any sweep point has of the wanted kind.
+template <class Wanted>
+std::vector<std::string> names_of(const DrawnFile& file, Wanted wanted) {
+  std::vector<std::string> names;
+  for (const DrawnCurve& curve : file.curves()) {
+    for (const DrawnColumn& column : curve.columns) {
+      if (!wanted(column) || !is_any_finite(column.mean)) continue;
+      if (std::ranges::find(names, column.label.name) == names.end()) {
+        names.push_back(column.label.name);
+      }
+    }
+  }
+  return names;
+}
+
+enum class Shows { mean, sigma };
+
+std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string& name,
+                                        Shows shows) {
+  std::vector<FigureSeries> series;
+  for (const ShownPoint& point : file.shown_points()) {
+    const DrawnCurve& curve = *file.curve(point.number);
+    FigureSeries one{.name = point.label, .colour = point.colour, .point = point.number};
+    for (const DrawnColumn& column : curve.columns) {
+      if (column.label.name != name) continue;
+      const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
+      one.rows = shows == Shows::mean ? rows_of(taps, column.mean, column.error)
+                                      : rows_of(taps, column.sigma);
+    }
+    series.push_back(std::move(one));
+  }
+  return series;
+}
+
+void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
+  const Column& label = file.column(name)->label;
+  const std::string errors = file.n_realizations() > 1
+                                 ? "the band is the standard error of the mean over realizations"
+                                 : "of one realization, without an error";
+  add_panel(file, std::nullopt,
+            {.title = sentence(words(name)),
+             .caption = fmt::format(
+                 "{}, against the number of taps; {}. Tap 0 is the starting packing.",
+                 sentence(label.long_name.empty() ? words(name) : label.long_name), errors),
+             .source = label.source == "jostle" ? "" : label.source,
+             .x = file.tap_axis(),
+             .y = {axis_label(name, label.units)},
+             .series = column_series(file, name, Shows::mean)},
+            into);
+}
+
+}  // namespace
+
+void add_compaction(const DrawnFile& file, Figures& into) {
+  const auto is_observable = [](const DrawnColumn& column) { return column.is_observable; };
+  for (const std::string& name : names_of(file, is_observable)) add_mean(file, name, into);
+}
+
+void add_spread(const DrawnFile& file, Figures& into) {
+  if (file.n_realizations() < 2) return;
+  const auto varies = [](const DrawnColumn& column) {
+    return column.is_observable &&
+           std::ranges::any_of(column.sigma, [](double sigma) { return sigma > 0; });
+  };
+  for (const std::string& name : names_of(file, varies)) {
+    add_panel(
+        file, std::nullopt,
+        {.title = "Spread of " + words(name),
+         .caption =
+             fmt::format("Standard deviation of {} over realizations at each tap (population "
+                         "deviation, 1/M). The error of the mean is σ/√(M−1).",
+                         words(name)),
+         .source = "Rosato et al. 2010",
+         .x = file.tap_axis(),
+         .y = {fmt::format("σ of {}{}", words(name), unit_text(file.column(name)->label.units)),
+               AxisKind::linear, true},
+         .series = column_series(file, name, Shows::sigma)},
+        into);
+  }
+}
+
+void add_engine(const DrawnFile& file, Figures& into) {
+  const auto is_told = [](const DrawnColumn& column) {
+    return !column.is_observable && column.label.shown != Shown::count &&
+           column.label.shown != Shown::share && std::ranges::any_of(column.mean, [](double mean) {
+             return mean != 0 && std::isfinite(mean);
+           });
+  };
+  for (const std::string& name : names_of(file, is_told)) add_mean(file, name, into);
+}
+
+void add_snapshots(const DrawnFile& file, Figures& into) {
+  std::vector<FigureSeries> series;
+  for (const ShownPoint& point : file.shown_points()) {
+    for (const DrawnSnapshots& kept : file.snapshots()) {
+      if (kept.point != point.number || !is_any_finite(kept.coordination)) continue;
+      series.push_back(
+          {.name = point.label,
+           .colour = point.colour,
+           .drawn = Drawn::joined_points,
+           .rows = rows_of(as_numbers(kept.taps), kept.coordination, kept.coordination_error),
+           .symbol = series.size(),
+           .point = point.number});
+    }
+  }
+  if (!series.empty()) {
+    add_panel(file, std::nullopt,
+              {.title = "Coordination of the kept packings",
+               .caption = "Mean number of centres within the contact cut of a centre, all spheres, "
+                          "at the taps of the snapshots; bars are standard errors over "
+                          "realizations.",
+               .x = file.tap_axis(),
+               .y = {"mean coordination N_c"},
+               .series = std::move(series)},
+              into, "coordination");
+  }
+  if (!file.made_of("structure", "layers").empty()) return;  // they have n(z), with errors
+  std::vector<std::uint32_t> points;
+  for (const DrawnSnapshots& kept : file.snapshots()) {
+    if (!kept.heights.empty()) points.push_back(kept.point);
+  }
+  for (const std::uint32_t point : file.chosen(points)) {
+    const DrawnSnapshots& kept =
+        *std::ranges::find(file.snapshots(), point, &DrawnSnapshots::point);
+    FigurePanel panel{.title = "Centres by height, n(z)",
+                      .caption = finite_text(
+                          "Fraction of all centres in a bin of height, {:.6g} diameters, means "
+                          "over realizations, at some of the kept taps.",
+                          kept.bin_width),
+                      .source = "Rosato et al. 2010, fig. 6",
+                      .x = {"height z (diameters)"},
+                      .y = {"fraction of centres in a bin", AxisKind::linear, true}};
+    for (std::size_t k = 0; k < kept.heights.size(); ++k) {
+      std::vector<double> heights;
+      for (std::size_t i = 0; i < kept.heights[k].n.size(); ++i) {
+        heights.push_back((static_cast<double>(i) + 0.5) * kept.bin_width);
+      }
+      panel.series.push_back({.name = fmt::format("tap {}", kept.heights[k].tap),
+                              .colour = colour_of(k, kept.heights.size()),
+                              .rows = rows_of(heights, kept.heights[k].n)});
+    }
+    add_panel(file, point, std::move(panel), into, "heights");
+  }
+}
+
+}  // namespace jostle::inline study

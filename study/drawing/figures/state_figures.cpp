@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ensemble/statistics/finite_text.hpp"
+#include "study/drawing/figures/builders.hpp"
+
+// Of ordering, volumes and memory: what state beds are in, and when they get there.
+namespace jostle::inline study {
+namespace {
+
+FigurePanel compactivity(const TableView& table) {
+  FigurePanel panel{
+      .title = "Compactivity, by " + words(table.path().back()),
+      .caption =
+          "1/X less that of the first steady state, X the compactivity, against the mean "
+          "volume of the states; bars are standard errors.",
+      .source = table.source("inverse_x_fluctuations"),
+      .x = {"volume a sphere" + unit_text(table.units("volume"))},
+      .y = {"Δ(1/X)" + unit_text(table.units("inverse_x_fluctuations"))},
+      .rules = {{.y = 0}}};
+  for (const auto& [name, label] :
+       {std::pair{"inverse_x_fluctuations", "by fluctuations"},
+        std::pair{"inverse_x_histograms", "by overlapping histograms"}}) {
+    const std::size_t i = panel.series.size();
+    panel.series.push_back({.name = label,
+                            .colour = kind_colour(i),
+                            .drawn = Drawn::joined_points,
+                            .rows = rows_of(table.values("volume"), table.values(name),
+                                            table.values(std::string(name) + "_error")),
+                            .symbol = i,
+                            .hollow = i > 0});
+    std::erase_if(panel.series.back().rows,
+                  [](const FigureRow& row) { return !std::isfinite(row.y); });
+  }
+  return panel;
+}
+
+FigurePanel variances(const TableView& table) {
+  return {.title = "Variance of the volume, by " + words(table.path().back()),
+          .caption =
+              "Variance of a bed's volume a sphere of each state, over taps and "
+              "realizations, against its mean; bars are standard errors.",
+          .source = table.source("volume_variance"),
+          .x = {"volume a sphere" + unit_text(table.units("volume"))},
+          .y = {"variance" + unit_text(table.units("volume_variance"))},
+          .series = {{.name = "",
+                      .colour = kind_colour(0),
+                      .drawn = Drawn::joined_points,
+                      .rows = rows_of(table.values("volume"), table.values("volume_variance"),
+                                      table.values("volume_variance_error"))}}};
+}
+
+FigurePanel response(const TableView& table) {
+  const std::string name = table.observable(), control = control_of(table);
+  const std::vector<double> lags = table.axis("lag_window");
+  const std::size_t n = table.axis("history").size();
+  FigurePanel panel{
+      .title = "Memory of " + words(name),
+      .caption = fmt::format(
+          "Change of {} since the switch to taps of one strength, mean over "
+          "windows of lags, one curve a history; bars are standard errors. "
+          "Histories that came to one value have one curve where it alone is the state.",
+          words(name)),
+      .source = table.source("response"),
+      .x = {"end of the window of lags (taps)", AxisKind::logarithmic},
+      .y = {"change of " + axis_label(name, table.units("response"))},
+      .rules = {{.y = 0}}};
+  for (std::size_t k = 0; k < n; ++k)
+    panel.series.push_back(
+        {.name =
+             finite_text("{} = {:.4g} before", control_symbol(control), table.value(control, k)),
+         .colour = colour_of(k, n),
+         .drawn = Drawn::joined_points,
+         .rows = rows_of(lags, table.row("response", k), table.row("response_error", k)),
+         .symbol = k});
+  return panel;
+}
+
+}  // namespace
+
+void add_ordering(const DrawnFile& file, Figures& into) {
+  std::vector<TableView> made = file.made_of("analysis", "ordering");
+  std::erase_if(made, [](const TableView& table) { return !table.point(); });
+  std::vector<std::string> observables;
+  for (const TableView& table : made) {
+    if (std::ranges::find(observables, table.path().back()) == observables.end())
+      observables.push_back(table.path().back());
+  }
+  for (const std::string& observable : observables) {
+    FigurePanel panel{.title = "Not yet ordered, by " + words(observable),
+                      .x = {"taps t", AxisKind::taps},
+                      .y = {"share not yet ordered"}};
+    for (const ShownPoint& point : file.shown_points()) {
+      for (const TableView& table : made) {
+        if (table.point() != point.number || table.path().back() != observable) continue;
+        panel.caption = fmt::format(
+            "Share of the beds that are not yet ordered ({}), by Kaplan & Meier's estimate; "
+            "bars are 95 % intervals.",
+            table.note("rule"));
+        panel.source = table.source("survival");
+        FigureSeries one{.name = point.label,
+                         .colour = point.colour,
+                         .drawn = Drawn::stepped_points,
+                         .symbol = panel.series.size(),
+                         .point = point.number};
+        const std::vector<double> taps = table.axis("tap"), share = table.values("survival"),
+                                  low = table.values("survival_low_95"),
+                                  high = table.values("survival_high_95");
+        for (std::size_t i = 0; i < taps.size(); ++i)
+          one.rows.push_back(
+              {.x = taps[i], .y = at(share, i), .low = at(low, i), .high = at(high, i)});
+        panel.series.push_back(std::move(one));
+      }
+    }
+    add_panel(file, std::nullopt, std::move(panel), into);
+  }
+}
+
+void add_volumes(const DrawnFile& file, Figures& into) {
+  for (const TableView& table : file.made_of("analysis", "volumes")) {
+    add_panel(file, std::nullopt, compactivity(table), into, table.name());
+    add_panel(file, std::nullopt, variances(table), into, table.name());
+  }
+}
+
+void add_memory(const DrawnFile& file, Figures& into) {
+  for (const TableView& table : file.made_of("analysis", "memory"))
+    add_panel(file, std::nullopt, response(table), into, table.name());
+}
+
+}  // namespace jostle::inline study

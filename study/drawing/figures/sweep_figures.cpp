@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
+#include "ensemble/statistics/finite_text.hpp"
+#include "study/drawing/figures/builders.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+/// A branch with the step at which the branch before it turned.
+std::vector<std::size_t> steps_of(const std::vector<double>& branch, std::size_t b,
+                                  const std::vector<double>& numbers) {
+  std::vector<std::size_t> steps;
+  for (std::size_t i = 0; i < branch.size(); ++i) {
+    const bool is_turn = b > 0 && i + 1 < branch.size() && branch[i + 1] == numbers[b] &&
+                         branch[i] == numbers[b - 1];
+    if (branch[i] == numbers[b] || is_turn) steps.push_back(i);
+  }
+  return steps;
+}
+
+FigurePanel loop_panel(const TableView& table) {
+  const std::string observable = table.observable(), control = table.note("control");
+  FigurePanel panel{
+      .title = "Hysteresis of " + words(observable),
+      .caption =
+          "Mean of the last taps of every step of the protocol, in the order of the steps; "
+          "bars are standard errors over realizations. A branch ends where the strength "
+          "turns.",
+      .source = table.source(observable),
+      .x = {control_label(control, table.units(control))},
+      .y = {axis_label(observable, table.units(observable))}};
+  const std::vector<double> branch = table.values("branch");
+  std::vector<double> numbers;
+  for (const double one : branch) {
+    if (std::ranges::find(numbers, one) == numbers.end()) numbers.push_back(one);
+  }
+  const double first = branch.empty() ? 0 : std::ranges::min(branch);
+  for (std::size_t b = 0; b < numbers.size(); ++b) {
+    FigureSeries one{.name = "",
+                     .colour = kind_colour(b),
+                     .drawn = Drawn::joined_points,
+                     .dash = b % 3,
+                     .symbol = b};
+    for (const std::size_t i : steps_of(branch, b, numbers)) {
+      one.rows.push_back({.x = table.value(control, i),
+                          .y = table.value(observable, i),
+                          .error = table.value(observable + "_error", i)});
+    }
+    one.name = fmt::format("branch {}, {}", numbers[b] - first + 1,
+                           one.rows.back().x > one.rows.front().x ? "upwards" : "downwards");
+    panel.series.push_back(std::move(one));
+  }
+  return panel;
+}
+
+bool is_sweep(const TableView& table) {
+  return table.is_in("analysis", "sweep") && !table.is_refused();
+}
+
+}  // namespace
+
+void add_hysteresis(const DrawnFile& file, Figures& into) {
+  const std::vector<TableView> made = file.made_of("analysis", "hysteresis");
+  for (const std::uint32_t point : points_of(file, made)) {
+    for (const TableView& table : made) {
+      if (table.point() != point || table.axis("step").empty()) continue;
+      add_panel(file, point, loop_panel(table), into, table.name());
+    }
+  }
+}
+
+void add_sweeps(const DrawnFile& file, Figures& into) {
+  for (const TableView& table : file.tables()) {
+    if (!is_sweep(table)) continue;
+    const std::string x = table.note("against"), y = table.note("observable");
+    if (!table.has_axis(x) || !table.has(y)) continue;
+    const bool pooled = table.has(y + "_pooled_error");
+    const std::string errors = y + (pooled ? "_pooled_error" : "_error");
+    FigurePanel panel{
+        .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
+        .caption = pooled ? "One point a sweep point; bars are standard errors by the variance "
+                            "pooled over points, since few realizations know their own badly."
+                          : "One point a sweep point; bars are standard errors.",
+        .source = table.source(y),
+        .x = {control_label(x, table.units(x))},
+        .y = {axis_label(y, table.units(y))},
+        .series = {{.name = "",
+                    .colour = kind_colour(0),
+                    .drawn = Drawn::joined_points,
+                    .rows = rows_of(table.axis(x), table.values(y), table.values(errors))}}};
+    const double maximum = table.value("maximum_at");
+    if (table.value("maximum_p") < SweepMaximum::level) {
+      panel.caption += finite_text(
+          " The highest point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the "
+          "maximum's place.",
+          maximum);
+      for (const double place :
+           {maximum, table.value("maximum_at_low"), table.value("maximum_at_high")}) {
+        if (std::isfinite(place)) panel.rules.push_back({.x = place});
+      }
+    }
+    add_panel(file, std::nullopt, std::move(panel), into, table.name());
+  }
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,129 @@
+#include "study/drawing/figures/table_view.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "study/drawing/figures/figure.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+std::vector<double> numbers(const Quantity* quantity) {
+  if (quantity == nullptr) return {};
+  if (const auto* const whole = std::get_if<std::vector<std::uint64_t>>(&quantity->values)) {
+    return {whole->begin(), whole->end()};
+  }
+  const auto* const values = std::get_if<std::vector<double>>(&quantity->values);
+  return values == nullptr ? std::vector<double>{} : *values;
+}
+
+std::vector<std::string> strings(const Quantity* quantity) {
+  if (quantity == nullptr) return {};
+  const auto* const texts = std::get_if<std::vector<std::string>>(&quantity->values);
+  return texts == nullptr ? std::vector<std::string>{} : *texts;
+}
+
+std::vector<std::string> parts_of(const std::string& name) {
+  std::vector<std::string> parts(1);
+  for (const char c : name) {
+    if (c == '/') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+TableView::TableView(const DrawnTable& drawn) : drawn_(&drawn), path_(parts_of(drawn.table.name)) {
+  constexpr std::string_view mark = "point_";
+  if (path_.size() < 2 || !path_.front().starts_with(mark)) return;
+  const std::string digits = path_.front().substr(mark.size());
+  std::uint32_t number = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (fault != std::errc() || end != digits.data() + digits.size()) return;
+  point_ = number;
+  path_.erase(path_.begin());
+}
+
+std::string TableView::observable() const {
+  const std::string asked = note("observable");
+  return asked.empty() ? path_.back() : asked;
+}
+
+const Quantity* TableView::found(const std::string& quantity) const {
+  const auto at = std::ranges::find(drawn_->table.quantities, quantity, &Quantity::name);
+  return at == drawn_->table.quantities.end() ? nullptr : &*at;
+}
+const Quantity* TableView::found_axis(const std::string& name) const {
+  const auto at = std::ranges::find(drawn_->table.axes, name, &Quantity::name);
+  return at == drawn_->table.axes.end() ? nullptr : &*at;
+}
+const Quantity* TableView::either(const std::string& name) const {
+  const Quantity* const quantity = found(name);
+  return quantity != nullptr ? quantity : found_axis(name);
+}
+
+std::vector<std::string> TableView::quantities() const {
+  std::vector<std::string> names;
+  for (const Quantity& one : drawn_->table.quantities) names.push_back(one.name);
+  return names;
+}
+
+bool TableView::has_axis(const std::string& name) const {
+  return found_axis(name) != nullptr;
+}
+std::vector<double> TableView::axis(const std::string& name) const {
+  return numbers(found_axis(name));
+}
+std::vector<std::string> TableView::axis_texts(const std::string& name) const {
+  return strings(found_axis(name));
+}
+std::vector<double> TableView::values(const std::string& quantity) const {
+  return numbers(found(quantity));
+}
+std::vector<std::string> TableView::texts(const std::string& quantity) const {
+  return strings(found(quantity));
+}
+
+double TableView::value(const std::string& quantity, std::size_t i) const {
+  const std::vector<double> all = values(quantity);
+  return i < all.size() ? all[i] : no_value;
+}
+
+std::vector<double> TableView::row(const std::string& quantity, std::size_t i) const {
+  const Quantity* const one = found(quantity);
+  std::vector<double> all = numbers(one);
+  if (one == nullptr || one->axes.size() < 2) return all;
+  const Quantity* const last = found_axis(one->axes.back());
+  const std::size_t length =
+      last == nullptr ? 0
+                      : std::visit([](const auto& values) { return values.size(); }, last->values);
+  if ((i + 1) * length > all.size()) return {};
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(i * length);
+  return {begin, begin + static_cast<std::ptrdiff_t>(length)};
+}
+
+std::string TableView::units(const std::string& name) const {
+  const Quantity* const one = either(name);
+  return one == nullptr ? "1" : one->units;
+}
+std::string TableView::long_name(const std::string& name) const {
+  const Quantity* const one = either(name);
+  return one == nullptr ? "" : one->long_name;
+}
+std::string TableView::source(const std::string& quantity) const {
+  const Quantity* const one = found(quantity);
+  return one == nullptr || one->source == "jostle" ? "" : one->source;
+}
+
+std::string TableView::note(const std::string& key) const {
+  for (const auto& [name, text] : drawn_->table.notes) {
+    if (name == key) return text;
+  }
+  return "";
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,279 @@
+#include "study/planning/pilot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "engine/bed/slab.hpp"
+#include "ensemble/processor_clock.hpp"
+#include "ensemble/realization.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+using Clock = ProcessorClock;
+
+constexpr double narrowest = 8;             // diameters, of a footprint that is cut
+constexpr std::uint32_t most_oversize = 5;  // times max_spheres, before depth is cut as well
+
+/// A width times about `factor`, never below the narrowest; a whole number of `unit`s of it where
+/// a lattice wants that.
+double cut_width(double width, double factor, double unit) {
+  const double least = std::min(width, std::max(narrowest, width * factor));
+  if (unit == 0) return least;
+  const double whole = std::round(width / unit);
+  return width * std::min(whole, std::ceil(least / unit)) / whole;
+}
+
+/// Of the lattice along x and y, what a footprint is a whole number of; 0: of nothing.
+struct LatticeUnits {
+  double x = 0, y = 0;
+};
+LatticeUnits lattice_units(const Plan& plan) {
+  const auto* crystal = std::get_if<Crystal>(&plan.start);
+  if (crystal == nullptr || !std::holds_alternative<PeriodicBox>(plan.container)) return {};
+  return {1, crystal->lattice == Lattice::hcp ? std::sqrt(3.0) : 1};
+}
+
+/// The container on about `share` of its area. Where one side of a box cannot be cut as far as the
+/// other, the other is cut further.
+Container with_cut_footprint(const Plan& plan, double share) {
+  Container container = plan.container;
+  const LatticeUnits units = lattice_units(plan);
+  const double factor = std::sqrt(share);
+  const auto cut_box = [&](auto& box) {
+    const double left_x = cut_width(box.width_x, factor, units.x) / box.width_x;
+    const double left_y = cut_width(box.width_y, factor, units.y) / box.width_y;
+    box.width_x = cut_width(box.width_x, share / left_y, units.x);
+    box.width_y = cut_width(box.width_y, share / left_x, units.y);
+  };
+  if (auto* periodic = std::get_if<PeriodicBox>(&container)) cut_box(*periodic);
+  if (auto* walled = std::get_if<WalledBox>(&container)) cut_box(*walled);
+  if (auto* tube = std::get_if<Cylinder>(&container)) {
+    tube->diameter = cut_width(tube->diameter, factor, 0);
+  }
+  return container;
+}
+
+/// What a tap of one strength took.
+struct TapCost {
+  Seconds time{0};
+  double sweeps = 0;
+};
+/// Of one kind of tap, by strength.
+using CostsByStrength = std::map<double, TapCost>;
+
+TapCost between(const CostsByStrength& costs, double strength) {
+  const auto above = costs.lower_bound(strength);
+  if (above == costs.end()) return costs.rbegin()->second;
+  if (above == costs.begin() || above->first == strength) return above->second;
+  const auto below = std::prev(above);
+  const double share = (strength - below->first) / (above->first - below->first);
+  return {below->second.time + share * (above->second.time - below->second.time),
+          below->second.sweeps + share * (above->second.sweeps - below->second.sweeps)};
+}
+
+/// Mechanics whose bed counts as at rest where what is allowed ends, at rest or not.
+class ShortDynamics final : public Dynamics {
+ public:
+  explicit ShortDynamics(std::unique_ptr<Dynamics> whole) : whole_(std::move(whole)) {}
+
+  /// Units until the bed counts as at rest, from now on.
+  void allow(std::uint64_t units) {
+    left_ = units;
+    settled_ = true;
+  }
+  /// Whether the bed was at rest when it counted as such.
+  bool settled() const { return settled_; }
+
+  DynamicsStatus advance(std::uint64_t units) override {
+    const std::uint64_t before = effort().units;
+    const DynamicsStatus status = whole_->advance(std::min(units, left_));
+    left_ -= std::min(left_, effort().units - before);
+    if (status != DynamicsStatus::running || left_ > 0) return status;
+    settled_ = false;
+    return DynamicsStatus::capped;
+  }
+
+  void load(const Packing& bed) override { whole_->load(bed); }
+  void settle(const Start& start) override { whole_->settle(start); }
+  void tap(const Tap& tap, RandomStream& random) override { whole_->tap(tap, random); }
+  void store(Packing& bed) const override { whole_->store(bed); }
+  std::vector<double> diagnostics() const override { return whole_->diagnostics(); }
+  Effort effort() const override { return whole_->effort(); }
+  std::uint64_t units_per_slice() const override { return whole_->units_per_slice(); }
+  std::size_t bytes() const override { return whole_->bytes(); }
+  std::vector<std::byte> save() const override { return whole_->save(); }
+  void restore(std::span<const std::byte> state) override { whole_->restore(state); }
+
+ private:
+  std::unique_ptr<Dynamics> whole_;
+  std::uint64_t left_ = 0;
+  bool settled_ = true;
+};
+
+/// The plan on the cut bed, with one tap of each of these stages. The first stage comes twice: its
+/// first tap makes what all others use, and ends what the start left to settle; it is not counted.
+Plan short_plan(const Plan& plan, const CutBed& bed, const std::vector<std::size_t>& stages) {
+  Plan cut = plan;
+  cut.container = bed.container;
+  cut.n_spheres = bed.n_spheres;
+  cut.snapshots.taps = {};
+  cut.protocol = {};
+  for (const std::size_t stage : stages) {
+    const std::uint64_t taps = cut.protocol.empty() ? 2 : 1;
+    cut.protocol.push_back({plan.protocol[stage].tap, taps});
+  }
+  return cut;
+}
+
+/// A short realization, a cut one where the plan's is large: each piece of it is ended where its
+/// share of the budget ends, at rest or not.
+class Pilot {
+ public:
+  Pilot(const Plan& plan, const CutBed& bed, std::uint64_t budget)
+      : plan_(plan),
+        bed_(bed),
+        short_(short_plan(plan, bed, piloted_stages(plan.protocol))),
+        left_(budget) {
+    auto dynamics = std::make_unique<ShortDynamics>(dynamics_of(short_, 0));
+    dynamics_ = dynamics.get();
+    realization_.emplace(short_, 0, std::move(dynamics));
+  }
+
+  PilotEstimate estimate() {
+    const TapCost start = next_row(left_ / 2);
+    settled_ = dynamics_->settled();
+    std::size_t untried = short_.protocol.size();
+    std::map<std::string, CostsByStrength> costs;
+    for (const Stage& stage : short_.protocol) {
+      if (stage.count > 1) next_row(left_ / (4 * untried));
+      const Control strength = control(stage.tap);
+      costs[strength.name][strength.value] = next_row(left_ / untried--);
+      settled_ = settled_ && dynamics_->settled();
+    }
+    return summed(start.time, costs);
+  }
+
+ private:
+  /// Makes the next row: the start, or a tap.
+  TapCost next_row(std::uint64_t budget) {
+    const std::uint64_t before = dynamics_->effort().units;
+    const auto began = Clock::now();
+    dynamics_->allow(budget);
+    Slice slice;
+    while (!slice.row) {
+      slice = realization_->advance(std::max<std::uint64_t>(1, budget));
+      moving_time_ += slice.relaxing;
+    }
+    const std::uint64_t units = dynamics_->effort().units - before;
+    left_ -= std::min(left_, units);
+    return {Clock::now() - began, static_cast<double>(units) / bed_.n_spheres};
+  }
+
+  PilotEstimate summed(Seconds start_time,
+                       const std::map<std::string, CostsByStrength>& costs) const {
+    Seconds taps_time{0};
+    double sweeps = 0;
+    for (const Stage& stage : plan_.protocol) {
+      if (stage.count == 0) continue;
+      const Control strength = control(stage.tap);
+      const TapCost cost = between(costs.at(strength.name), strength.value);
+      const auto n = static_cast<double>(stage.count);
+      taps_time += n * cost.time;
+      sweeps += n * cost.sweeps;
+    }
+    const double scale = static_cast<double>(plan_.n_spheres) / bed_.n_spheres;
+    const auto n_taps = static_cast<double>(total_taps(plan_));
+    const std::uint64_t units = dynamics_->effort().units;
+    const double observed = static_cast<double>(bed_.n_spheres) * sizeof(Vec3);
+    // What is followed of the motion, and what a checkpoint makes of it: measured, 4 to 5 times.
+    const std::uint64_t followed =
+        plan_.motion ? 4 * motion_bytes(*plan_.motion, plan_.n_spheres) : 0;
+    return {.n_spheres = bed_.n_spheres,
+            .n_strengths = short_.protocol.size(),
+            .units = units,
+            .units_per_second = units > 0 ? static_cast<double>(units) / moving_time_.count() : 0,
+            .rounds_per_tap = n_taps > 0 ? sweeps / n_taps : 0,
+            .settled = settled_ && bed_.as_deep,
+            .start = scale * start_time,
+            .realization = scale * (start_time + taps_time),
+            .bytes = static_cast<std::size_t>(
+                         scale * (static_cast<double>(dynamics_->bytes()) + observed)) +
+                     followed};
+  }
+
+  const Plan& plan_;
+  const CutBed& bed_;
+  const Plan short_;
+  std::uint64_t left_;
+  ShortDynamics* dynamics_ = nullptr;  // of the realization
+  std::optional<Realization> realization_;
+  Seconds moving_time_{0};
+  bool settled_ = true;
+};
+
+}  // namespace
+
+CutBed cut_down(const Plan& plan, std::uint32_t max_spheres) {
+  CutBed bed{plan.container, plan.n_spheres};
+  const bool may_be_cut =
+      has_gravity(plan.container) && !std::holds_alternative<GivenPacking>(plan.start);
+  if (!may_be_cut || plan.n_spheres <= max_spheres) return bed;
+  const double share = static_cast<double>(max_spheres) / plan.n_spheres;
+  bed.container = with_cut_footprint(plan, share);
+  const double left = footprint_area(bed.container) / footprint_area(plan.container);
+  bed.n_spheres = std::max(1u, static_cast<std::uint32_t>(std::lround(left * plan.n_spheres)));
+  bed.as_deep = bed.n_spheres <= most_oversize * max_spheres;
+  if (!bed.as_deep) bed.n_spheres = most_oversize * max_spheres;
+  return bed;
+}
+
+std::vector<std::size_t> piloted_stages(const std::vector<Stage>& protocol) {
+  struct Found {
+    std::size_t first, weakest, strongest, last, middle;
+  };
+  const auto strength = [&](std::size_t stage) { return control(protocol[stage].tap).value; };
+  std::map<std::string, Found> kinds;
+  for (std::size_t i = 0; i < protocol.size(); ++i) {
+    if (protocol[i].count == 0) continue;
+    auto& found =
+        kinds.try_emplace(control(protocol[i].tap).name, Found{i, i, i, i, i}).first->second;
+    if (strength(i) < strength(found.weakest)) found.weakest = i;
+    if (strength(i) > strength(found.strongest)) found.strongest = i;
+    found.last = i;
+  }
+  for (std::size_t i = 0; i < protocol.size(); ++i) {
+    if (protocol[i].count == 0) continue;
+    Found& found = kinds.at(control(protocol[i].tap).name);
+    const double middle = (strength(found.weakest) + strength(found.strongest)) / 2;
+    if (std::abs(strength(i) - middle) < std::abs(strength(found.middle) - middle)) {
+      found.middle = i;
+    }
+  }
+  std::vector<std::size_t> stages;
+  for (const auto& [name, found] : kinds) {
+    stages.insert(stages.end(),
+                  {found.first, found.weakest, found.middle, found.strongest, found.last});
+  }
+  std::ranges::sort(stages);
+  // One strength costs the same wherever it comes.
+  std::vector<std::size_t> distinct;
+  for (const std::size_t stage : stages) {
+    const bool known = std::ranges::any_of(
+        distinct, [&](std::size_t other) { return protocol[other].tap == protocol[stage].tap; });
+    if (!known) distinct.push_back(stage);
+  }
+  return distinct;
+}
+
+PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_spheres) {
+  const CutBed bed = cut_down(plan, max_spheres);
+  return Pilot(plan, bed, budget).estimate();
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "study/planning/pilot.hpp"
+#include "study/running/scene_file.hpp"
+
+namespace jostle::inline study {
+
+/// Pilots of a scene's first, middle and last sweep points, and what they make of the others.
+class ScenePilot {
+ public:
+  using Tell = std::function<void(const Plan&, const PilotEstimate&)>;
+
+  /// About ten seconds on one core, of grains up to a minute. `tell` hears of each pilot as it
+  /// ends. Throws BadInput where one fails.
+  explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {});
+
+  /// Whether all met their stop rules: else times are lower bounds.
+  bool settled() const { return settled_; }
+  /// Of a realization on one core: the mean over the points that were tried.
+  Seconds mean_realization() const;
+  /// Of a realization of this sweep point: between two that were tried, on a straight line.
+  Seconds realization(std::size_t point) const;
+  /// The longest start. One that is stopped is made anew.
+  Seconds start() const { return start_; }
+  /// Memory of a process that runs so many realizations at once.
+  double bytes(std::size_t threads) const;
+
+ private:
+  std::vector<std::size_t> points_;  // that were tried, ascending
+  std::vector<Seconds> times_;       // of a realization of each
+  Seconds start_{0};
+  std::size_t bytes_ = 0;         // of a realization
+  std::size_t motion_bytes_ = 0;  // of all realizations of a point, when a run has ended
+  bool settled_ = true;
+};
+
+}  // namespace jostle::inline study

@@ -1,0 +1,144 @@
+#include "study/running/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <span>
+
+#include "config/json/json_text.hpp"
+#include "ensemble/statistics/counted.hpp"
+#include "results/error.hpp"
+#include "results/export/container_text.hpp"
+#include "results/export/input_file.hpp"
+#include "results/export/packing_file.hpp"
+#include "results/export/printable.hpp"
+
+namespace jostle::inline study {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const std::string& path) {
+  try {
+    return read_text_file(path, Pipes::allowed);
+  } catch (const ResultsError& error) {
+    throw BadInput(fmt::format("cannot read the scene: {}", error.what()));
+  }
+}
+
+/// "periodic, 4 x 5", a height with a third number.
+std::string named(const Container& container) {
+  const auto [kind, widths] = container_text(container);
+  const std::string height = widths[2] > 0 ? fmt::format(" x {}", widths[2]) : "";
+  return fmt::format("{}, {} x {}{}", kind, widths[0], widths[1], height);
+}
+
+/// Of one kind and of the same widths, but for digits that another program did not write.
+bool alike(const Container& a, const Container& b) {
+  constexpr double rounding = 1e-6;
+  const auto [kind_a, widths_a] = container_text(a);
+  const auto [kind_b, widths_b] = container_text(b);
+  return kind_a == kind_b && std::ranges::equal(widths_a, widths_b, [](double x, double y) {
+           return std::abs(x - y) <= rounding * y;
+         });
+}
+
+/// Reads the packings that a scene starts from, and remembers where each was packed.
+class PackingFiles {
+ public:
+  explicit PackingFiles(fs::path folder) : folder_(std::move(folder)) {}
+
+  std::vector<Vec3> load(const PackingFile& file) {
+    const PackingSelector selector{.point = file.point,
+                                   .realization = file.realization,
+                                   .tap = file.frame ? file.frame : file.tap};
+    const std::string path = folder_ / file.path;
+    paths_.push_back(path);
+    Packing packing = read_packing(path, selector);
+    packed_[packing.centres.data()] = {path, packing.container};  // which moving does not change
+    return std::move(packing.centres);
+  }
+  const std::vector<std::string>& paths() const { return paths_; }
+
+  /// Throws StartError where a plan puts a packing into another container: it would overlap, or
+  /// fall apart.
+  void require_same_container(const Plan& plan) const {
+    const auto* given = std::get_if<GivenPacking>(&plan.start);
+    if (given == nullptr) return;
+    const auto& [path, container] = packed_.at(given->centres->data());
+    if (alike(container, plan.container)) return;
+    throw StartError(
+        fmt::format("{} holds a packing of another container ({}) than the scene's ({})", path,
+                    named(container), named(plan.container)));
+  }
+
+ private:
+  struct Packed {
+    std::string path;
+    Container container;
+  };
+
+  fs::path folder_;
+  std::vector<std::string> paths_;
+  std::map<const Vec3*, Packed> packed_;
+};
+
+LoadedScene load_text(std::string text, const std::string& path) {
+  LoadedScene loaded;
+  loaded.text = std::move(text);
+  loaded.files = {path};
+  ParsedScene parsed = parse_scene(loaded.text);
+  if (!parsed.scene) {
+    throw BadInput(fmt::format("{}: {}, nothing was run\n{}", path,
+                               counted(parsed.faults.size(), "fault"), fault_lines(parsed.faults)));
+  }
+  loaded.scene = std::move(*parsed.scene);
+  loaded.points = std::move(parsed.points);
+  loaded.resolved = resolved(loaded.scene).dump(2);
+  PackingFiles packings(fs::path(path).parent_path());
+  try {
+    loaded.plans = make_plans(loaded.scene, loaded.points,
+                              [&](const PackingFile& file) { return packings.load(file); });
+    for (const Plan& plan : loaded.plans) packings.require_same_container(plan);
+  } catch (const StartError& error) {
+    throw BadInput(fmt::format("{}: /start: {}", path, error.what()));
+  } catch (const ResultsError& error) {
+    throw BadInput(fmt::format("{}: /start/file: {}", path, error.what()));
+  }
+  loaded.files.insert(loaded.files.end(), packings.paths().begin(), packings.paths().end());
+  return loaded;
+}
+
+}  // namespace
+
+std::string fault_lines(const std::vector<Fault>& faults) {
+  constexpr std::size_t most_lines = 50;
+  std::string lines;
+  for (const auto& [pointer, message] :
+       std::span(faults).first(std::min(faults.size(), most_lines))) {
+    lines += printable_name(pointer.empty() ? "(scene)" : pointer) + ": " +
+             printable_name(message) + "\n";
+  }
+  if (faults.size() > most_lines) {
+    lines += fmt::format("... and {} more\n", faults.size() - most_lines);
+  }
+  if (!lines.empty()) lines.pop_back();
+  return lines;
+}
+
+LoadedScene load_scene(const std::string& path) {
+  return load_text(read_text(path), path);
+}
+
+LoadedScene load_derived(const Scene& scene, const std::string& path) {
+  return load_text(resolved(scene).dump(2), path);
+}
+
+Study study_of(const LoadedScene& loaded) {
+  return make_study(loaded.plans, loaded.text, loaded.resolved, loaded.scene.realizations);
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,50 @@
+#include "study/tables/points/over_points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "study/bad_input.hpp"
+
+namespace jostle::inline study {
+
+std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points) {
+  const std::size_t all = file.study().points.size();
+  if (points.size() >= all) return {};
+  return fmt::format("; a choice of sweep points leaves {} of the file's {}: take all",
+                     points.size(), all);
+}
+
+SharedTaps shared_taps(std::span<const ReachedTaps> points) {
+  std::map<std::uint64_t, std::uint64_t> farthest, shared;  // rows, by the planned taps
+  for (const ReachedTaps& one : points)
+    farthest[one.planned] = std::max(farthest[one.planned], one.rows);
+  const auto last = [](std::uint64_t rows) { return rows - 1; };
+  SharedTaps found;
+  for (const ReachedTaps& one : points) {
+    const std::uint64_t most = farthest.at(one.planned);
+    std::string reason;
+    if (one.rows == 0) {
+      reason = "no realization has taps";
+    } else if (2 * last(one.rows) < last(most)) {
+      reason = fmt::format("its realizations have all reached tap {}, those of others tap {}",
+                           last(one.rows), last(most));
+    } else {
+      const auto [at, first] = shared.try_emplace(one.planned, one.rows);
+      if (!first) at->second = std::min(at->second, one.rows);
+    }
+    found.reasons.push_back(std::move(reason));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    found.rows.push_back(found.reasons[i].empty() ? shared.at(points[i].planned) : 0);
+  return found;
+}
+
+void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations) {
+  if (n_realizations > 0) return;
+  const std::string& label = file.study().points[point].label;
+  throw BadInput(fmt::format("no realization has taps{}", label.empty() ? "" : " at " + label));
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "results/results_file.hpp"
+#include "study/tables/points/point_scenes.hpp"
+
+// Analyses over the sweep points of one file together. What is not possible gives a table with the
+// note "refused" alone. Throw BadArgument for an observable that there is not.
+namespace jostle::inline study {
+
+/// What to add where an analysis needs more sweep points than those that were chosen; nothing where
+/// all were.
+std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
+
+/// How far a sweep point has come.
+struct ReachedTaps {
+  std::uint64_t planned = 0;  // taps of its protocol
+  std::uint64_t rows = 0;     // that all its realizations have, tap 0 included; 0: none has taps
+};
+
+/// What points that are compared have in common. Only those of equally long protocols are held
+/// against each other.
+struct SharedTaps {
+  std::vector<std::uint64_t> rows;   // [points] whose last taps are compared, the same for all
+  std::vector<std::string> reasons;  // [points] why one is left out: it has no taps, or less than
+                                     // half of what another has; else empty
+};
+SharedTaps shared_taps(std::span<const ReachedTaps> points);
+
+/// Throws BadInput where no realization of the point has taps: all failed, or none is begun.
+void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations);
+
+/// volumes/<observable>, over strengths; of points whose own protocol goes through several
+/// strengths point_PPPP/volumes/<observable>, over the steps of its last branch. With other values
+/// swept too, one table for every combination, numbered.
+std::vector<Table> volume_tables(const ResultsFile& file, const PointScenes& scenes,
+                                 std::span<const std::uint32_t> points,
+                                 std::span<const AnalysisRequest<VolumesSettings>> requests);
+
+/// memory/<observable>: the points are ways of reaching a value, the last stage of their protocols
+/// is common to all.
+std::vector<Table> memory_tables(const ResultsFile& file, const PointScenes& scenes,
+                                 std::span<const std::uint32_t> points,
+                                 std::span<const AnalysisRequest<MemorySettings>> requests);
+
+}  // namespace jostle::inline study

@@ -1,0 +1,386 @@
+#include "study/tables/points/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "config/json/json_text.hpp"
+#include "config/sweep.hpp"
+#include "engine/numbers.hpp"
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
+#include "ensemble/protocol_steps.hpp"
+#include "ensemble/statistics/finite_text.hpp"
+#include "study/bad_input.hpp"
+#include "study/tables/analyse.hpp"
+#include "study/tables/observable_series.hpp"
+#include "study/tables/points/over_points.hpp"
+#include "study/tables/points/point_scenes.hpp"
+#include "study/tables/points/same_realizations.hpp"
+
+namespace jostle::inline study {
+
+namespace {
+
+/// One sweep point of one file as a point of the curve.
+struct Member {
+  const ResultsFile* file = nullptr;
+  std::uint32_t point = 0;
+  ReachedTaps reached;
+  double x = not_a_number;
+  SweptValue swept;
+  std::string others;                // values of the sweep that do not vary with x
+  std::vector<double> realizations;  // of the value, by number; empty for other quantities
+  double y = not_a_number;
+  ErrorOf y_error;
+  Column label;
+  std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
+  std::string taps;                                // whose mean the value is: "151 to 200"
+  std::optional<Verdict> steady;                   // whether these taps are; none of too few
+  std::string no_value;                            // why it has none, where that is known
+  bool error_is_no_basis = false;                  // a fit's, of too few realizations
+};
+
+/// "/protocol/0/tap/dilate" -> 0.
+std::optional<std::size_t> tap_line(std::string_view pointer) {
+  constexpr std::string_view before = "/protocol/";
+  if (!pointer.starts_with(before)) return std::nullopt;
+  pointer.remove_prefix(before.size());
+  std::size_t line = 0;
+  const char* const last = pointer.data() + pointer.size();
+  const auto [end, error] = std::from_chars(pointer.data(), last, line);
+  const std::string_view rest(end, last);
+  const bool of_tap = rest == "/tap" || rest.starts_with("/tap/");
+  return error == std::errc{} && of_tap ? std::optional(line) : std::nullopt;
+}
+
+/// The name of an axis: "dilate", "width_1".
+std::string axis_name(const std::string& pointer) {
+  std::string name = short_name(pointer);
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+/// The pointer of the sweep that ends with a name, as labels of points and axes have it.
+std::string pointer_named(const std::string& name, const StudyPoint& swept) {
+  std::string found;
+  for (const auto& [pointer, value] : swept.sweep_values) {
+    if (!pointer.ends_with("/" + name) && axis_name(pointer) != name) continue;
+    if (!found.empty()) {
+      throw BadInput(
+          fmt::format("{} and {} are swept: name one of them by its JSON pointer", found, pointer));
+    }
+    found = pointer;
+  }
+  if (found.empty()) {
+    throw BadInput(fmt::format(
+        "{} is neither a name of what is swept nor a JSON pointer, which begins with /", name));
+  }
+  return found;
+}
+
+/// What is swept, and the values of the sweep that do not vary with it.
+void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
+           std::string against) {
+  if (against.empty()) {
+    against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
+  } else if (against.front() != '/') {
+    against = pointer_named(against, swept);
+  }
+  for (const auto& [pointer, value] : swept.sweep_values) {
+    if (pointer == against || scenes.vary_together(pointer, against)) continue;
+    member.others.append(member.others.empty() ? "" : ", ")
+        .append(pointer)
+        .append(" = ")
+        .append(value);
+  }
+  const Scene& scene = scenes.at(point);
+  const auto line = tap_line(against);
+  if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
+    const Control strength = control(scene.protocol[*line].tap);
+    member.x = strength.value;
+    member.swept = {strength.name, strength.units, "strength of the taps"};
+    return;
+  }
+  const std::optional<Json> value = scenes.value_at(point, against);
+  if (!value) throw BadInput(fmt::format("the scene has no value at {}", against));
+  if (!value->is_number()) {
+    throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
+  }
+  member.x = value->number();
+  member.swept = {axis_name(against), "1", against};
+}
+
+/// The mean of the last taps that the points have in common, of each realization.
+void set_values(std::span<Member> members, const std::string& observable,
+                std::optional<std::uint64_t> last) {
+  std::vector<ReachedTaps> reached;
+  for (const Member& member : members) reached.push_back(member.reached);
+  const SharedTaps shared = shared_taps(reached);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Member& member = members[i];
+    member.no_value = shared.reasons[i];
+    if (!member.no_value.empty()) continue;
+    const ObservableSeries series(*member.file, member.point, observable);
+    const AnalysedSeries taps = last_taps(series, last, 4, 1, shared.rows[i]);
+    const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
+    member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
+    member.steady = steadiness(series, taps);
+    member.realizations.assign(member.file->study().realizations, not_a_number);
+    for (std::size_t r = 0; r < means.size(); ++r)
+      member.realizations[series.realizations()[r]] = means[r];
+  }
+}
+
+void set(Member& member, DerivedValue&& derived) {
+  member.y = derived.value;
+  member.y_error = derived.error;
+  member.label = std::move(derived.label);
+  member.no_value = std::move(derived.no_value);
+  member.error_is_no_basis = derived.error_is_no_basis;
+  member.taps = std::move(derived.taps);
+  member.steady = derived.steady;
+}
+
+/// Throws BadInput where only some points share their random numbers: their errors are neither
+/// those of pairs nor those of independent points.
+Streams streams_of(std::span<const Member> members) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> streams;
+  for (const Member& member : members) streams.push_back(member.stream);
+  std::ranges::sort(streams);
+  const auto repeated = std::ranges::unique(streams);
+  const std::size_t n = streams.size() - repeated.size();
+  if (n == 1) return Streams::matched;
+  if (n == members.size()) return Streams::independent;
+  throw BadInput(fmt::format(
+      "some of the {} points share starts and random numbers (one seed, matched streams), others "
+      "do "
+      "not: the points are neither paired nor independent. Analyse files of one seed together, and "
+      "those of another by themselves",
+      members.size()));
+}
+
+/// The point of the curve at this place of its axis, to the four digits that tables have of it,
+/// where these leave one.
+std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
+  const auto in_table = [](double place) { return finite_text("{:.4g}", place); };
+  std::optional<std::size_t> nearest;
+  std::vector<std::size_t> alike;
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < curve.n_points(); ++i) {
+    const double place = curve.x()[i];
+    const double off = std::abs(place - x);
+    const bool as_listed = off <= 5e-6 * std::abs(place);  // to the digits below
+    if (as_listed && (!nearest || off < std::abs(curve.x()[*nearest] - x))) nearest = i;
+    if (in_table(place) == in_table(x)) alike.push_back(i);
+    places.push_back(finite_text("{:.6g}", place));
+  }
+  if (nearest) return *nearest;
+  if (alike.size() == 1) return alike.front();
+  throw BadInput(finite_text("reference {}: there is no such point; there are, of {}, {}", x, axis,
+                             joined(places, ", ")));
+}
+
+/// Places of the points whose averaged taps have this verdict.
+std::vector<std::string> places_of(std::span<const Member> members,
+                                   const std::optional<Verdict>& verdict) {
+  std::vector<std::string> places;
+  for (const Member& member : members) {
+    if (!member.taps.empty() && member.steady == verdict)
+      places.push_back(finite_text("{:.4g}", member.x));
+  }
+  return places;
+}
+
+/// Means of beds that still move are kinetic: they depend on the number of taps, and so does what
+/// is read off the curve. A maximum says so itself.
+void add_steadiness(std::span<const Member> members, Table& table) {
+  if (std::ranges::all_of(members, [](const Member& one) { return one.taps.empty(); })) return;
+  const auto moving = places_of(members, Verdict::not_reached);
+  std::vector<std::string> open = places_of(members, Verdict::cannot_decide);
+  const auto too_few = places_of(members, std::nullopt);
+  open.insert(open.end(), too_few.begin(), too_few.end());
+  std::string condition;
+  if (!moving.empty())
+    condition = "kinetic: the averaged taps still drift at " + joined(moving, ", ");
+  if (!open.empty()) {
+    condition.append(condition.empty() ? "" : "; ")
+        .append("not shown to be steady: the averaged taps at ")
+        .append(joined(open, ", "));
+  }
+  table.notes.emplace_back(
+      "steady", condition.empty() ? "the averaged taps are steady at all points" : condition);
+  if (condition.empty()) return;
+  for (auto& [key, note] : table.notes)
+    if (key == "maximum") note += "; " + condition;
+}
+
+/// Which taps are averaged, and which points have no value.
+void add_notes(std::span<const Member> members, Table& table) {
+  std::vector<std::string> taps;
+  std::string left_out;
+  for (const Member& member : members) {
+    if (!member.taps.empty() && std::ranges::find(taps, member.taps) == taps.end())
+      taps.push_back(member.taps);
+    if (!member.no_value.empty()) {
+      left_out.append(left_out.empty() ? "" : "; ")
+          .append(finite_text("at {:.4g}: {}", member.x, member.no_value));
+    }
+  }
+  if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
+  if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
+  if (std::ranges::any_of(members, &Member::error_is_no_basis)) {
+    table.notes.emplace_back("errors",
+                             "those of fits to three realizations or fewer are not taken: too many "
+                             "such fits set no limit, and the others scatter less than all would");
+  }
+}
+
+Table curve_table(std::string name, std::span<const Member> members,
+                  const std::optional<double>& reference) {
+  std::vector<double> x, y;
+  std::vector<ErrorOf> y_error;
+  std::vector<std::vector<double>> realizations;
+  for (const Member& member : members) {
+    if (member.swept.name != members.front().swept.name) {
+      throw BadInput(fmt::format("{} and {} are not one sweep", member.swept.name,
+                                 members.front().swept.name));
+    }
+    x.push_back(member.x);
+    y.push_back(member.y);
+    y_error.push_back(member.y_error);
+    realizations.push_back(member.realizations);
+  }
+  const bool means = std::ranges::any_of(
+      members, [](const Member& member) { return !member.realizations.empty(); });
+  const SweepCurve curve =
+      means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
+  std::optional<std::size_t> point;
+  if (reference) point = point_at(curve, *reference, members.front().swept.name);
+  Table table =
+      sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
+  add_notes(members, table);
+  add_steadiness(members, table);
+  return table;
+}
+
+/// A file with what is read of it once for all sweeps.
+class SweptFile {
+ public:
+  SweptFile(const ResultsFile& file, const MadeTables& made)
+      : file_(file), scenes_(file), made_(made) {}
+
+  const ResultsFile& file() const { return file_; }
+  const PointScenes& scenes() const { return scenes_; }
+  /// Those just made, then those that the file keeps.
+  const MadeTables& tables() {
+    if (!kept_are_read_) {
+      kept_are_read_ = true;
+      append(made_.analyses, file_.tables("analysis"));
+      append(made_.fits, file_.tables("fits"));
+    }
+    return made_;
+  }
+
+ private:
+  static void append(std::vector<Table>& tables, const std::vector<Table>& more) {
+    tables.insert(tables.end(), more.begin(), more.end());
+  }
+
+  const ResultsFile& file_;
+  PointScenes scenes_;
+  MadeTables made_;
+  bool kept_are_read_ = false;
+};
+
+std::vector<Member> members_of(std::span<SweptFile> files,
+                               const AnalysisRequest<SweepSettings>& request) {
+  const auto& [observable, settings] = request;
+  std::vector<Member> members;
+  for (SweptFile& swept : files) {
+    const ResultsFile* const file = &swept.file();
+    const PointScenes& scenes = swept.scenes();
+    for (std::uint32_t point = 0; point < file->study().points.size(); ++point) {
+      Member member;
+      member.file = file;
+      member.point = point;
+      const ObservableSeries series(*file, point, observable);
+      member.label = series.label();
+      const StudyPoint& studied = file->study().points[point];
+      member.reached = {studied.taps, series.n_rows()};
+      set_x(member, studied, scenes, point, settings.against);
+      if (member.reached.rows == 0) {
+        member.no_value = "no realization has taps";
+      } else if (settings.quantity != "value") {
+        set(member, derived_value(swept.tables(), point, observable, settings.quantity));
+      }
+      member.stream = {studied.seed, scenes.at(point).streams == Streams::matched ? 0 : studied.id};
+      members.push_back(std::move(member));
+    }
+  }
+  if (std::ranges::all_of(members, [](const Member& one) { return one.reached.rows == 0; }))
+    throw BadInput("no realization has taps, at any sweep point");
+  return members;
+}
+
+std::string table_name(const AnalysisRequest<SweepSettings>& request) {
+  std::string quantity = request.settings.quantity;
+  std::ranges::replace(quantity, '/', '_');
+  return fmt::format("sweep/{}/{}", request.observable, quantity);
+}
+
+}  // namespace
+
+SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
+                       const std::string& against) {
+  Member member;
+  set_x(member, swept, scenes, point, against);
+  return {member.x, member.swept.name, member.swept.units, member.others};
+}
+
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
+                                const std::vector<AnalysisRequest<SweepSettings>>& requests) {
+  std::vector<Table> tables;
+  if (requests.empty()) return tables;
+  std::vector<SweptFile> swept;
+  try {
+    if (files.size() > 1) require_different_ensembles(files);
+    for (const ResultsFile* file : files) {
+      swept.emplace_back(*file, file == files.front() ? made : MadeTables{});
+    }
+  } catch (const BadInput& refusal) {
+    for (const auto& request : requests) {
+      tables.push_back({.name = table_name(request), .notes = {{"refused", refusal.what()}}});
+    }
+    return tables;
+  }
+  for (const auto& request : requests) {
+    const std::string name = table_name(request);
+    try {
+      std::map<std::string, std::vector<Member>> groups;
+      std::vector<std::string> order;
+      for (Member& member : members_of(swept, request)) {
+        if (!groups.contains(member.others)) order.push_back(member.others);
+        groups[member.others].push_back(std::move(member));
+      }
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        if (request.settings.quantity == "value")
+          set_values(groups[order[i]], request.observable, request.settings.last);
+        Table table = curve_table(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
+                                  groups[order[i]], request.settings.reference);
+        if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
+        tables.push_back(std::move(table));
+      }
+    } catch (const BadInput& refusal) {
+      tables.push_back({.name = name, .notes = {{"refused", refusal.what()}}});
+    }
+  }
+  return tables;
+}
+
+}  // namespace jostle::inline study

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "ensemble/analysis/table.hpp"
+#include "results/results_file.hpp"
+#include "study/tables/points/derived_value.hpp"
+
+namespace jostle::inline study {
+
+class PointScenes;
+
+/// Where a sweep point stands on a curve.
+struct SweptPlace {
+  double x = 0;
+  std::string name, units;  // of x: a strength of taps as its control parameter
+  std::string others;       // values of the sweep that do not vary with it
+};
+
+/// `against`: JSON pointer, or the name of what is swept; empty: the first of the sweep, the
+/// strength of the taps without one. Throws BadInput.
+SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
+                       const std::string& against);
+
+/// Quantities against the swept value, sweep/<observable>/<quantity> with '_' for '/': over the
+/// points of all files together, each file with its own sweep or none. A strength of taps is drawn
+/// as its control parameter, eps^(1/2) for a dilation. Where other values are swept too, one table
+/// for every combination of them, numbered. Fits and analyses are taken from `made`, of the first
+/// file, else from what the files keep. What is not possible, as of an observable that there is
+/// not, gives a table with the note "refused" alone. Throws ResultsError.
+std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
+                                const std::vector<AnalysisRequest<SweepSettings>>& requests);
+
+}  // namespace jostle::inline study

@@ -1,0 +1,48 @@
+#include "study/drawing/drawn/value_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "config/json/json.hpp"
+
+// The page (tests/report/page_test.py) and the Python package (tests/python/plot_test.py) are
+// tested with the same vectors.
+using namespace jostle;
+
+namespace {
+
+double number_of(const Json& value) {
+  if (!value.is_string()) return value.number();
+  if (value.text() == "nan") return std::numeric_limits<double>::quiet_NaN();
+  return value.text() == "inf" ? std::numeric_limits<double>::infinity()
+                               : -std::numeric_limits<double>::infinity();
+}
+
+Json vectors() {
+  std::ifstream file(TEST_DATA "/value_texts.json");
+  return Json::parse(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+}  // namespace
+
+TEST_CASE("numbers are shown as the shared vectors say") {
+  const Json all = vectors();
+  REQUIRE(all.at("numbers").size() > 20);
+  for (const Json& one : all.at("numbers").elements()) {
+    CAPTURE(one.dump());
+    CHECK(typeset_number(number_of(one.at(0)), static_cast<int>(one.at(1).number())) ==
+          one.at(2).text());
+  }
+  for (const Json& one : all.at("with_error").elements()) {
+    CAPTURE(one.dump());
+    CHECK(typeset_with_error(number_of(one.at(0)), number_of(one.at(1))) == one.at(2).text());
+  }
+  for (const Json& one : all.at("counts").elements()) {
+    CHECK(typeset_count(one.at(0).number()) == one.at(1).text());
+  }
+  for (const Json& one : all.at("durations").elements()) {
+    CHECK(typeset_duration(one.at(0).number()) == one.at(1).text());
+  }
+}
