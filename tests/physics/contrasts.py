@@ -231,3 +231,16 @@ def floor_stop_later_at_250():
 
 def middle_at_250():
     return window("bulk_fraction", 1, 250)
+
+
+def neighbours_are_normal():
+    """R2 of a normal law with its own mean and width through the shares at a friction of 0.1."""
+    header, *rows = read_table(REDUCED / "dr7-9" / "2.csv")
+    row = next(row for row in rows if row[0].endswith("friction 0.1"))
+    shares = np.array([float(cell.split(" ± ")[0]) for cell in row[1:]])
+    counts = np.array(header[1:], float)
+    mean = shares @ counts / shares.sum()
+    width = np.sqrt(shares @ (counts - mean)**2 / shares.sum())
+    misfit = np.sum((shares - stats.norm.pdf(counts, mean, width))**2)
+    r2 = float(1 - misfit / np.sum((shares - shares.mean())**2))
+    return r2, r2

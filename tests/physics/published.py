@@ -23,9 +23,10 @@ GRAIN = "K1, column, window and the diameter (0.02 m) are not printed."
 FIGURES = {
     "pb2": Figure("PB 2: Phi_b against taps", ("pb2",), f"{PB}/fig2", "1024 (4096)", "10 000", "4 / 10",
                   "growth is slower for smaller eps: gain of 100 taps", WALLS),
-    "pb3": Figure("PB 3: spectrum and sigma_Z of the mean height", ("pb3",), f"{PB}/fig3", "1024 (4096)", "12 000", "4 / -",
+    "pb3": Figure("PB 3: spectrum and sigma_Z of the mean height", ("pb3",), f"{PB}/fig3", "1024 (4096)",
+                  "12 000", "4 / -",
                   "the spectrum falls as f^-s, s from 1 to 1.5: at eps^(1/2) = 0.30", WALLS +
-                  " Strengths and taps are ours."),
+                  " Strengths and taps are ours; the steady state is read as taps 1001 to 12 000."),
     "pb4": Figure("PB 4: bell and branches", ("pb4-bell", "pb4-hysteresis", "pb4-turns", "pb4-eta"),
                   f"{PB}/fig4-bell", "1024 (4096)", "4000; 1000 a step", "4 / 10",
                   "its maximum lies between 0.1 and 0.2", WALLS + " Steps of the branches are 0.05 for 0.025."),
@@ -39,7 +40,8 @@ FIGURES = {
                   "4 / 10", "the central increase is below the lateral, tap 1000",
                   WALLS + " The four strengths are ours."),
     "pb9": Figure("PB 9: P0(sigma)", ("pb9",), f"{PB}/fig9", "4096", "400 (4000)", "3 / 1",
-                  "Phi = 58.4 % at the start", "The strength (0.02) is ours; \"hardly\" and \"near\" are read as 0.03."),
+                  "Phi = 58.4 % at the start",
+                  "The strength (0.02) is ours; \"hardly\" and \"near\" are read as 0.03."),
     "pb10": Figure("PB 10: pores", ("pb10",), f"{PB}/fig10", "4096", "9999", "3 / 1",
                    "the tail shrinks (v0 falls)", "Pores are Voronoi vertices in the box; the count by four centres "
                    "in the box waits for the next run."),
@@ -60,8 +62,8 @@ FIGURES = {
                   f"{DR}/reduced/fig6-windows", "3456", "250; 600 (90 000)", "20, 4 / 20",
                   "rho = 0.597 after 250 taps, 0 to 15 d", "The fraction is that from the floor to 15 d. This window "
                   "and a first step of 0.2 d were chosen on other beds by the printed 0.567, 0.578 and 0.597; the beds "
-                  "here have a seed of their own and test them. The stop of a relaxation watches the middle 60 % of the "
-                  "spheres. With a stop that watches 0 to 15 d beds loosen; without the state right after the tap "
+                  "here have a seed of their own and test them. The stop of a relaxation watches the middle 60 % of "
+                  "the spheres. With a stop that watches 0 to 15 d beds loosen; without the state right after the tap "
                   "they reach 0.583 after 250 taps."),
     "dr7": Figure("DR 7: pours against friction", ("dr7-9", "dr7-columns"), f"{DR}/fig7-9", "3456", "0", "4 / 20",
                   "0.6088 +- 0.0035 at a friction of 0.1 (its range)", GRAIN + " Here K1 = 1e5 N/m, column 0.2, the "
@@ -79,4 +81,5 @@ FIGURES = {
     "both-engines": Figure("Both engines on the same beds (ours)", ("both-engines",), "both-engines", "768", "30",
                            "6 / -", "", "No figure of a paper; outside the score."),
 }
-NO_DATA = "PB 1 is a sketch. DR 1 and 9 have no statement that is tested; no snapshot of 90 000 taps is at hand."
+NO_DATA = ("PB 1 is a sketch. DR 1 and 9 have no statement that is tested; no snapshot of 90 000 "
+           "taps is at hand.")

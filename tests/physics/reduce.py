@@ -87,7 +87,8 @@ def reduce_series(path, folder, observables):
                     histograms += [[int(point[-4:]), int(tap), f"{z:.2f}", f"{share:.5f}"]
                                    for z, share in zip(group["height"][:], mean) if share > 0]
     write_table(folder / "series.csv", ["point", "realization", "tap", *observables], rows)
-    write_table(folder / "origin.csv", ["key", "value"], origin + [[f"point {k}", label] for k, label in enumerate(labels)])
+    origin += [[f"point {k}", label] for k, label in enumerate(labels)]
+    write_table(folder / "origin.csv", ["key", "value"], origin)
     if histograms:
         write_table(folder / "heights.csv", ["point", "tap", "height", "share"], histograms)
 

@@ -26,7 +26,7 @@ class Claim:
     kind: positive (every estimate above 0), within (every estimate within the margin of 0), printed (a number
     with its error; margin: its rounding; relevant: what a test with power must find), interval (low and high,
     compared with wanted), p (a p-value of the program, in favour or not), refute (a p-value of a test that can
-    only refute and had power), shown (by the intervals in note), none (not tested),
+    only refute and had power), shown (by the intervals in note), seen (in single beds), none (not tested),
     silent (the paper prints nothing to test)."""
     figure: str
     text: str
@@ -137,9 +137,11 @@ def score(claim):
         return Score(claim, status, found, "test of the program", claim.p)
     if claim.kind == "interval":
         low, high = claim.bounds or getattr(contrasts, claim.source[1:])()
-        return Score(claim, of_interval(claim, low, high), f"{low:.4g} to {high:.4g}", "95 % interval")
-    if claim.kind == "shown":
-        return Score(claim, REPRODUCED, claim.note, "95 % intervals")
+        return Score(claim, of_interval(claim, low, high), f"{low:.4g} to {high:.4g}" if high > low else f"{low:.4g}",
+                     "95 % interval" if high > low else "value")
+    if claim.kind in ("shown", "seen"):
+        return Score(claim, REPRODUCED if claim.kind == "shown" else QUALITATIVE, claim.note,
+                     "95 % intervals" if claim.kind == "shown" else "seen in single beds")
     estimates = estimates_of(claim)
     found = ", ".join(map(text_of, estimates))
     if claim.kind == "printed":
