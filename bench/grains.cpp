@@ -1,4 +1,4 @@
-// Sphere steps a second of discrete elements: of a settled bed of 3456 spheres, the box of Rosato
+// Sphere steps per second of discrete elements: of a settled bed of 3456 spheres, the box of Rosato
 // et al. 2010, at rest and in the midst of a tap; of two beds on two threads; of larger beds.
 //   bench_grains [FOLDER]   the laws; writes bed and runs for LAMMPS into FOLDER, for
 //                           bench/grains_against_lammps.py, which compares them
@@ -53,7 +53,7 @@ double seconds_of(GrainLoop& loop, std::uint64_t count) {
   return bench::thread_seconds() - began;
 }
 
-/// Millions of sphere steps a second.
+/// Millions of sphere steps per second.
 double rate(GrainLoop& loop, std::uint64_t count) {
   return 1e-6 * static_cast<double>(loop.n_spheres() * count) / seconds_of(loop, count);
 }
@@ -187,7 +187,7 @@ void compare_sizes() {
     std::vector<double> rest;
     for (int turn = 0; turn < turns; ++turn)
       rest.push_back(rate(loop, std::max<std::uint64_t>(100, n_spheres * steps / n)));
-    fmt::print("{:>7} spheres {:6.2f} ({:.2f} to {:.2f})   {:5.0f} bytes a sphere\n", n,
+    fmt::print("{:>7} spheres {:6.2f} ({:.2f} to {:.2f})   {:5.0f} bytes per sphere\n", n,
                median(rest), *std::ranges::min_element(rest), *std::ranges::max_element(rest),
                static_cast<double>(loop.bytes()) / static_cast<double>(n));
   }
@@ -197,7 +197,7 @@ void compare_sizes() {
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
-  fmt::print("instruction set {}, million sphere steps a second of processor time\n",
+  fmt::print("instruction set {}, million sphere steps per second of processor time\n",
              name(best_instruction_set()));
   if (what == "threads") {
     compare_threads();

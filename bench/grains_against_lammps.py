@@ -1,4 +1,4 @@
-"""Sphere steps a second of discrete elements and of LAMMPS (gran/hooke/history, one core) on one
+"""Sphere steps per second of discrete elements and of LAMMPS (gran/hooke/history, one core) on one
 settled bed of 3456 spheres, at rest and thrown upwards, in turns; then two beds on two threads, and
 beds of other sizes: python3 grains_against_lammps.py BENCH_GRAINS [ROUNDS]."""
 

@@ -151,7 +151,7 @@ def measured(bed):
     return {"solids fraction from 1.5 d to 1.5 d below the top": slab_share(centres, low, high),
             "mean height (potential energy), d": float(centres[:, 2].mean()),
             "elastic energy of the normal springs, 1e-3 m g d a sphere": 1e3 * elastic,
-            "contacts a sphere": (2 * len(pairs) + int((on_floor > 0).sum())) / n,
+            "contacts per sphere": (2 * len(pairs) + int((on_floor > 0).sum())) / n,
             "log10 of the kinetic energy a sphere, m g d": math.log10(kinetic)}
 
 

@@ -29,7 +29,7 @@ struct Course {
   Tap tap;
   Move move;
   double eta;     // of the mean height, per 100 sweeps
-  double target;  // times fewer seconds a tap; 0: reported without a target
+  double target;  // times fewer seconds per tap; 0: reported without a target
 };
 
 const std::array courses = {
@@ -92,7 +92,7 @@ void report(const Course& course, const Side& exhaustive, const Side& rejection_
     const TrialTally& tally = side->loop->tally();
     const auto accepted = static_cast<double>(tally.accepted);
     fmt::print(
-        "    {:<10} {:6.1f} million trials/s in effect, {:.0f} sweeps a tap, <Z> {:.4f}, "
+        "    {:<10} {:6.1f} million trials/s in effect, {:.0f} sweeps per tap, <Z> {:.4f}, "
         "acceptance {:.5f}",
         side == &exhaustive ? "exhaustive" : "skipping",
         static_cast<double>(tally.trials) / sum(side->seconds) / 1e6, side->sweeps / taps,

@@ -62,7 +62,7 @@ double median(std::vector<double> values) {
 
 // Medians over repetitions, the two sides in turn from the same packing.
 struct Comparison {
-  double engine = 0, yardstick = 0, ratio = 0;  // trials a second; and of one repetition, divided
+  double engine = 0, yardstick = 0, ratio = 0;  // trials per second; and of one repetition, divided
   Rate last_engine, last_yardstick;
 };
 
@@ -107,7 +107,7 @@ std::string verdict(double measured, double wanted) {
 
 void print(const char* side, const Rate& rate) {
   fmt::print(
-      "    {:<10} acceptance {:.4f}, {:.2f} distance tests a trial, {:.1f} list renewals a "
+      "    {:<10} acceptance {:.4f}, {:.2f} distance tests per trial, {:.1f} list renewals a "
       "sweep\n",
       side, rate.acceptance, rate.distance_tests_per_trial, rate.list_renewals_per_sweep);
 }
@@ -143,7 +143,7 @@ void report_growth(int repetitions) {
   }
   fmt::print("1048576 spheres: {:.1f} million trials/s, {:.2f} of the rate at 4096, {}\n",
              median(large) / 1e6, median(ratio), verdict(median(ratio), 0.5));
-  fmt::print("    {:.0f} bytes a sphere, at most {:.0f} wanted: {}\n", bytes, most_bytes,
+  fmt::print("    {:.0f} bytes per sphere, at most {:.0f} wanted: {}\n", bytes, most_bytes,
              bytes <= most_bytes ? "pass" : "MISS");
 }
 

@@ -93,7 +93,7 @@ void Yardstick::next(std::array<std::uint64_t, lanes>& out) {
   }
 }
 
-// Two 64-bit numbers a trial, each cut into two of 32 bits.
+// Two 64-bit numbers per trial, each cut into two of 32 bits.
 void Yardstick::propose() {
   constexpr double pi = 3.14159265358979323846;
   const auto n = static_cast<std::uint64_t>(at_.size());

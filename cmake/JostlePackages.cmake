@@ -1,6 +1,6 @@
 # cpack -G DEB: jostle (the program), libjostle-dev (its libraries) and python3-jostle, from what
-# cmake --install installs. ./dev package runs it. The same commit and SOURCE_DATE_EPOCH give the
-# same bytes in any folder.
+# cmake --install installs. ./dev package runs it. Packages are reproducible: a commit
+# and SOURCE_DATE_EPOCH determine their bytes, in any folder.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME jostle)
 set(CPACK_JOSTLE_AUTHORS "${JOSTLE_AUTHORS}")
@@ -14,7 +14,7 @@ set(CPACK_COMPONENTS_ALL jostle dev python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-# What a package holds besides: its Debian changelog, compressed pages, one time for all files.
+# Other content of a package: its Debian changelog, compressed pages, one time for all files.
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/PackageFiles.cmake)
 set(CPACK_JOSTLE_SOURCE_DIR ${PROJECT_SOURCE_DIR})
 
@@ -33,7 +33,7 @@ Monte Carlo or by discrete elements, and says how it gets denser: compaction
 curves with errors, fits of the published laws, ageing, hysteresis, and the
 structure of the packings.")
 
-# The libraries are static: what they stand on is what an own program links.
+# The libraries are static: a program links their dependencies itself.
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libjostle-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS

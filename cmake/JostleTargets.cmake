@@ -1,4 +1,4 @@
-# What every jostle library shares. Numbers must be the same on every machine: no contraction of
+# Options of every jostle library. Numbers must be the same on every machine: no contraction of
 # a * b + c into one rounding, no value-changing optimisation.
 add_library(jostle_options INTERFACE)
 target_compile_features(jostle_options INTERFACE cxx_std_20)
@@ -20,8 +20,8 @@ if(JOSTLE_WARNINGS_AS_ERRORS)
   target_compile_options(jostle_options INTERFACE -Werror)
 endif()
 
-# What no run spends its time in - reading scenes, files, commands, text, tests - is compiled with -O1
-# where users build: that takes half the time of -O3. Numbers are the same at every level.
+# Code that is not performance-critical (scenes, files, commands, text, tests) is compiled with -O1
+# where users build: this takes half the time of -O3. Numbers are the same at every level.
 add_library(jostle_not_hot INTERFACE)
 target_compile_options(jostle_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
@@ -62,7 +62,7 @@ endfunction()
 # jostle_library(engine [NOT_HOT] SOURCES a.cpp ... [SEPARATE b.cpp ...] PUBLIC jostle_x ... PRIVATE ...): one
 # folder, one library, installed as jostle::engine. SEPARATE sources hold the loops that runs spend their time in:
 # each is a unit of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <- structure <-
-# ensemble; config and results stand on those; study joins them, and cli is its command line.
+# ensemble; config and results use those; study joins them, and cli is its command line.
 function(jostle_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "SOURCES;SEPARATE;PUBLIC;PRIVATE")
   add_library(jostle_${name} STATIC ${arg_SOURCES} ${arg_SEPARATE})

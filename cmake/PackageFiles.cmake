@@ -1,5 +1,5 @@
-# What cpack calls for the files of every package before it packs them, in CPACK_TEMPORARY_DIRECTORY, a
-# folder a component: adds changelogs, compresses them and the manual pages, and gives every file the
+# Called by cpack before it packs a package, in CPACK_TEMPORARY_DIRECTORY, one folder
+# per component: adds changelogs, compresses them and the manual pages, and gives every file the
 # time SOURCE_DATE_EPOCH.
 if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
   message(FATAL_ERROR "SOURCE_DATE_EPOCH is not set: ./dev package sets it to the time of the commit")

@@ -1,5 +1,5 @@
-# What another project may include, and all that is installed. A public header includes public headers
-# alone: tests/cli/public_headers_test.py says which one is missing here.
+# Public headers: all are installed, and another project may include them. A public header includes
+# only public headers: tests/cli/public_headers_test.py lists those that are missing here.
 set(JOSTLE_PUBLIC_HEADERS
     config/fault.hpp
     config/json/json.hpp

@@ -124,7 +124,7 @@ class GrainLadder : LadderMaker {
       const double steps = rounded(steps_of_contact(grains_) * factor);
       if (steps < 40 || steps > 1e6) continue;
       other.steps_per_contact = steps;
-      add(PilotSetting::Part::step, finite_text("{:g} steps a contact", steps), other);
+      add(PilotSetting::Part::step, finite_text("{:g} steps per contact", steps), other);
     }
   }
 

@@ -50,6 +50,17 @@ std::vector<Stage> merged(const std::vector<Stage>& stages) {
   return runs;
 }
 
+/// The tap of a number from 1 on, as scenes write it.
+std::string tap_text(const std::vector<ProtocolLine>& protocol, std::uint64_t number) {
+  std::uint64_t end = 0;
+  for (const Stage& stage : stages(protocol)) {
+    end += stage.count;
+    if (number <= end)
+      return written_part(ProtocolLine{stage.tap, std::nullopt, 1}).at("tap").dump();
+  }
+  return "none";
+}
+
 /// What keeps `is` from beginning with all taps of `was`; nothing if it does.
 std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
                                         const std::vector<ProtocolLine>& is) {
@@ -67,8 +78,10 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
         same_tap && (last ? after[i].count >= before[i].count : after[i].count == before[i].count);
     if (!long_enough) {
       const std::uint64_t shared = same_tap ? std::min(before[i].count, after[i].count) : 0;
-      return fmt::format("tap {} changed: taps can only be added after the last one, {}",
-                         tap + shared, n_was);
+      const std::uint64_t changed = tap + shared;
+      return fmt::format(
+          "tap {} changed from {} to {}: taps can only be added after the last one, {}", changed,
+          tap_text(was, changed), tap_text(is, changed), n_was);
     }
     tap += before[i].count;
   }

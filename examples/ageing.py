@@ -33,7 +33,7 @@ results = jostle.run(scene, force=True)
 print("ageing:  ", table.notes["ageing_verdict"])
 print("collapse:", table.notes["collapse_verdict"])
 
-# The same numbers by hand: a mean over realizations of squared differences.
+# Check by hand: mean over realizations of the squared differences.
 heights = results.points[0].series["mean_height"]  # [tap, realization]
 by_hand = np.mean((heights[10 + 50] - heights[10]) ** 2)
 in_table = table.to_dataset()["a"].sel(waiting_time=10, lag=50)

@@ -1,7 +1,7 @@
 """Compaction: how a poured bed gets denser under taps of three strengths, and a law for the curves.
 
     python3 examples/compaction.py                 sixty taps of small beds, in seconds
-    python3 examples/compaction.py --taps 4000     as long as you like; --resume goes on
+    python3 examples/compaction.py --taps 4000     any length; --resume continues a stopped run
 """
 
 import argparse
@@ -35,7 +35,7 @@ drop = height.isel(tap=0) - height.isel(tap=-1)
 for strength in height["dilate"].values:
     print(f"dilated by {strength:5}: <Z> falls by {float(drop.sel(dilate=strength)):.3f} diameters")
 
-# A law fitted to every curve: parameters with intervals, and what the data say of them in words.
+# A law fitted to every curve: parameters with intervals, and a sentence on what the data constrain.
 for curve in jostle.fit(results, "mean_height", model="kww"):
     print(curve.title)
     fit = curve["kww"]

@@ -42,8 +42,8 @@ else:
         pairs = atoms.get_all_distances(mic=True)
         touching = ((pairs > 0) & (pairs < 1.001)).sum() / len(atoms)
         crystal = (atoms.arrays["structure_type"] > 0).mean()
-        print(f"tap {atoms.info['tap']}, by ASE: {touching:.2f} contacts a sphere, "
-              f"{100 * crystal:.0f} % in crystalline surroundings")
+        print(f"tap {atoms.info['tap']}, by ASE: {touching:.2f} contacts per sphere, "
+              f"{100 * crystal:.0f} % with crystalline order")
 
 figure, axes = plt.subplots(1, 3, figsize=(13, 4), layout="constrained")
 jostle.plot.profile(profile, "phi_smoothed", ax=axes[0])

@@ -52,9 +52,10 @@ void check_same_starts(const ResultsFile& first, const ResultsFile& other) {
 void claim(Owners& owners, MergeInputs& inputs, std::size_t number, const Study& study) {
   const ResultsFile& file = inputs.open(number);
   if (file.study().realizations != study.realizations)
-    throw ResultsError(file.path(), fmt::format("has {} realizations a sweep point, not {}; resume "
-                                                "its run with more",
-                                                file.study().realizations, study.realizations));
+    throw ResultsError(file.path(),
+                       fmt::format("has {} realizations per sweep point, not {}; resume "
+                                   "its run with more",
+                                   file.study().realizations, study.realizations));
   const PointNumbers numbers(study);
   for (const RealizationSummary& summary : file.realizations(Realizations::of_its_share)) {
     if (summary.status == RealizationStatus::missing) continue;

@@ -17,10 +17,15 @@ namespace fs = std::filesystem;
 /// By a pointer, or by as much of its end as is given; as tables label points, too ("dilate =
 /// 0.05").
 bool has_value(const StudyPoint& point, std::string wanted) {
+  const auto is_value = [](std::string_view value, std::string_view text) {
+    return value == text ||
+           (value.starts_with('"') && value.ends_with('"') && value.size() == text.size() + 2 &&
+            value.substr(1, text.size()) == text);
+  };
   if (const auto equals = wanted.find(" = "); equals != wanted.npos) wanted.replace(equals, 3, "=");
   return std::ranges::any_of(point.sweep_values, [&](const auto& value) {
     const std::string known = value.first + "=" + value.second;
-    return known == wanted || known.ends_with("/" + wanted);
+    return known == wanted || known.ends_with("/" + wanted) || is_value(value.second, wanted);
   });
 }
 

@@ -45,7 +45,7 @@ SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
     const FitRange range = read_range("--band", arguments.band);
     settings.band = Band{std::max(range.first, 0.0), std::min(range.last, 0.5)};
     if (!(settings.band->lowest < settings.band->highest)) {
-      throw BadInput(fmt::format("--band {}: the lower frequency first, between 0 and 0.5 a tap",
+      throw BadInput(fmt::format("--band {}: the lower frequency first, between 0 and 0.5 per tap",
                                  arguments.band));
     }
   }

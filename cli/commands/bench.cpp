@@ -47,8 +47,8 @@ bench::Rate rate_of(const bench::Case& bed) {
 
 void print_line(std::string_view state, std::size_t n_spheres, const bench::Rate& rate) {
   print(finite_text(
-      "{:<11} {} spheres {:7.1f} million trials/s, acceptance {:.4f}, {:.2f} distance tests a "
-      "trial, {:.1f} list renewals a sweep, {:.0f} bytes a sphere\n",
+      "{:<11} {} spheres {:7.1f} million trials/s, acceptance {:.4f}, {:.2f} distance tests per "
+      "trial, {:.1f} list renewals per sweep, {:.0f} bytes per sphere\n",
       state, n_spheres, rate.trials_per_second() / 1e6, rate.acceptance,
       rate.distance_tests_per_trial, rate.list_renewals_per_sweep, rate.bytes_per_sphere));
 }
@@ -90,9 +90,9 @@ void add_bench(Command& app, int& code) {
   auto arguments = std::make_shared<BenchArguments>();
   command
       .add_option("states", arguments->states,
-                  "Only these states, of those that a run without any lists")
+                  "States to measure (default: all that the run lists)")
       .one_of(state_names());
-  command.add_flag("--json", arguments->json, "Print JSON instead of one line a state");
+  command.add_flag("--json", arguments->json, "Print JSON instead of one line per state");
   command.footer(
       "Examples:\n"
       "  jostle bench                                about half a minute\n"

@@ -71,10 +71,10 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   const char* const about = estimate.settled ? "about" : "at least";
   const std::string a_tap = total_taps(plan) == 0
                                 ? ""
-                                : finite_text("{} {:.0f} {} a tap, ", about,
+                                : finite_text("{} {:.0f} {} per tap, ", about,
                                               estimate.rounds_per_tap, round_name(plan.engine));
   print_wrapped(fmt::format(
-      "  {}{}{}, {} {} at {} {}/s: {}{} {} a realization\n", plan.label,
+      "  {}{}{}, {} {} at {} {}/s: {}{} {} per realization\n", plan.label,
       plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
       unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
       a_tap, about, format_duration(estimate.realization)));

@@ -125,37 +125,39 @@ void add_duration(Command& command, CostArguments& arguments) {
         if (!duration) throw BadValue(duration_fault(text));
         arguments.budget = *duration;
       },
-      "How long to run, in whole replicates, at least two (default: 10m)");
+      "Time to run, in whole replicates, at least two (default: 10m)");
 }
 
 }  // namespace
 
 void add_cost(Command& app, int& code) {
-  Command command = app.add_command("cost", "What a scene's accuracy costs in time");
+  Command command = app.add_command("cost", "CPU time for a given accuracy of a scene");
   auto arguments = std::make_shared<CostArguments>();
   CostArguments& a = *arguments;
   command.add_option("scene", a.scene, "The scene, a JSON file").required().offers_files({"json"});
-  command.add_option("--observable", a.observable,
-                     "What is to be accurate (default: bottom_fraction, or the first observed)");
-  command.add_option("--target", a.target, "Recommend the cheapest way to this total error")
+  command.add_option(
+      "--observable", a.observable,
+      "Observable whose accuracy counts (default: bottom_fraction, or the first observed)");
+  command
+      .add_option("--target", a.target, "Total error for which to recommend the cheapest settings")
       .positive_number();
   add_duration(command, a);
   command
       .add_option("--replicates", a.replicates,
-                  "Run so many replicates instead: the same give the same")
+                  "Number of replicates to run, instead of a time (reproducible)")
       .between(1, 1000000);
-  command.add_option("--taps", a.taps, "Of the pilot (default: 10, or all of fewer)")
+  command.add_option("--taps", a.taps, "Taps of the pilot (default: 10, or all of fewer)")
       .between(1, 1000000000);
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: the first)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: the first)");
   command.add_threads(a.threads);
   command.add_option("-o,--output", a.output, "The results (default: NAME-cost.h5)")
       .file_to_write()
       .offers_files({"h5"});
-  command.add_flag("--resume", a.resume, "Go on with the output file");
+  command.add_flag("--resume", a.resume, "Continue the output file");
   command.add_flag("--force", a.force,
                    "Replace existing output files; with --resume, only that of --csv");
-  command.add_option("--csv", a.csv, "Also write the tables to this file").file_to_write();
+  command.add_option("--csv", a.csv, "File to which the tables are also written").file_to_write();
   add_wait(command, a.patience);
   add_wide(command, a.layout);
   command.add_flag("--no-progress", a.no_progress, "Print no progress")

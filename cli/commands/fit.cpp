@@ -302,15 +302,17 @@ void add_law_options(const Command& app, FitArguments& a) {
                          .add_option("--law", a.law.formula,
                                      "A law of your own, a formula of t: \"X0 + a*log(1 + t/tau)\"")
                          .check(fault, "");
-  command.add_option("--start", a.start, "NAME=NUMBER,...: where its parameters begin")
+  command.add_option("--start", a.start, "Start values of the law's parameters, NAME=NUMBER,...")
       .separated_by(',')
       .needs(law);
   command
       .add_option("--bounds", a.bounds,
-                  "NAME=LOWER:UPPER,...: between which they stay, as tau=0: for a positive one")
+                  "Bounds of the law's parameters, NAME=LOWER:UPPER,...; tau=0: for a positive tau")
       .separated_by(',')
       .needs(law);
-  command.add_option("--law-name", a.law.name, "What it is called and kept as (default own)")
+  command
+      .add_option("--law-name", a.law.name,
+                  "Name of the law in tables and in the file (default: own)")
       .needs(law);
 }
 
@@ -326,9 +328,9 @@ void add_fit(Command& app, int& code) {
       .required()
       .existing_file()
       .offers_files({"h5", "csv", "txt"});
-  command.add_option("--observable", a.observable, "Which column of the results");
+  command.add_option("--observable", a.observable, "Observable of the results to fit");
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: every point)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: every point)");
   command
       .add_option(
           "--model", a.model,
@@ -336,34 +338,35 @@ void add_fit(Command& app, int& code) {
           "--law also that")
       .offers(model_names());
   add_law_options(command, a);
-  command.add_option("--range", a.range,
-                     "FIRST:LAST of t, either may be left out (default: results from tap 1)");
-  command.add_option("--fix", a.fixed, "NAME=NUMBER: a parameter that keeps this value");
+  command.add_option(
+      "--range", a.range,
+      "Range of t to fit, FIRST:LAST; either may be omitted (default: results from tap 1)");
+  command.add_option("--fix", a.fixed, "Fixed value of a parameter, NAME=NUMBER");
   command.add_flag("--realizations", a.realizations,
-                   "The text file has a column t and one column of X a realization, two or more");
+                   "The text file has a column t and one column of X per realization, two or more");
   const Option gaps =
       command
           .add_option("--gaps", a.gaps,
-                      "Where a realization has no value: use-others (default), drop-row")
+                      "Treatment of a realization without a value: use-others (default), drop-row")
           .one_of({"use-others", "drop-row"});
   command.add_flag("--independent", a.independent,
                    "The text file's rows are independent: look for no memory in the residuals");
-  const Option resample =
-      command
-          .add_option(
-              "--resample", a.resample,
-              "Also errors from resampled realizations: jackknife, bootstrap, none (default)")
-          .one_of({"jackknife", "bootstrap", "none"});
-  const Option count = command.add_option("--resamples", a.count, "Of the bootstrap (default 1000)")
-                           .between(2, 1000000);
-  const Option seed = command.add_option("--seed", a.seed, "Of the bootstrap (default 1)");
+  const Option resample = command
+                              .add_option("--resample", a.resample,
+                                          "Additional errors, from resampled realizations: "
+                                          "jackknife, bootstrap, none (default)")
+                              .one_of({"jackknife", "bootstrap", "none"});
+  const Option count =
+      command.add_option("--resamples", a.count, "Number of bootstrap samples (default: 1000)")
+          .between(2, 1000000);
+  const Option seed = command.add_option("--seed", a.seed, "Seed of the bootstrap (default: 1)");
   command.add_threads(a.threads);
   a.layout.width = screen().width;
   command.add_flag(
       "--wide,--verbose", [arguments] { arguments->layout.columns = Columns::all; },
-      "Also 68 % intervals, linear errors, meanings and the statistics of each fit");
+      "All columns: also linear errors, meanings and the statistics of each fit");
   command.add_flag("--json", a.json, "Print JSON, for programs");
-  command.add_option("--csv", a.csv, "Also write the curve with its fits to this file")
+  command.add_option("--csv", a.csv, "File to which the curve and its fits are also written")
       .file_to_write();
   add_measured_output(command, a.measured);
   command.add_flag("--no-store", a.not_stored, "Leave the results file as it is");

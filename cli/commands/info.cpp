@@ -135,7 +135,8 @@ void print_info(const ResultsFile& file, const RunStatus& status, const Layout& 
     text += fmt::format("  {:<13}{}\n", key, value);
   };
   line("sweep points", fmt::to_string(study.points.size()));
-  line("realizations", fmt::format("{} a point: {}", study.realizations, counts(file, status)));
+  line("realizations",
+       fmt::format("{} per sweep point: {}", study.realizations, counts(file, status)));
   if (file.shard().count > 1) {
     line("shard", fmt::format("{}/{}", file.shard().index, file.shard().count));
   }

@@ -84,6 +84,7 @@ void add_merge(Command& app, int& code) {
     TablesDisplay display(Quiet::no, {.width = screen().width});
     store_scene_tables(ResultsFile(arguments->output), available_cpus(), display,
                        arguments->patience);
+    display.print_summary();
     code = exit_ok;
   });
 }

@@ -110,7 +110,7 @@ int write_new_scene(const NewArguments& arguments) {
 void add_new(Command& app, int& code) {
   Command command = app.add_command("new", "Write a scene of your own, from one that is shipped");
   auto arguments = std::make_shared<NewArguments>();
-  command.add_option("name", arguments->name, "Of the scene: NAME.json is written").required();
+  command.add_option("name", arguments->name, "Name of the scene: NAME.json is written").required();
   command
       .add_option("--from", arguments->from,
                   "A shipped scene (default: quickstart); an unknown name lists them")

@@ -20,7 +20,8 @@ constexpr const char* footer =
     "\n"
     "Exit codes: 0 done; 2 bad scene or command line, nothing was run; 3 some realizations "
     "failed,\n"
-    "the rest is stored; 4 a file or the disk; 75 stopped by a signal or the time limit, --resume\n"
+    "the rest is stored; 4 input or output failed; 75 stopped by a signal or the time limit, "
+    "--resume\n"
     "goes on.";
 
 }  // namespace

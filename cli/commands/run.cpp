@@ -46,7 +46,7 @@ struct RunArguments {
   Seconds checkpoint_every{60};
   Shard shard;
   Patience patience;
-  bool quiet = false, no_progress = false;
+  bool quiet = false, no_progress = false, verbose = false;
   Layout layout;
 };
 
@@ -111,10 +111,10 @@ std::string process_line(const Progress& progress, Seconds elapsed, int threads,
   const auto units = static_cast<double>(progress.units_done);
   const auto relaxing = static_cast<double>(progress.relaxing_nanoseconds) * 1e-9;
   if (!unit.empty() && units > 0 && relaxing > 0) {
-    line += finite_text("; relaxing, {} {}/s a core and {:.3f} distance tests {}",
+    line += finite_text("; relaxing, {} {}/s per core and {:.3f} distance tests {}",
                         format_count(units / relaxing), unit,
                         static_cast<double>(progress.pair_tests) / units,
-                        unit == "trials" ? "a trial" : "for each");
+                        unit == "trials" ? "per trial" : "for each");
   }
   return line + "\n";
 }
@@ -187,8 +187,10 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const ResultsFile file = run.close();
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
-    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout);
+    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout,
+                          arguments.verbose ? FitDetail::full : FitDetail::summary);
     const auto stored = store_scene_tables(file, settings.threads, display, settings.patience);
+    display.print_summary();
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
   say_which_tables_are_gone(before, tables, settings.output);
@@ -241,7 +243,7 @@ void add_options(Command& command, RunArguments& arguments) {
       .offers_files({"h5"});
   command.add_threads(arguments.threads);
   command.add_flag("--resume", arguments.resume,
-                   "Go on with the output file, or begin it if there is none");
+                   "Continue the output file, or begin it if there is none");
   command.add_flag("--force", arguments.force,
                    "Replace an existing output file; with --resume, take over another host's lock");
   command.add_flag("--retry-failed", arguments.retry_failed,
@@ -250,7 +252,7 @@ void add_options(Command& command, RunArguments& arguments) {
       .add_reader(
           "--time-limit",
           [&arguments](const std::string& text) { arguments.time_limit = duration_argument(text); },
-          "Stop after this long, as a signal would: 90s, 30m, 2h, 1h30m")
+          "Time after which the run stops as at a signal: 90s, 30m, 2h, 1h30m")
       .environment("JOSTLE_TIME_LIMIT");
   command
       .add_reader(
@@ -263,10 +265,12 @@ void add_options(Command& command, RunArguments& arguments) {
   command
       .add_reader(
           "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
-          "Run share i/n of the realizations; jostle merge joins the files")
+          "Share i/n of the realizations to run; jostle merge joins the files")
       .environment("JOSTLE_SHARD");
   add_wait(command, arguments.patience);
   add_wide(command, arguments.layout);
+  command.add_flag("--verbose", arguments.verbose,
+                   "Full reports of the scene's fits (default: one summary table)");
   command.add_flag("--quiet", arguments.quiet, "Print errors only").environment("JOSTLE_QUIET");
   command.add_flag("--no-progress", arguments.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");
@@ -285,7 +289,7 @@ void add_run(Command& app, int& code) {
       "  jostle run scene.json --shard 3/8 -o part3.h5      one eighth of it\n"
       "\n"
       "SIGINT, SIGTERM, SIGUSR1 and the time limit stop at the end of a sweep: all is stored, the\n"
-      "command that goes on is printed, and the exit code is 75.");
+      "command that continues is printed, and the exit code is 75.");
   command.run([arguments, &code] { code = run(*arguments); });
 }
 

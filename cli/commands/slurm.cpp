@@ -197,7 +197,7 @@ void add_slurm(Command& app, int& code) {
       .required()
       .whole_from(1);
   command.add_option("--folder", arguments->folder,
-                     "Where the shards' files go (default: the scene's name + .shards)");
+                     "Folder of the shards' files (default: the scene's name + .shards)");
   command
       .add_option("--array-limit", arguments->most_tasks,
                   "Tasks that an array may have (default: asks Slurm, else 1000); more shards run "

@@ -116,26 +116,29 @@ void add_structure(Command& app, int& code) {
       "structure", "Profiles, order, Voronoi cells, pores and holes of kept packings");
   auto arguments = std::make_shared<StructureArguments>();
   StructureArguments& a = *arguments;
-  command.add_option("input", a.inputs, "Results, or packings in extended XYZ, one a realization")
+  command
+      .add_option("input", a.inputs,
+                  "Results, or packings in extended XYZ, one file per realization")
       .required()
       .existing_file()
       .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--part", a.parts,
-                  "What to measure, separated by commas (default: what the scene names, else all): "
+                  "Parts to measure, separated by commas (default: those in the scene, else all): "
                   "profile, sides, layers, coordination, pair_correlation, order, gaps, "
                   "structure_factor, voronoi, clusters, pores, "
                   "void_probability, holes")
       .separated_by(',');
-  command.add_option("--settings", a.settings,
-                     "As the scene's \"structure\": a JSON file, or the object itself");
+  command.add_option(
+      "--settings", a.settings,
+      "Settings in the form of a scene's \"structure\": a JSON file, or the object itself");
   command
       .add_option("--tap", a.taps,
                   "Taps with a packing (frames of extended XYZ, from 0), separated by commas "
                   "(default: all)")
       .separated_by(',');
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: every point)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: every point)");
   add_table_output(command, a.output);
   command.add_threads(a.threads);
   command.footer(

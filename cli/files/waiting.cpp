@@ -22,8 +22,8 @@ void add_wait(Command& command, Patience& patience) {
             if (!duration) throw BadValue(fmt::format("\"{}\" is not a duration, as 10m", text));
             patience.for_storing = patience.for_runs = *duration;
           },
-          "How long to wait for another process that works on the results (default: 10s for one "
-          "that stores tables, and 0s for a run)")
+          "Longest wait for another process that writes the results (default: 10s to store "
+          "tables, 0s for a run)")
       .environment("JOSTLE_WAIT");
 }
 

@@ -95,7 +95,7 @@ std::string doubt_of_the_reference(const CostStudy& study) {
     if (!(study.times()[p].work > 1.1 * study.times()[reference].work)) continue;
     const bool grains = std::holds_alternative<DiscreteElement>(setting.engine);
     return fmt::format(
-        "DOUBTFUL: the reference takes {} {} a tap, and \"{}\" takes {}. It does not relax more "
+        "DOUBTFUL: the reference takes {} {} per tap, and \"{}\" takes {}. It does not relax more "
         "completely, and biases against it mean little: {}\n",
         work_text(study, reference), study.work_name(), setting.name, work_text(study, p),
         grains ? "are taps capped (\"most_seconds\")?"

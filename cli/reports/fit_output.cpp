@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/tables/table_output.hpp"
+#include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "fitting/report.hpp"
 #include "fitting/value_text.hpp"
@@ -204,6 +206,60 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
   if (!fits.empty()) text += verdict_legend;
   text += '\n';
   return wrapped(text, layout.width);
+}
+
+std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
+  std::vector<FitSummary> rows;
+  const LawComparison& comparison = fitted.comparison;
+  for (const FitOutcome& outcome : fitted.outcomes) {
+    FitSummary row{
+        fitted.source.observable, fitted.source.label, outcome.model, "fitted", "-", "-"};
+    if (const auto* fit = std::get_if<Fit>(&outcome.result)) {
+      const std::vector<Estimate>& estimates = fit->limit ? fit->limit->estimates : fit->estimates;
+      const auto asymptote = std::ranges::find_if(
+          estimates, [](const Estimate& e) { return e.parameter.name.ends_with("_inf"); });
+      if (asymptote != estimates.end()) {
+        row.asymptote = asymptote->parameter.name + " " + estimate_text(*asymptote);
+      }
+    } else {
+      row.verdict = "no fit";
+    }
+    const auto law = std::ranges::find(comparison.laws, outcome.model, &HeldOutLaw::model);
+    if (law != comparison.laws.end()) {
+      if (law->model == comparison.laws[comparison.leading].model) {
+        row.verdict = comparison.is_decided() ? "best" : "not rejected";
+        row.difference = "least";
+      } else {
+        row.verdict = law->worse ? "rejected" : "not rejected";
+        row.difference =
+            law->same_curve ? "same curve" : value_with_error(law->difference, law->error);
+      }
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layout) {
+  if (rows.empty()) return "";
+  const std::string& observable = rows.front().observable;
+  const bool is_shared = std::ranges::all_of(
+      rows, [&](const FitSummary& row) { return row.observable == observable; });
+  TextTable table({"curve", "law", "verdict", "difference", "asymptote"}, 2);
+  for (const FitSummary& row : rows) {
+    const bool has_point = !row.point.empty();
+    const std::string curve = is_shared && has_point ? row.point
+                              : has_point            ? row.observable + ", " + row.point
+                                                     : row.observable;
+    table.add({curve, row.law, row.verdict, row.difference, row.asymptote});
+  }
+  return (is_shared ? fmt::format("fits of {}\n", observable) : "") +
+         table.text(layout.table_width()) +
+         wrapped(
+             "asymptote a(b): b is half the 68 % interval, in the last digits of a; "
+             "difference a(b) of the held-out errors: b is the standard error. --verbose prints "
+             "every fit.\n",
+             layout.width);
 }
 
 std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes) {

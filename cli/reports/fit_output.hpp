@@ -20,6 +20,17 @@ Json comparison_json(const LawComparison& comparison);
 /// ReportDetail::full has.
 std::string fits_text(const FittedCurve& fitted, const Layout& layout);
 
+/// One law of one curve in the summary that ends a run.
+struct FitSummary {
+  std::string observable, point, law, verdict, difference, asymptote;
+};
+
+/// A row for each law that was fitted to the curve, or refused.
+std::vector<FitSummary> summary_of(const FittedCurve& fitted);
+
+/// The rows as one table with the convention of its errors below it. Empty without rows.
+std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layout);
+
 /// The curve with its fits: columns t, X, sigma if given, and one a model that was fitted.
 std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes);
 

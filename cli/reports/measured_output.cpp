@@ -34,7 +34,7 @@ void add_measured_output(Command& command, MeasuredOutput& output) {
   const Option figures =
       command
           .add_option("--figures", output.figures.path,
-                      "Also draw the measured curve with its fits into this folder: SVG and PDF, "
+                      "Folder for figures of the measured curve with its fits: SVG and PDF, "
                       "with data and Python scripts")
           .file_to_write();
   command
@@ -44,8 +44,7 @@ void add_measured_output(Command& command, MeasuredOutput& output) {
       .between(1, 2)
       .needs(figures);
   command
-      .add_option("--page", output.page,
-                  "Also write a page of the measured curve and its fits, for a browser")
+      .add_option("--page", output.page, "Page of the measured curve and its fits, for a browser")
       .file_to_write()
       .offers_files({"html"});
 }

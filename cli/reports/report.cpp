@@ -114,7 +114,7 @@ std::string cost_line(const PointCost& cost, const std::string& unit) {
                       format_duration(Seconds(cost.work.seconds)));
   if (cost.work.seconds > 0) {
     line += fmt::format(
-        ", {} {}/s a core",
+        ", {} {}/s per core",
         format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds), unit);
   }
   return line + "\n";

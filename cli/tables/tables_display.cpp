@@ -10,7 +10,13 @@
 namespace jostle::inline cli {
 
 void TablesDisplay::fitted(const FittedCurve& curve) {
-  if (quiet_ == Quiet::no) print_report("\n" + fits_text(curve, layout_));
+  if (quiet_ == Quiet::yes) return;
+  if (detail_ == FitDetail::full) return print_report("\n" + fits_text(curve, layout_));
+  for (FitSummary& row : summary_of(curve)) summary_.push_back(std::move(row));
+}
+
+void TablesDisplay::print_summary() const {
+  if (!summary_.empty()) print_report("\n" + summary_text(summary_, layout_));
 }
 
 void TablesDisplay::analysed(const Table& table) {

@@ -18,7 +18,8 @@ namespace jostle::inline cli {
 
 void add_table_output(Command& command, TableOutput& output) {
   command.add_flag("--json", output.json, "Print JSON, for programs");
-  command.add_option("--csv", output.csv, "Also write the tables to this file").file_to_write();
+  command.add_option("--csv", output.csv, "File to which the tables are also written")
+      .file_to_write();
   add_wide(command, output.layout);
   command.add_flag("--force", output.force, "Replace the file of --csv if it exists");
   command.add_flag("--no-store", output.not_stored, "Leave the results files as they are");

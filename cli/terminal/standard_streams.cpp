@@ -42,22 +42,25 @@ void print(std::string_view text) {
   print_exactly(printable(text));
 }
 
-// std::cout holds the one bit of state that standard output has; nothing is written through it.
+// std::cout holds the state of standard output (bad: closed, fail: an error of it); nothing is
+// written through it.
 void print_json(const Json& json) {
   print_exactly(printable_json(json.dump(2)) + "\n");
 }
 
 void print_exactly(std::string_view text) {
-  if (output_is_lost()) return;
+  if (std::cout.bad()) return;
   const int error = write_whole(STDOUT_FILENO, text);
   if (error == 0) return;
   std::cout.setstate(std::ios::badbit);
+  if (error == EPIPE) return;  // the reader, as `head`, has enough
+  std::cout.setstate(std::ios::failbit);
   print_to_standard_error(
       fmt::format("jostle: cannot write to standard output: {}\n", std::strerror(error)));
 }
 
 bool output_is_lost() {
-  return std::cout.bad();
+  return (std::cout.rdstate() & std::ios::failbit) != 0;
 }
 
 std::string with_words_on_one_line(std::string message, std::span<const std::string> words) {

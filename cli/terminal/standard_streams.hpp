@@ -27,7 +27,7 @@ void print_exactly(std::string_view text);
 /// are none.
 void print_json(const Json& json);
 
-/// Whether something that was printed did not reach standard output: the exit code must say so.
+/// True if standard output failed, other than by a reader that closed it: the exit code reports it.
 bool output_is_lost();
 
 /// A message in which no word of the command line begins a new line: its newlines are \x0a.

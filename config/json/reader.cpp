@@ -56,10 +56,10 @@ bool Reader::is_object_of(const std::vector<std::string>& keys) const {
   }
   for (const auto& [key, member] : value().members()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    faults_->push_back({pointer_to(pointer_, key),
-                        keys.empty() ? "unknown key: there is nothing to set here"
-                                     : fmt::format("unknown key (allowed: {}).{}", listed(keys),
-                                                   did_you_mean(key, keys))});
+    faults_->push_back(
+        {pointer_to(pointer_, key), keys.empty() ? "unknown key: there is nothing to set here"
+                                                 : fmt::format("unknown key (allowed: {}).{}",
+                                                               listed(keys), key_hint(key, keys))});
   }
   return true;
 }

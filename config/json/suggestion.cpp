@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace jostle::inline config {
 
@@ -42,6 +44,44 @@ std::string did_you_mean(std::string_view written, const std::vector<std::string
     }
   }
   return nearest ? fmt::format(" Did you mean \"{}\"?", *nearest) : "";
+}
+
+namespace {
+
+constexpr std::string_view strength_hint =
+    " The strength of a Monte Carlo tap is \"dilate\" (eps: heights are multiplied by 1 + eps) or "
+    "\"lift\", not an acceleration. Discrete elements have the \"acceleration\" Gamma of "
+    "\"half_sine\" and \"vibration\".";
+constexpr std::string_view sizes_hint =
+    " All spheres have one diameter, which is the unit of length.";
+constexpr std::string_view friction_hint =
+    " Contact laws belong to \"engine\": {\"discrete_element\": ...}; Monte Carlo has none.";
+
+// Names that papers give to quantities, and what scenes have for them.
+constexpr std::pair<std::string_view, std::string_view> known_elsewhere[] = {
+    {"acceleration", strength_hint},
+    {"gamma", strength_hint},
+    {"Gamma", strength_hint},
+    {"amplitude", strength_hint},
+    {"intensity", strength_hint},
+    {"epsilon", strength_hint},
+    {"eps", strength_hint},
+    {"polydispersity", sizes_hint},
+    {"diameters", sizes_hint},
+    {"radius", sizes_hint},
+    {"size_distribution", sizes_hint},
+    {"friction", friction_hint},
+    {"restitution", friction_hint},
+    {"mu", friction_hint}};
+
+}  // namespace
+
+std::string key_hint(std::string_view written, const std::vector<std::string>& candidates) {
+  const auto known = std::ranges::find(known_elsewhere, written,
+                                       &std::pair<std::string_view, std::string_view>::first);
+  const std::string nearest = did_you_mean(written, candidates);
+  if (!nearest.empty() || known == std::end(known_elsewhere)) return nearest;
+  return std::string(known->second);
 }
 
 }  // namespace jostle::inline config

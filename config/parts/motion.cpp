@@ -44,7 +44,7 @@ void check_amounts(const MotionSettings& settings, const Scene& scene, std::vect
   if (const auto bytes = motion_bytes(settings, scene.n_spheres); bytes > most_motion_bytes) {
     faults.push_back(
         {"/motion",
-         fmt::format("{} of {} take {} MB a realization, more than {} MB: choose fewer "
+         fmt::format("{} of {} take {} MB per realization, more than {} MB: choose fewer "
                      "origins (each keeps the centres of all spheres) or lags",
                      counted(settings.origins.size(), "origin"), counted(scene.n_spheres, "sphere"),
                      bytes >> 20, most_motion_bytes >> 20)});
@@ -53,7 +53,7 @@ void check_amounts(const MotionSettings& settings, const Scene& scene, std::vect
   const std::uint64_t realizations =
       std::max<std::uint64_t>(scene.realizations, grows ? scene.until.at_most : 0);
   if (motion_numbers(settings, realizations) > most_motion_numbers) {
-    faults.push_back({"/motion", fmt::format("{} realizations make more than {} numbers a sweep "
+    faults.push_back({"/motion", fmt::format("{} realizations make more than {} numbers per sweep "
                                              "point: choose fewer origins, lags, lengths or layers",
                                              realizations, most_motion_numbers)});
   }

@@ -180,7 +180,7 @@ std::optional<Sources> last_branch(const PointScenes& scenes, std::uint32_t poin
   for (const std::size_t step : all.back()) {
     const StepTaps taps = steps->windows[step];
     if (taps.last + 1 - taps.first < SteadyStateTest::fewest_taps)
-      throw BadInput(fmt::format("needs at least {} taps a step; a step has {}",
+      throw BadInput(fmt::format("needs at least {} taps per step; a step has {}",
                                  SteadyStateTest::fewest_taps, taps.last + 1 - taps.first));
     sources.all.push_back({point, steps->strengths[step], taps});
   }

@@ -47,7 +47,7 @@ class Analysed(Case):
         curve = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "160",
                              "--no-store", "--sweep-point", "1", "--csv", "out.csv")["tables"]
         self.assertEqual(len(curve), 1)
-        for name in ("dilate = 0.1", "dilate=0.1", "tap/dilate=0.1", "/protocol/0/tap/dilate=0.1"):
+        for name in ("dilate = 0.1", "dilate=0.1", "tap/dilate=0.1", "/protocol/0/tap/dilate=0.1", "0.1"):
             named = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "160",
                                  "--no-store", "--sweep-point", name)["tables"]
             self.assertEqual(named, curve)

@@ -146,7 +146,7 @@ class Runs(Case):
         self.assertEqual(self.files(), ["scene.json", "tiny.h5"])
         self.assertEqual(result.stdout.count("mean_height"), 2)
         self.assertEqual(result.stdout.count("no relaxation ended at the cap"), 2)
-        self.assertRegex(result.stdout, r"distance tests a trial")
+        self.assertRegex(result.stdout, r"distance tests per trial")
         heights = [line.split() for line in result.stdout.splitlines() if line.startswith("  4 ")]
         self.assertEqual(len(heights), 2, result.stdout)
 

@@ -374,7 +374,7 @@ class Reading(Faults):
         process.communicate(timeout=60)
         done = [one["status"] for one in summary["realizations"]].count("done")
         self.assertIn(done, (1, 2, 3))
-        self.assertRegex(text, rf"4 a point: .*\b{done} done")
+        self.assertRegex(text, rf"4 per point: .*\b{done} done")
         self.assertRegex(text, rf"(?m)^{done} done, {4 - done} unfinished, 0 failed; "
                                r"[1-9][0-9.]* \w+ trials in ")
 

@@ -101,7 +101,7 @@ class Everything(Figures):
 
     def curves(self, file):
         figure = json.loads((self.folder / "figures/mean-height.json").read_text())
-        self.assertRegex(figure["origin"], r"^Of everything\.h5: 48 spheres in .* diameters; 3 realizations a sweep "
+        self.assertRegex(figure["origin"], r"^Of everything\.h5: 48 spheres in .* diameters; 3 realizations per sweep "
                                 r"point\. Drawn by jostle ")
         series = self.data("mean-height")
         self.assertEqual([name for name, _, _ in series],

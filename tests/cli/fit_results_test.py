@@ -119,7 +119,12 @@ class Kept(Case):
         protocol = [{"tap": {"dilate": 0.05}, "count": 40}]
         self.write(changed(TINY, protocol=protocol, fits=asked))
         done = self.run_scene()
-        self.assertIn("inverse_log", done.stdout)
+        rows = done.stdout.split("fits of mean_height\n")[1].split("asymptote a(b)")[0].splitlines()
+        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "difference", "asymptote"])
+        self.assertEqual([row.split()[:4] for row in rows[1:]],
+                         [["dilate", "=", value, "inverse_log"] for value in ("0.02", "0.1")])
+        self.assertNotIn("95 %", done.stdout)
+        self.assertIn("95 %", self.run_scene("--force", "--verbose").stdout)
         names = [f"fits/point_000{point}/mean_height/inverse_log" for point in (0, 1)]
         self.assertEqual(self.tables(), names)
         asked[0]["model"] = "kww"

@@ -251,7 +251,7 @@ class Grains(Case):
     def test_check_says_what_the_settings_come_to(self):
         text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
         for part in ("contact time 0.000473 s", "Gamma 1.998", "floor speed 0.416 m/s",
-                     "sphere steps at", "time steps a tap"):
+                     "sphere steps at", "time steps per tap"):
             self.assertIn(part, text)
 
     def test_check_speaks_of_every_point_and_of_what_will_fail(self):
@@ -296,7 +296,7 @@ class Grains(Case):
         self.write(changed(GRAINS, snapshots={}, spheres=30))
         said = self.jostle("cost", "scene.json", "--replicates", "2", "--taps", "1",
                            "--observable", "bulk_fraction", "--no-progress", "--wide").stdout
-        for text in ("simulated seconds/tap", "80 steps a contact", "ten times softer",
+        for text in ("simulated seconds/tap", "80 steps per contact", "ten times softer",
                      "against quiet for 0.5 s"):
             self.assertIn(text, said)
         self.assertNotIn("sweeps", said)

@@ -82,7 +82,7 @@ class Grow(Case):
         others = {"differs in /seed, /spheres": swept(0.2, seed=5, spheres=40),
                   "the same must be swept": changed(TINY, sweep={"/spheres": [40, 48]}),
                   "both hold realization 0": swept(0.02, 0.1),
-                  "has 2 realizations a sweep point, not 3": swept(0.1, realizations=2)}
+                  "has 2 realizations per sweep point, not 3": swept(0.1, realizations=2)}
         for answer, scene in others.items():
             with self.subTest(answer=answer):
                 self.write(scene, "other.json")

@@ -113,7 +113,7 @@ class Streams(Case):
                               done.stderr)
         self.assertEqual(self.digest("again.h5"), self.digest("tiny.h5"))  # and it is stored
 
-    def test_a_reader_that_went_away_is_an_error_of_every_command(self):
+    def test_a_reader_that_stops_early_is_no_error_of_any_command(self):
         for command in self.OUTPUTS:
             with self.subTest(command=command):
                 reader, writer = os.pipe()
@@ -122,8 +122,9 @@ class Streams(Case):
                                       stdin=subprocess.DEVNULL, stdout=writer,
                                       stderr=subprocess.PIPE, timeout=120)
                 os.close(writer)
-                self.assertEqual(done.returncode, BROKEN, done.stderr)
-                self.assertIn("cannot write to standard output: Broken pipe", done.stderr)
+                self.assertEqual(done.returncode, OK, done.stderr)
+                self.assertNotIn("standard output", done.stderr)
+        self.assertEqual(self.digest("again.h5"), self.digest("tiny.h5"))  # and it is stored
 
 
 class Pipes(Case):

@@ -126,8 +126,8 @@ TEST_CASE("A ladder of discrete elements varies their rest, time step and stiffn
   std::vector<PilotSetting> settings = ladder(scene);
   CHECK(names(settings) == std::set<std::string>{"as the scene", "quiet below 0.005 m g d",
                                                  "quiet below 0.0005 m g d", "quiet for 0.1 s",
-                                                 "quiet for 0.5 s", "80 steps a contact",
-                                                 "160 steps a contact", "ten times softer",
+                                                 "quiet for 0.5 s", "80 steps per contact",
+                                                 "160 steps per contact", "ten times softer",
                                                  "ten times stiffer", "half the footprint"});
   CHECK(settings[most_complete(settings).last].name == "quiet for 0.5 s");
   for (const PilotSetting& setting : settings) {
@@ -147,7 +147,7 @@ TEST_CASE("A ladder of discrete elements varies their rest, time step and stiffn
   const auto all = names(settings);
   for (const char* name :
        {"0.1 s after the floor", "0.2 s after the floor", "0.8 s after the floor",
-        "1.6 s after the floor", "50 steps a contact", "ten times stiffer"}) {
+        "1.6 s after the floor", "50 steps per contact", "ten times stiffer"}) {
     CAPTURE(name);
     CHECK(all.contains(name));
   }

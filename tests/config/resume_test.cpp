@@ -83,16 +83,18 @@ TEST_CASE("A resume compares what taps do, not how they are written") {
 
 TEST_CASE("A resume refuses taps that changed, and names the first") {
   CHECK(faults_of([](EditedScene& scene) { scene["protocol"][1]["count"] = 11; }) ==
-        "/protocol: tap 111 changed: taps can only be added after the last one, 130 (at the sweep "
-        "point dilate = 0.01)\n");
+        "/protocol: tap 111 changed from {\"lift\":0.2} to {\"lift\":0.1}: taps can only be added "
+        "after "
+        "the last one, 130 (at the sweep point dilate = 0.01)\n");
   CHECK(faults_of([](EditedScene& scene) { scene["protocol"][1]["count"] = 9; }) ==
         "/protocol: had 130 taps, has 127: taps can be added at the end, not taken away (at the "
         "sweep point dilate = 0.01)\n");
-  CHECK(faults_of([](EditedScene& scene) {
-          scene["protocol"][0] = EditedScene::parse(R"({"tap": {"dilate": 0.02}, "count": 130})");
-        }) ==
-        "/protocol: tap 101 changed: taps can only be added after the last one, 130 (at the sweep "
-        "point dilate = 0.01)\n");
+  CHECK(
+      faults_of([](EditedScene& scene) {
+        scene["protocol"][0] = EditedScene::parse(R"({"tap": {"dilate": 0.02}, "count": 130})");
+      }) ==
+      "/protocol: tap 101 changed from {\"lift\":0.1} to {\"dilate\":0.01}: taps can only be added "
+      "after the last one, 130 (at the sweep point dilate = 0.01)\n");
 }
 
 TEST_CASE("A resume refuses snapshots that changed within the taps of the run") {

@@ -68,8 +68,8 @@ const std::vector<std::string> cross_field_messages{
     "first must not be above last",
     "expected at least one tap",
     "layers of",
-    "MB a realization, more than",
-    "numbers a sweep point",
+    "MB per realization, more than",
+    "numbers per sweep point",
     "taps are more than",
 };
 

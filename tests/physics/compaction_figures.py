@@ -206,7 +206,7 @@ def bell_and_stop(run):
         f"a stop ten times finer changes nothing at {strength:.2f} (ours, asked after a look)", change,
         less) for strength, change in zip((weak, strong), changes)]
     return table(["Phi_c, tap"] + [str(tap) for tap in taps] +
-                 [f"mean of taps {end[0]} to {end[1]}", "sweeps a tap"], rows), statements
+                 [f"mean of taps {end[0]} to {end[1]}", "sweeps per tap"], rows), statements
 
 
 def maximum_of(sweep, statement, symbol):
@@ -257,7 +257,7 @@ def moves(run):
             f"the width of the law matters, not its form: {law} (0.002)",
             Estimate.of(curve[30] - gaussian[30]), 0.002,
             f"Phi_c at tap 30, {law} less Gaussian: "))
-    text = table(["10^4 (Phi_c(30) - Phi_c(0)); sweeps a tap, at theta_0"] +
+    text = table(["10^4 (Phi_c(30) - Phi_c(0)); sweeps per tap, at theta_0"] +
                  [f"d_max = {step:g} d" for step in STEPS], rows)
     return text + f"\n\nPhi_c(0) = {at(gaussian, 0)}.", statements
 

@@ -37,16 +37,16 @@ FIGURES = {
     "pb3": (f"{PB}/fig3", fluctuations, [], f"{PB_SETUP}; strengths, taps and sides not printed",
             "The spectrum of <Z> falls as f^-s with s between 1 and 1.5; sigma_Z of the steady "
             "state is proportional to eps^(1/2)."),
-    "pb4-bell": (f"{PB}/fig4-bell", bell, [], f"{PB_SETUP}, 4000 taps a strength",
+    "pb4-bell": (f"{PB}/fig4-bell", bell, [], f"{PB_SETUP}, 4000 taps per strength",
                  "A bell with its maximum at eps^(1/2) between 0.1 and 0.2."),
-    "pb4-eta": (f"{PB}/bell-eta", bell_and_stop, [], f"{PB_SETUP}, 4000 taps a strength; eta not "
+    "pb4-eta": (f"{PB}/bell-eta", bell_and_stop, [], f"{PB_SETUP}, 4000 taps per strength; eta not "
                 "printed", "At eps^(1/2) = 0.15 Phi_c is larger than at 0.05."),
     "pb4-hysteresis": (f"{PB}/fig4-hysteresis", hysteresis, [],
-                       f"{PB_SETUP}, 4000 taps a strength, steps of 0.025 in eps^(1/2)",
+                       f"{PB_SETUP}, 4000 taps per strength, steps of 0.025 in eps^(1/2)",
                        "Above eps^(1/2) of about 0.15 the way down is a reversible branch of higher "
                        "Phi, on which Phi_c falls with eps^(1/2); below, it rises a bit more to a "
                        "maximum. (Beds that stay below 0.15: pb4-turns.)"),
-    "pb4-turns": (f"{PB}/turns", turns, [], f"{PB_SETUP}, 4000 taps a strength, steps of 0.025",
+    "pb4-turns": (f"{PB}/turns", turns, [], f"{PB_SETUP}, 4000 taps per strength, steps of 0.025",
                   "Where eps^(1/2) went beyond (eps^(1/2))* of about 0.15 on the way up, Phi_c "
                   "increases a bit more on the way down; else it is nearly frozen."),
     "pb5": (f"{PB}/fig5", ageing, [], f"{PB_SETUP}, 10 realizations; strength and ages not printed",

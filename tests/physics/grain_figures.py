@@ -47,7 +47,7 @@ def poured(run):
         of_interval("nearest neighbours at 0.1, cut at 1.05 d: width 1.2550 +- 0.0262", *width[:2],
                     between=(1.2550 - 0.0262, 1.2550 + 0.0262), found="width within 1.05 d")]
     first = table(["friction", "Phi, the middle 60 % of the spheres", "Phi, 5 to 15 d",
-                   "contacts a sphere", "neighbours within 1.05 d: mean", "width",
+                   "contacts per sphere", "neighbours within 1.05 d: mean", "width",
                    "free volume, sphere volumes: mean", "sigma"], rows)
     return "\n\n".join([first] + [
         distributions(run, part, axis, quantity, title, places)

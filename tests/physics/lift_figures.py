@@ -176,7 +176,7 @@ def readings(run):
             " and ".join(at(curve, tap) for tap in printed))
         statements.append(dataclasses.replace(
             statement, test=f"{statement.test}, which can only refute"))
-    return table(["reading"] + [f"Phi, tap {tap}" for tap in taps] + ["sweeps a tap"],
+    return table(["reading"] + [f"Phi, tap {tap}" for tap in taps] + ["sweeps per tap"],
                  rows), statements
 
 

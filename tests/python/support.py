@@ -1,4 +1,4 @@
-"""Small runs, made once a test program."""
+"""Small runs, made once per test program."""
 
 import atexit
 import copy

@@ -117,5 +117,5 @@ TEST_CASE("runs of some points each merge into the run of all") {
   Study fewer = study;
   fewer.realizations = 2;
   CHECK_THROWS_WITH(merge_files(paths, folder / "no.h5", provenance(), false, fewer),
-                    Contains("has 3 realizations a sweep point, not 2"));
+                    Contains("has 3 realizations per sweep point, not 2"));
 }

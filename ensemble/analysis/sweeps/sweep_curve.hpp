@@ -20,7 +20,7 @@ namespace jostle::inline ensemble {
 /// dropped.
 class SweepCurve {
  public:
-  /// Below so many realizations a point's own scatter says too little: variances are then pooled
+  /// Below so many realizations per point's own scatter says too little: variances are then pooled
   /// over points.
   static constexpr std::uint64_t fewest_for_own_error = 10;
 

@@ -88,7 +88,7 @@ TEST_CASE("A report says where taps make a bed grow without end") {
   CHECK(report_of_height(51).find("<Z> has grown from 5 d to 51 d") != std::string::npos);
 }
 
-TEST_CASE("A report has the number of realizations a row where not all reached every tap") {
+TEST_CASE("A report has the number of realizations per row where not all reached every tap") {
   const std::string partial = report_of(7), whole = report_of(100);
   CAPTURE(partial, whole);
   CHECK(partial.starts_with("1 of 2 realizations done, 1 unfinished; "));

@@ -266,7 +266,7 @@ TEST_CASE("g(r) of the reference deposit has its contacts, and 1 far away") {
   const PairCorrelation pairs = pair_correlation(reference_deposit(), {.r_max = 5});
   const std::vector<double> g = pairs.g();
   for (std::size_t k = 0; k < 50; ++k) CHECK(pairs.counts[k] == 0);
-  // About 6 contacts a sphere are in the first bin.
+  // About 6 contacts per sphere are in the first bin.
   CHECK(static_cast<double>(pairs.counts[50]) / static_cast<double>(pairs.n_centres) > 5.9);
   // Density within a few percent of the 0.581 that its maker found in the bulk.
   CHECK(pairs.density * sphere_volume == Approx(0.581).epsilon(0.02));

@@ -59,7 +59,7 @@ TEST_CASE("Pores touch four spheres and hold no centre") {
 }
 
 TEST_CASE("Pores of a deposit are those of voro++'s own output") {
-  // Every vertex of the bulk cells, once a cell: heights and radii, six digits.
+  // Every vertex of the bulk cells, once per cell: heights and radii, six digits.
   const Packing deposit = reference_deposit();
   const VoronoiCells cells = voronoi_cells(deposit);
   const auto table = rows_of("dep_L32_N4096_s1_voro.csv");
