@@ -24,7 +24,7 @@ ROOMS = ("bench", "cli", "cmake", "config", "docs", "engine", "ensemble", "examp
 NOT_YET = {
     "start": ("root", "bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
               "results", "structure", "study", "tests"),
-    "per": ("root", "config", "docs", "engine"),
+    "per": ("config", "docs", "engine"),
     "name": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "results", "structure", "study",
              "tests"),
     "help": (),
