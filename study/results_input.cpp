@@ -17,15 +17,17 @@ namespace fs = std::filesystem;
 /// By a pointer, or by as much of its end as is given; as tables label points, too ("dilate =
 /// 0.05").
 bool has_value(const StudyPoint& point, std::string wanted) {
-  const auto is_value = [](std::string_view value, std::string_view text) {
-    return value == text ||
-           (value.starts_with('"') && value.ends_with('"') && value.size() == text.size() + 2 &&
-            value.substr(1, text.size()) == text);
-  };
   if (const auto equals = wanted.find(" = "); equals != wanted.npos) wanted.replace(equals, 3, "=");
+  // A string without its quotes, and an object of one part by the part's name, name a value too.
+  const auto is_value = [](const std::string& value, const std::string& text) {
+    return value == text || value == '"' + text + '"' || value.starts_with("{\"" + text + "\":");
+  };
+  const auto equals = wanted.find('=');
   return std::ranges::any_of(point.sweep_values, [&](const auto& value) {
-    const std::string known = value.first + "=" + value.second;
-    return known == wanted || known.ends_with("/" + wanted) || is_value(value.second, wanted);
+    if (equals == wanted.npos) return is_value(value.second, wanted);
+    const std::string pointer = wanted.substr(0, equals);
+    return (value.first == pointer || value.first.ends_with("/" + pointer)) &&
+           is_value(value.second, wanted.substr(equals + 1));
   });
 }
 
@@ -97,7 +99,10 @@ void require_different_runs(std::span<const ResultsFile> files) {
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted) {
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < study.points.size(); ++i) {
-    if (wanted.empty() || wanted == fmt::to_string(i) || has_value(study.points[i], wanted)) {
+    if (wanted == fmt::to_string(i)) return {i};  // a number is a point before it is a value
+  }
+  for (std::uint32_t i = 0; i < study.points.size(); ++i) {
+    if (wanted.empty() || has_value(study.points[i], wanted)) {
       chosen.push_back(i);
     }
   }

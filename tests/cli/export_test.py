@@ -1,6 +1,8 @@
 """jostle export: stored packings for OVITO, ParaView, and back."""
 
 import base64
+import json
+import re
 import struct
 import unittest
 import xml.etree.ElementTree
@@ -168,6 +170,31 @@ class Export(Case):
         self.run_scene()
         self.assertIn("the file keeps no positions", self.jostle(
             "export", "bare.h5", "--format", "extxyz", expect=BAD_INPUT).stderr)
+
+
+class SweepPoints(Case):
+    def points(self, name, wanted):
+        """Sweep points that fit finds."""
+        told = self.jostle("fit", name, "--observable", "mean_height", "--model", "kww", "--json", "--no-store",
+                           "--sweep-point", wanted).stdout
+        titles = [curve["title"] for curve in json.loads(told)["curves"]]
+        return [int(re.search(r"sweep point (\d+)", title).group(1)) for title in titles]
+
+    def test_a_number_names_a_point_before_a_value(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
+                           sweep={"/protocol/0/tap/dilate": [0.02, 2, 1]}))
+        self.run_scene()
+        for wanted, point in (("1", 1), ("2", 2), ("0.02", 0), ("dilate=1", 2)):
+            self.assertEqual(self.points("tiny.h5", wanted), [point], wanted)
+
+    def test_a_part_names_the_value_that_it_makes(self):
+        scene = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 8}],
+                        sweep={"/engine": ["monte_carlo", {"discrete_element": {}}]})
+        del scene["relax"]
+        self.write(scene)
+        self.run_scene()
+        for wanted, point in (("monte_carlo", 0), ("engine=monte_carlo", 0), ("engine=discrete_element", 1)):
+            self.assertEqual(self.points("tiny.h5", wanted), [point], wanted)
 
 
 if __name__ == "__main__":
