@@ -37,7 +37,7 @@ std::string study_words(const Study& study) {
   const bool one_bed = std::ranges::all_of(study.points, [&](const StudyPoint& point) {
     return point.n_spheres == first.n_spheres && point.container == first.container;
   });
-  const std::string per_point = study.points.size() > 1 ? " a sweep point" : "";
+  const std::string per_point = study.points.size() > 1 ? " per sweep point" : "";
   return fmt::format("{}; {}{}", one_bed ? bed_words(first) : "beds that differ with the sweep",
                      counted(study.realizations, "realization"), per_point);
 }

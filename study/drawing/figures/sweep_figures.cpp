@@ -82,9 +82,9 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
     const std::string errors = y + (pooled ? "_pooled_error" : "_error");
     FigurePanel panel{
         .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
-        .caption = pooled ? "One point a sweep point; bars are standard errors by the variance "
+        .caption = pooled ? "One point per sweep point; bars are standard errors by the variance "
                             "pooled over points, since few realizations know their own badly."
-                          : "One point a sweep point; bars are standard errors.",
+                          : "One point per sweep point; bars are standard errors.",
         .source = table.source(y),
         .x = {control_label(x, table.units(x))},
         .y = {axis_label(y, table.units(y))},

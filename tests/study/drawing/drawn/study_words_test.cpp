@@ -29,9 +29,9 @@ TEST_CASE("A caption's words name a bed only where a sweep leaves it alone") {
     point.container = PeriodicBox{4, 4};
   }
   CHECK(study_words(study) ==
-        "96 spheres in periodic sides, 4 x 4 diameters; 1 realization a sweep point");
+        "96 spheres in periodic sides, 4 x 4 diameters; 1 realization per sweep point");
   study.points[2].n_spheres = 97;
-  CHECK(study_words(study) == "beds that differ with the sweep; 1 realization a sweep point");
+  CHECK(study_words(study) == "beds that differ with the sweep; 1 realization per sweep point");
 }
 
 }  // namespace jostle
