@@ -34,7 +34,7 @@ class Examples(Case):
     def test_the_page_names_them(self):
         page = (SOURCE / "docs/reference/python.md").read_text()
         for name in SMALL:
-            self.assertIn(f"(../examples/{name}.py)", page)
+            self.assertIn(f"(../../examples/{name}.py)", page)
 
 
 if __name__ == "__main__":
