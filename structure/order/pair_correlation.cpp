@@ -15,20 +15,12 @@
 #include "structure/order/accessible.hpp"
 #include "structure/order/height_pairs.hpp"
 #include "structure/order/neighbours.hpp"
+#include "structure/order/whole_shells.hpp"
 
 namespace jostle::inline structure {
 namespace {
 
 constexpr double least_share = 0.25;  // of central spheres that can make a displacement
-
-double narrowest_period(const Boundary& boundary) {
-  const Vec3 periods = boundary.periods();
-  double narrowest = infinite;
-  for (const double period : {periods.x, periods.y, periods.z}) {
-    if (period > 0) narrowest = std::min(narrowest, period);
-  }
-  return narrowest;
-}
 
 struct Heights {
   HeightWindow centres;     // of central spheres
@@ -223,7 +215,7 @@ Shell shell_of(const Displacements& displacements, const std::vector<Vec3>& dire
 }
 
 void count_pairs(const Packing& packing, const Heights& heights, const Displacements& displacements,
-                 PairCorrelation& pairs) {
+                 const WholeShells& whole, PairCorrelation& pairs) {
   constexpr double early = 1e-9, edge = 1e-9;
   const std::size_t n_bins = pairs.r.size();
   const NeighbourFinder finder(packing, static_cast<double>(n_bins) * pairs.bin_width);
@@ -232,16 +224,23 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
     const Vec3 from = packing.centres[i];
     if (from.z < heights.centres.low || from.z > heights.centres.high) continue;
     ++pairs.n_centres;
+    const double room = whole.room(from);
     finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
       const double height = packing.centres[j].z;
       if (j == i || height < heights.all.low - edge || height > heights.all.high + edge) return;
-      const auto bin =
-          static_cast<std::size_t>(std::sqrt(distance_squared) * bins_per_length + early);
+      const double distance = std::sqrt(distance_squared);
+      const auto bin = static_cast<std::size_t>(distance * bins_per_length + early);
       if (bin >= n_bins) return;
       const double share = displacements.share(way);
       if (share <= 0) return;
       ++pairs.counts[bin];
-      pairs.neighbours[bin] += 1 / std::max(share, least_share);
+      const double low = static_cast<double>(bin) * pairs.bin_width;
+      if (whole.is_too_wide(low, low + pairs.bin_width)) {
+        pairs.neighbours[bin] += 1 / std::max(share, least_share);
+      } else if (distance <= room) {
+        pairs.neighbours[bin] +=
+            static_cast<double>(whole.count(low)) / static_cast<double>(whole.count(distance));
+      }
       pairs.found[bin] += displacements.weight(way, from, packing.centres[j]);
     });
   }
@@ -336,13 +335,20 @@ PairCorrelation pair_correlation(const Packing& packing, const PairCorrelationSe
   for (std::size_t k = 0; k < n_bins; ++k) {
     pairs.r.push_back((static_cast<double>(k) + 0.5) * settings.bin_width);
   }
-  count_pairs(packing, heights, displacements, pairs);
+  const WholeShells whole(packing, displacements.footprint(), heights.centres, heights.all);
+  count_pairs(packing, heights, displacements, whole, pairs);
   const std::vector<Vec3> all_directions = even_directions(2000);
   for (std::size_t k = 0; k < n_bins; ++k) {
     const double low = static_cast<double>(k) * settings.bin_width, high = low + settings.bin_width;
     const Shell cut =
         pairs.n_centres > 0 ? shell_of(displacements, all_directions, low, high) : Shell{};
-    pairs.shells.push_back(static_cast<double>(pairs.n_centres) * cut.sampled);
+    if (!whole.is_too_wide(low, high)) {
+      pairs.shells.push_back(static_cast<double>(whole.count(low)));
+    } else {
+      const double centres =
+          whole.count_upright(low) > 0 ? static_cast<double>(pairs.n_centres) : 0;
+      pairs.shells.push_back(centres * cut.sampled);
+    }
     pairs.expected.push_back(cut.expected);
   }
   return pairs;

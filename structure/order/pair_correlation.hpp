@@ -31,10 +31,10 @@ HeightWindow bulk_heights(const Packing& packing, double r_max);
 struct PairCorrelation {
   std::vector<double> r;              // middles of the bins, [n_bins]
   std::vector<std::uint64_t> counts;  // neighbours found around all central spheres, [n_bins]
-  std::vector<double> neighbours;     // as many as whole shells around them would have, [n_bins]
+  std::vector<double> neighbours;     // in whole shells (whole_shells.hpp), [n_bins]
   std::vector<double> found;          // these, as if centres crowded nowhere at the sides, [n_bins]
   std::vector<double> expected;       // what an uncorrelated packing would have, [n_bins]
-  std::vector<double> shells;  // central spheres, by the part of their shells sampled, [n_bins]
+  std::vector<double> shells;  // central spheres that `neighbours` are counted around, [n_bins]
   double bin_width = 0;
   double density = 0;           // centres a cubic diameter, of the heights that the shells sample
   std::uint64_t n_centres = 0;  // central spheres
@@ -43,7 +43,7 @@ struct PairCorrelation {
   std::vector<double> g() const;
 
   /// Mean number of other centres up to the end of each bin around a sphere whose shells are whole.
-  /// NaN from where no shell is sampled.
+  /// NaN from where no central sphere has whole shells.
   std::vector<double> running_neighbours() const;
 
   /// Pools the counts of another packing, measured in the same bins; density and n_centres become
@@ -55,11 +55,16 @@ struct PairCorrelation {
 /// region: the accessible footprint (accessible.hpp) between the lowest centres and the surface,
 /// 2<Z> - 1/2 or the highest centre below it, and within r_max of `heights`.
 ///
-/// Edges: n(d) of the n central spheres have the place at a displacement d inside that region, and
-/// a pair at d counts n / n(d) times (translation correction: Ohser 1983, Math. Operationsforsch.
-/// Statist. Ser. Statist. 14, 63). Lattices have neighbours in some directions alone, and their
-/// numbers come out exactly. A displacement that fewer than a quarter of the central spheres can
-/// make counts as if a quarter could, in pairs and in what is expected.
+/// Neighbours are counted around central spheres whose shell lies in that region. Shells that no
+/// place between the sides has room for, or that exceed half a period, count all pairs with the
+/// edge correction below: exact for lattices, too large where spheres crowd at the sides. No
+/// neighbours are given where floor or surface cuts every shell.
+///
+/// Edges of g: n(d) of the n central spheres have the place at a displacement d inside that region,
+/// and a pair at d counts n / n(d) times (translation correction: Ohser 1983, Math.
+/// Operationsforsch. Statist. Ser. Statist. 14, 63). Lattices have neighbours in some directions
+/// alone, and their numbers come out exactly. A displacement that fewer than a quarter of the
+/// central spheres can make counts as if a quarter could, in pairs and in what is expected.
 ///
 /// Expected: the pairs of an uncorrelated packing with the heights of this one. A sphere keeps its
 /// height and is anywhere in the footprint (height_pairs.hpp). The number is unbiased for few

@@ -209,6 +209,58 @@ TEST_CASE("The lattice between walls that had four neighbours has six") {
   }
 }
 
+/// Neighbours within r around the spheres at least r inside the accessible region, by all pairs.
+struct Counted {
+  double mean = 0;
+  int n_spheres = 0;
+};
+Counted counted_inside_tube(const Packing& bed, double diameter, HeightWindow heights, double r) {
+  Counted counted;
+  const double axis = 0.5 * diameter, surface = 2 * mean_height(bed) - 0.5;
+  for (const Vec3& a : bed.centres) {
+    const bool central = a.z >= heights.low && a.z <= heights.high;
+    const double depth = axis - 0.5 - std::hypot(a.x - axis, a.y - axis);
+    if (!central || std::min({depth, a.z - 0.5, surface - a.z}) < r) continue;
+    ++counted.n_spheres;
+    for (const Vec3& b : bed.centres) {
+      if (&a != &b && norm_squared(b - a) < r * r) ++counted.mean;
+    }
+  }
+  counted.mean /= counted.n_spheres;
+  return counted;
+}
+
+TEST_CASE("Neighbours of beds in tubes are those of spheres away from the wall") {
+  const double diameter = 9.3;
+  double of_tubes = 0, of_periodic = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    RandomStream random(stream_key(2001, 0, seed, Purpose::start));
+    const Packing bed = make_start(SteepestDescentPour{}, Cylinder{diameter}, 500, random);
+    const PairCorrelation pairs = pair_correlation(bed, {.r_max = 2});
+    const HeightWindow central = bulk_heights(bed, 2);
+    // The bins beyond contact hold pairs whose own distance their spheres have room for: a few
+    // spheres more than those with room up to the end.
+    for (const double r : {1.02, 1.1, 1.5}) {
+      CAPTURE(seed, r);
+      CHECK(neighbours_up_to(pairs, r) ==
+            Approx(counted_inside_tube(bed, diameter, central, r).mean).epsilon(0.03));
+    }
+    of_tubes += neighbours_up_to(pairs, 1.06) / 4;
+    const Packing wide = make_start(SteepestDescentPour{}, PeriodicBox{8, 8}, 700, random);
+    of_periodic += neighbours_up_to(pair_correlation(wide, {.r_max = 2}), 1.06) / 4;
+  }
+  CAPTURE(of_tubes, of_periodic);
+  CHECK(std::abs(of_tubes - of_periodic) < 0.2);
+}
+
+TEST_CASE("A bed of two layers has no neighbours where no shell is whole") {
+  RandomStream random(stream_key(2001, 0, 0, Purpose::start));
+  const Packing bed = make_start(SteepestDescentPour{}, Cylinder{9.3}, 120, random);
+  const PairCorrelation pairs = pair_correlation(bed, {.r_max = 2});
+  CHECK(neighbours_up_to(pairs, 0.3) == 0);
+  CHECK(std::isnan(neighbours_up_to(pairs, 1.06)));
+}
+
 TEST_CASE("Beds poured between walls and in tubes have the g(r) of one without sides",
           "[statistics]") {
   const auto pooled = [](const Container& container, std::uint32_t n) {
