@@ -17,7 +17,8 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; -: that interval is open; not "
-    "identifiable: the data set no limit. docs/reference/laws.md describes the rest.\n";
+    "identifiable: the data set no limit. In a difference a(b), b is the standard error. "
+    "docs/reference/laws.md describes the rest.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();

@@ -36,7 +36,8 @@ bool is_wide(const Estimate& estimate, const Curve& curve) {
   const ParameterUnit unit = estimate.parameter.unit;
   if (unit == ParameterUnit::value) return width > wide_share * span(curve.x);
   if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
-  return unit == ParameterUnit::time && width > wide_share * span(curve.t);
+  if (unit == ParameterUnit::time) return width > wide_share * span(curve.t);
+  return interval.lower <= 0 && interval.upper >= 0;  // nothing to compare with: its sign is open
 }
 
 Identifiability verdict(const Estimate& estimate, const Curve& curve) {

@@ -200,6 +200,24 @@ TEST_CASE("A law of the user's own is fitted from its start") {
   CHECK(again.estimates[2].value == Approx(found.estimates[2].value).epsilon(1e-7));
 }
 
+TEST_CASE("A slope is wide where its interval holds 0") {
+  const auto line = make_own_law({.formula = "X0 + r*t", .start = {{"X0", 1}, {"r", 0.1}}});
+  const auto slope_of = [&](double slope) {
+    Curve curve;
+    for (int k = 0; k < 40; ++k) {
+      curve.t.push_back(k);
+      curve.x.push_back(1 + slope * k + 0.1 * std::sin(2.4 * k));
+    }
+    return std::get<Fit>(fit(*line, curve)).estimates[1];
+  };
+  const Estimate flat = slope_of(0), rising = slope_of(0.01);
+  REQUIRE(flat.intervals[1].lower < 0);
+  REQUIRE(flat.intervals[1].upper > 0);
+  CHECK(flat.identifiability == Identifiability::wide);
+  REQUIRE(rising.intervals[1].lower > 0);
+  CHECK(rising.identifiability == Identifiability::identified);
+}
+
 TEST_CASE("An own law that is not finite where it starts is refused with the t") {
   const Curve curve{.t = {0, 1, 2, 3}, .x = {1, 2, 4, 5}};
   const auto result = fit(*make_own_law({.formula = "a*log(t)", .start = {{"a", 1}}}), curve);
