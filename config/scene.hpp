@@ -174,7 +174,7 @@ constexpr auto asked_for(std::vector<AnalysisRequest<Settings>> Part::*member,
                Settings::about.text, {.unless_default = unless_empty});
 }
 
-/// What a run ends with, at every sweep point. docs/reference/analyses.md.
+/// Analyses made at the end of a run, at every sweep point. docs/reference/analyses.md.
 struct Analyses {
   std::vector<AnalysisRequest<SteadySettings>> steady;
   std::vector<AnalysisRequest<SpectrumSettings>> spectrum;

@@ -2,7 +2,7 @@
 
 namespace jostle::inline cli {
 
-/// What the program's exit code says; docs/reference/commands.md documents them for scripts.
+/// Exit codes of the program; docs/reference/commands.md documents them for scripts.
 enum ExitCode : int {
   exit_ok = 0,
   exit_bad_input = 2,            // the scene or the command line; nothing was run or written

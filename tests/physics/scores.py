@@ -1,4 +1,4 @@
-"""Scores the papers' statements (claims.py) from the reduced data: an estimate, a test, a status word.
+"""Scores the papers' statements (claims_pb.py, claims_dr.py) from the reduced data: an estimate, a test, a status word.
 
 Each statement is tested at 5 %; false_discoveries() gives what that means for the page as a whole."""
 import dataclasses
