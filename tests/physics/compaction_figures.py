@@ -232,10 +232,9 @@ def moves(run):
     def gain(theta, step=0.1):
         curve = curves[theta, step, "gaussian"]
         return curve[30] - curve[0]
-    rows = [[f"{theta / np.pi:.4g} pi"] + [
-        f"{Estimate.of(1e4 * gain(theta, step)).text(0)}; "
-        f"{np.mean(sweeps[theta, step, 'gaussian'][1:]):.0f}" for step in STEPS]
-        for theta in THETAS]
+    rows = [[f"{theta / np.pi:.4g} pi", f"{step:g}", law,
+             Estimate.of(1e4 * (curve[30] - curve[0])).text(0), f"{sweeps[theta, step, law][1:].mean():.0f}"]
+            for (theta, step, law), curve in curves.items()]
     at_best = gain(0.7854)
     statements = [
         are_positive("theta_0 = pi/4 compacts most, d_max = R/5",
@@ -257,8 +256,7 @@ def moves(run):
             f"the width of the law matters, not its form: {law} (0.002)",
             Estimate.of(curve[30] - gaussian[30]), 0.002,
             f"Phi_c at tap 30, {law} less Gaussian: "))
-    text = table(["10^4 (Phi_c(30) - Phi_c(0)); sweeps per tap, at theta_0"] +
-                 [f"d_max = {step:g} d" for step in STEPS], rows)
+    text = table(["theta_0", "d_max, diameters", "law", "10^4 (Phi_c(30) - Phi_c(0))", "sweeps per tap"], rows)
     return text + f"\n\nPhi_c(0) = {at(gaussian, 0)}.", statements
 
 
