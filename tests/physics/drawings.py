@@ -4,6 +4,7 @@ import numpy as np
 from scipy import stats
 
 from pictures import COLOURS, Picture, curves_of, value_of
+from distributions import distribution
 from reduce import REDUCED, read_table
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
@@ -100,9 +101,9 @@ def draw_layers(axes):
     axes[0].set(xlabel=TAPS, ylabel="packing fraction, 0 to 15 d")
     axes[0].set_xscale("symlog", linthresh=1)
     axes[0].legend()
-    heights = [row for row in read_table(REDUCED / "dr6-windows" / "heights.csv")[1:] if row[0] == "1"]
-    for panel, tap in zip(axes[1:], ("0", "50", "250")):
-        z, n = zip(*((float(row[2]), float(row[3])) for row in heights if row[1] == tap))
+    shares = distribution("dr6-windows", 1, "n")
+    for panel, tap in zip(axes[1:], (0, 50, 250)):
+        z, n, _ = shares[tap]
         for layer in range(10):
             panel.axvline(0.5 + layer * (2 / 3)**.5, color="#bbbbbb", linewidth=.5)
         panel.plot(z, n, color=COLOURS[0], linewidth=.7)

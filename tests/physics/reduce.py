@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 """Stores what runs found as small CSV files, from which docs/validation is made on any machine.
 
-reduce.py sections PAGE FOLDER: the tables of a page of figures.py, one folder per run.
-reduce.py series FILE FOLDER OBSERVABLE ...: series of a results file at log-spaced taps, per realization."""
+reduce.py sections PAGE FOLDER: the tables of a page of figures.py, one folder per run. beds.py reduces results files."""
 import csv
-import hashlib
 import json
 import pathlib
 import re
@@ -63,38 +61,5 @@ def taps_to_keep(last):
     return [tap for tap in sorted({0, 1, 2, 3, 4, 5, last} | spaced) if tap <= last]
 
 
-def reduce_series(path, folder, observables):
-    """Writes series.csv (one row per point, realization and tap) and scene.csv with the origin."""
-    import h5py
-    with h5py.File(path) as file:
-        rows = []
-        for point, group in enumerate(file["observables"][name] for name in sorted(file["observables"])):
-            columns = [group[name][:] for name in observables]
-            for realization in range(columns[0].shape[1]):
-                rows += [[point, realization, tap, *(f"{column[tap, realization]:.5f}" for column in columns)]
-                         for tap in taps_to_keep(len(columns[0]) - 1)]
-        labels = [label.decode() for label in file["sweep/label"][:]]
-        scene = text_of(file["scene/verbatim"])
-        origin = [["sha256 of the scene", hashlib.sha256(scene.encode()).hexdigest()],
-                  ["revision", text_of(file["provenance/git_revision"])],
-                  ["version", text_of(file["provenance/version"])],
-                  ["run", str(file["provenance"].attrs["run_id"])]]
-        histograms = []
-        if "snapshots" in file and "height_histogram" in file["snapshots/point_0000"]:
-            for point in sorted(file["snapshots"]):
-                group = file["snapshots"][point]
-                for tap, mean in zip(group["tap"][:], group["height_histogram"][:].mean(axis=1)):
-                    histograms += [[int(point[-4:]), int(tap), f"{z:.2f}", f"{share:.5f}"]
-                                   for z, share in zip(group["height"][:], mean) if share > 0]
-    write_table(folder / "series.csv", ["point", "realization", "tap", *observables], rows)
-    origin += [[f"point {k}", label] for k, label in enumerate(labels)]
-    write_table(folder / "origin.csv", ["key", "value"], origin)
-    if histograms:
-        write_table(folder / "heights.csv", ["point", "tap", "height", "share"], histograms)
-
-
 if __name__ == "__main__":
-    if sys.argv[1] == "sections":
-        reduce_sections(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
-    else:
-        reduce_series(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:])
+    reduce_sections(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))

@@ -10,12 +10,14 @@ import textwrap
 
 from drawings import draw_figure, draw_overview
 from page_text import table
+from paper_runs import table_of
 from published import FIGURES, NO_DATA
-from reduce import REDUCED
+from reduce import REDUCED, read_table
 from scores import (DECIDED, STATUS, all_scores, counts, false_discoveries, p_text, status_of_figure)
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LONG = 118
+PAPER_RUNS = {run.name: run for run in table_of()}
 
 
 def wrapped(text):
@@ -41,8 +43,17 @@ def origin_of(run):
     path = REDUCED / run / "origin.csv"
     if not path.exists():
         return "only the printed numbers of this run survive; its scene's checksum and revision are not known"
-    values = dict(line.split(",", 1) for line in path.read_text().splitlines())
-    return f"scene SHA-256 {values['sha256 of the scene'][:16]}..., revision {values['revision']}"
+    digest = dict(read_table(path)[1:])["sha256 of the settings"]
+    beds = read_table(REDUCED / run / "beds.csv")[1:]
+    hours = sum(float(row[2]) for row in beds) / 3600
+    revisions = ", ".join(sorted({row[3] for row in beds}))
+    return (f"{len(beds)} beds, {hours:.2g} core-hours, SHA-256 of the scene's settings {digest[:16]}..., "
+            f"revision {revisions}")
+
+
+def command_of(run):
+    """The command that makes the reduced data of a run."""
+    return f"./dev physics --hours 24 --only {run}" if run in PAPER_RUNS else f"./dev physics {run}"
 
 
 def page_of(name, figure, scores):
@@ -59,9 +70,7 @@ def page_of(name, figure, scores):
     parts += ["## Runs", f"Scene: [{figure.scene}](../../config/scenes/{figure.scene}.json)"]
     for run in figure.runs:
         notes = notes_of(run)
-        command = f"`./dev physics {run}`" if run != "dr6-windows" else \
-            "the scene above, by `jostle run`"
-        lines = [f"- {command}: {notes.get('here', '3456 spheres in 12 x 12 d, 250 taps, 20 realizations.')}"]
+        lines = [f"- `{command_of(run)}`: {notes.get('here', '3456 spheres in 12 x 12 d, 250 taps, 20 realizations.')}"]
         lines.append(f"  Reduced data: [{run}](../../tests/physics/reduced/{run}); {origin_of(run)}.")
         parts.append("\n".join("\n".join(textwrap.wrap(line, LONG, subsequent_indent="  ", initial_indent=""))
                                for line in lines))

@@ -1,0 +1,36 @@
+"""Reads what beds.py has reduced: means over beds of distributions, and numbers of each bed."""
+import numpy as np
+
+from reduce import REDUCED, read_table
+
+
+def beds_of_point(run, point):
+    return sum(row[0] == str(point) for row in read_table(REDUCED / run / "beds.csv")[1:])
+
+
+def distribution(run, point, quantity):
+    """{tap: (x, mean, standard error of the mean)} over the beds of a sweep point."""
+    beds, found = beds_of_point(run, point), {}
+    for row in read_table(REDUCED / run / "distributions.csv")[1:]:
+        if row[0] == str(point) and row[2] == quantity:
+            mean, square = float(row[4]) / beds, float(row[5]) / beds
+            error = np.sqrt(max(0.0, square - mean**2) / max(1, beds - 1))
+            found.setdefault(int(row[1]), []).append((float(row[3]), mean, error))
+    return {tap: tuple(np.array(rows).T) for tap, rows in found.items()}
+
+
+def numbers(run, point, quantity, tap):
+    """A number of a kept packing, [bed], in the order of the realizations."""
+    return np.array([float(row[4]) for row in read_table(REDUCED / run / "structure.csv")[1:]
+                     if row[0] == str(point) and row[2] == str(tap) and row[3] == quantity])
+
+
+def series(run, point, observable, tap):
+    """An observable at a kept tap, [bed], in the order of the realizations."""
+    header, *rows = read_table(REDUCED / run / "series.csv")
+    at = header.index(observable)
+    return np.array([float(row[at]) for row in rows if row[0] == str(point) and row[2] == str(tap)])
+
+
+def label(run, point):
+    return dict(read_table(REDUCED / run / "origin.csv")[1:])[f"point {point}"]
