@@ -8,6 +8,7 @@
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
+#include "engine/bed/boundary.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline config {
@@ -46,16 +47,14 @@ class LadderMaker {
     const bool fills = std::holds_alternative<SteepestDescentPour>(scene_.start) ||
                        std::holds_alternative<FittedPour>(scene_.start) ||
                        std::holds_alternative<RandomSettle>(scene_.start);
-    Container half = scene_.container;
-    auto* periodic = std::get_if<PeriodicBox>(&half);
-    auto* walled = std::get_if<WalledBox>(&half);
-    if (!fills || (!periodic && !walled) || scene_.n_spheres < 2) return;
-    double& width = periodic ? periodic->width_x : walled->width_x;
-    width *= 0.5;
-    if (width < narrowest_half) return;
+    const Boundary boundary(scene_.container);
+    if (!fills || boundary.tube || !boundary.has_floor() || scene_.n_spheres < 2) return;
+    Vec3 half = extent(scene_.container);
+    half.x *= 0.5;
+    if (half.x < narrowest_half) return;
     add(PilotSetting::Part::spheres, "half the footprint", engine_of(scene_));
     settings_.back().n_spheres /= 2;
-    settings_.back().container = half;
+    settings_.back().container = *container_of(name_of(scene_.container), half);
   }
 
   void add(PilotSetting::Part part, std::string name, const EngineSettings& engine) {
@@ -264,13 +263,13 @@ class RelaxationLadder : LadderMaker {
   }
 
   void other_pour() {
-    const auto* box = std::get_if<WalledBox>(&scene_.container);
-    if (box == nullptr || scene_.relax_start) return;
+    const Boundary boundary(scene_.container);
+    if (!(boundary.planes_x() || boundary.planes_y()) || scene_.relax_start) return;
     if (std::holds_alternative<FittedPour>(scene_.start)) {
       add(PilotSetting::Part::start, "poured between the walls", scene_.relax);
       settings_.back().start = SteepestDescentPour{};
     } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) &&
-               !start_fault(FittedPour{}, *box)) {
+               !start_fault(FittedPour{}, scene_.container)) {
       add(PilotSetting::Part::start, "fitted between the walls", scene_.relax);
       settings_.back().start = FittedPour{};
     }

@@ -108,7 +108,7 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
 
 double fraction_of(const Packing& packing, const Region& region) {
   const Boundary boundary(packing.container);
-  if (boundary.floor) return solids_fraction(packing, {region.low, region.high});
+  if (boundary.has_floor()) return solids_fraction(packing, {region.low, region.high});
   return static_cast<double>(packing.centres.size()) * sphere_volume /
          (footprint_area(packing.container) * boundary.height);
 }

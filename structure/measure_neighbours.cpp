@@ -191,7 +191,7 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
     out.quantities.push_back(
         {.name = name, .values = of_region[c].values(), .long_name = long_name, .source = source});
   }
-  if (Boundary(in.packing.container).floor) {
+  if (Boundary(in.packing.container).has_floor()) {
     out.quantities.push_back(
         {.name = "ordered_height",
          .values = {ordered_height(in.packing, orders)},

@@ -51,9 +51,10 @@ void add_along(Axis axis, const Packing& packing, HeightWindow window, double bi
                              .long_name = "area fraction of plane cuts parallel to a side"});
 }
 
-/// Where the footprint is square.
+/// Where x and y are alike.
 void add_mean_of_axes(const Packing& packing, Measurement& into) {
-  if (width_x(packing.container) != width_y(packing.container)) return;
+  const Boundary boundary(packing.container);
+  if (boundary.width_x != boundary.width_y || boundary.periodic_x != boundary.periodic_y) return;
   std::vector<double> mean = into.find("phi_x")->values;
   const std::vector<double>& other = into.find("phi_y")->values;
   for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (mean[k] + other[k]);
@@ -68,8 +69,11 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
                     Measurement& into) {
   const Boundary boundary(packing.container);
   if (!boundary.has_walls()) return;
-  if (boundary.sides == Sides::walls) {
-    const double half = 0.5 * std::min(boundary.width_x, boundary.width_y);
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const double apart = std::min(boundary.periodic_x ? endless : boundary.width_x,
+                                boundary.periodic_y ? endless : boundary.width_y);
+  if (!boundary.tube) {
+    const double half = 0.5 * apart;
     const Profile walls = wall_profile(packing, even_edges(0, half, settings.bin_width), window);
     into.places.push_back(
         {"wall_distance", middles(walls), "diameter", "distance to the nearest wall"});
@@ -82,7 +86,7 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
     add_profile("radius", rings, "phi_radial", "packing fraction of rings around the axis", "",
                 into);
   }
-  if (boundary.width_x <= 2 * settings.reach || boundary.width_y <= 2 * settings.reach) {
+  if (apart <= 2 * settings.reach) {
     into.notes.emplace_back("lateral", "the walls are less than twice the reach apart");
     return;
   }
@@ -148,7 +152,7 @@ Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
   require_floor(in.packing);
   const HeightWindow window = settings.heights.value_or(transverse_window(in.packing));
   Measurement out;
-  if (Boundary(in.packing.container).sides != Sides::cylinder) {
+  if (!Boundary(in.packing.container).tube) {
     add_along(Axis::x, in.packing, window, settings.bin_width, out);
     add_along(Axis::y, in.packing, window, settings.bin_width, out);
     add_mean_of_axes(in.packing, out);

@@ -39,8 +39,8 @@ struct BedMechanics {
   DrivenBed driven;               // of a tap whose motion was watched (Dynamics::watch_motion)
 };
 
-/// What a sphere can lean on, by number: "floor", then "x_min", "x_max", "y_min", "y_max" of
-/// planes, or "tube". None of a fully periodic container.
+/// What a sphere can lean on, by number: the names of the container's faces. None of a fully
+/// periodic container.
 std::vector<std::string> wall_names(const Container& container);
 
 }  // namespace jostle::inline engine

@@ -2,43 +2,98 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace jostle::inline engine {
 
 namespace {
-
-struct Fill {
-  Boundary& boundary;
-
-  void operator()(const PeriodicBox& box) const {
-    boundary.periodic_x = boundary.periodic_y = true;
-    boundary.width_x = box.width_x;
-    boundary.width_y = box.width_y;
-  }
-  void operator()(const WalledBox& box) const {
-    boundary.sides = Sides::walls;
-    boundary.width_x = box.width_x;
-    boundary.width_y = box.width_y;
-  }
-  void operator()(const Cylinder& tube) const {
-    boundary.sides = Sides::cylinder;
-    boundary.width_x = boundary.width_y = tube.diameter;
-  }
-  void operator()(const FullyPeriodicBox& box) const {
-    boundary.periodic_x = boundary.periodic_y = boundary.periodic_z = true;
-    boundary.floor = false;
-    boundary.width_x = box.width_x;
-    boundary.width_y = box.width_y;
-    boundary.height = box.height;
-  }
-};
 
 double into_period(double x, double width) {
   if (x >= 0 && x < width) return x;
   return wrap_coordinate(x - std::floor(x / width) * width, width);
 }
 
+double along(Vec3 r, int direction) {
+  return direction == 0 ? r.x : direction == 1 ? r.y : r.z;
+}
+
+Vec3 unit(int direction, double sign) {
+  return {direction == 0 ? sign : 0, direction == 1 ? sign : 0, direction == 2 ? sign : 0};
+}
+
 }  // namespace
+
+Boundary::Boundary(const Container& container) {
+  std::visit([this](const auto& one) { static_cast<ContainerShape&>(*this) = one.shape(); },
+             container);
+  const Vec3 extent = jostle::extent(container);
+  width_x = extent.x;
+  width_y = extent.y;
+  if (periodic_z) height = extent.z;
+}
+
+double Face::distance(Vec3 r) const {
+  if (kind == Kind::lower_plane) return along(r, direction) - place;
+  if (kind == Kind::upper_plane) return place - along(r, direction);
+  const double x = r.x - place, y = r.y - place;
+  return place - std::sqrt(x * x + y * y);
+}
+
+Vec3 Face::normal(Vec3 r) const {
+  if (kind == Kind::lower_plane) return unit(direction, 1);
+  if (kind == Kind::upper_plane) return unit(direction, -1);
+  const double x = r.x - place, y = r.y - place;
+  const double from_axis = std::sqrt(x * x + y * y);
+  const double inverse = from_axis > 0 ? 1 / from_axis : 0;
+  return {-x * inverse, -y * inverse, 0};
+}
+
+double Face::recession(Vec3 r, Vec3 v) const {
+  if (kind == Kind::lower_plane) return along(v, direction);
+  if (kind == Kind::upper_plane) return -along(v, direction);
+  const double x = r.x - place, y = r.y - place;
+  const double from_axis = std::sqrt(x * x + y * y);
+  return from_axis > 0 ? -((x * v.x + y * v.y) / from_axis) : 0;
+}
+
+Faces::Faces(const Boundary& boundary) {
+  using enum Face::Kind;
+  if (boundary.has_floor()) add({"floor", lower_plane});
+  if (boundary.planes_x()) {
+    add({"x_min", lower_plane, 0, 0});
+    add({"x_max", upper_plane, 0, boundary.width_x});
+  }
+  if (boundary.planes_y()) {
+    add({"y_min", lower_plane, 1, 0});
+    add({"y_max", upper_plane, 1, boundary.width_y});
+  }
+  if (boundary.tube) add({"tube", tube, 2, boundary.axis()});
+}
+
+double footprint_area(const Boundary& boundary, double from_sides) {
+  if (boundary.tube) {
+    const double across = std::max(0.0, boundary.width_x - 2 * from_sides);
+    return 0.25 * std::numbers::pi * (across * across);
+  }
+  const auto inner = [&](double width, bool planes) {
+    return planes ? std::max(0.0, width - 2 * from_sides) : width;
+  };
+  return inner(boundary.width_x, boundary.planes_x()) *
+         inner(boundary.width_y, boundary.planes_y());
+}
+
+bool in_footprint(const Boundary& boundary, Vec3 r, double from_sides) {
+  if (boundary.tube) {
+    const double reach = boundary.axis() - from_sides;
+    const double x = r.x - boundary.axis(), y = r.y - boundary.axis();
+    return reach >= 0 && x * x + y * y <= reach * reach;
+  }
+  const auto inside = [&](double at, double width) {
+    return at >= from_sides && at <= width - from_sides;
+  };
+  return (!boundary.planes_x() || inside(r.x, boundary.width_x)) &&
+         (!boundary.planes_y() || inside(r.y, boundary.width_y));
+}
 
 Vec3 into_periods(const Boundary& boundary, Vec3 r) {
   if (boundary.periodic_x) r.x = into_period(r.x, boundary.width_x);
@@ -47,39 +102,19 @@ Vec3 into_periods(const Boundary& boundary, Vec3 r) {
   return r;
 }
 
-Boundary::Boundary(const Container& container) {
-  std::visit(Fill{*this}, container);
-}
-
-bool clear_of_boundaries(const Boundary& boundary, Vec3 r) {
-  if (boundary.floor && !(r.z >= sphere_radius)) return false;
-  switch (boundary.sides) {
-    case Sides::none:
-      return true;
-    case Sides::walls:
-      return r.x >= sphere_radius && r.x <= boundary.width_x - sphere_radius &&
-             r.y >= sphere_radius && r.y <= boundary.width_y - sphere_radius;
-    case Sides::cylinder:
-      break;
-  }
-  const double dx = r.x - boundary.axis(), dy = r.y - boundary.axis();
-  const double reach = boundary.axis() - sphere_radius;
-  return dx * dx + dy * dy <= reach * reach;
-}
-
 double boundary_depth(const Boundary& boundary, Vec3 r) {
-  const double below = boundary.floor ? sphere_radius - r.z : 0;
-  switch (boundary.sides) {
-    case Sides::none:
-      return below;
-    case Sides::walls:
-      return std::max({below, sphere_radius - r.x, r.x - (boundary.width_x - sphere_radius),
-                       sphere_radius - r.y, r.y - (boundary.width_y - sphere_radius)});
-    case Sides::cylinder:
-      break;
+  const auto beyond = [](double at, double width) {
+    return std::max(sphere_radius - at, at - (width - sphere_radius));
+  };
+  if (boundary.tube) {
+    const double dx = r.x - boundary.axis(), dy = r.y - boundary.axis();
+    return std::max(sphere_radius - r.z,
+                    std::sqrt(dx * dx + dy * dy) - (boundary.axis() - sphere_radius));
   }
-  const double dx = r.x - boundary.axis(), dy = r.y - boundary.axis();
-  return std::max(below, std::sqrt(dx * dx + dy * dy) - (boundary.axis() - sphere_radius));
+  double depth = boundary.has_floor() ? sphere_radius - r.z : 0;
+  if (boundary.planes_x()) depth = std::max(depth, beyond(r.x, boundary.width_x));
+  if (boundary.planes_y()) depth = std::max(depth, beyond(r.y, boundary.width_y));
+  return depth;
 }
 
 }  // namespace jostle::inline engine

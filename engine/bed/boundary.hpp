@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <limits>
+#include <span>
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/geometry.hpp"
@@ -8,54 +10,71 @@
 
 namespace jostle::inline engine {
 
-/// Sides that are obstacles.
-enum class Sides { none, walls, cylinder };
-
 /// Where a container ends, as everything but the typed trial loops asks: made from it once, so that
 /// nobody else looks which container it is. Lengths in diameters.
-struct Boundary {
-  bool periodic_x = false, periodic_y = false, periodic_z = false;
-  bool floor = true;  // at z = 0, under an open top; then there is gravity. False: periodic_z
-  Sides sides = Sides::none;
+struct Boundary : ContainerShape {
   double width_x = 0, width_y = 0;                          // of the box around the footprint
   double height = std::numeric_limits<double>::infinity();  // infinite under an open top
 
   explicit Boundary(const Container& container);
 
-  bool has_walls() const { return sides != Sides::none; }
+  const ContainerShape& shape() const { return *this; }
+  Vec3 extent() const { return {width_x, width_y, height}; }
   bool periodic_sides() const { return periodic_x && periodic_y; }
   /// Periods in x, y and z; 0 where it is not periodic.
   Vec3 periods() const {
     return {periodic_x ? width_x : 0, periodic_y ? width_y : 0, periodic_z ? height : 0};
   }
-  /// How far centres stay away from the box's sides: a radius, or 0 where it is periodic.
-  double side_margin() const { return has_walls() ? sphere_radius : 0; }
-  /// Of a cylinder: where its axis stands in x and in y, which is its radius.
+  /// How far centres stay away from the box's sides along x and along y: a radius, or 0 where it is
+  /// periodic.
+  double margin_x() const { return periodic_x ? 0 : sphere_radius; }
+  double margin_y() const { return periodic_y ? 0 : sphere_radius; }
+  /// Of a tube: where its axis stands in x and in y, which is its radius.
   double axis() const { return 0.5 * width_x; }
 };
 
-/// Brings r, at most one period away, into the box (engine/bed/geometry.hpp).
-inline Vec3 wrapped(const Boundary& boundary, Vec3 r) {
-  if (boundary.periodic_x) r.x = wrap_coordinate(r.x, boundary.width_x);
-  if (boundary.periodic_y) r.y = wrap_coordinate(r.y, boundary.width_y);
-  if (boundary.periodic_z) r.z = wrap_coordinate(r.z, boundary.height);
-  return r;
-}
+/// The floor or a side: a plane across one direction, or the inside of a vertical tube.
+struct Face {
+  enum class Kind { lower_plane, upper_plane, tube };
+  const char* name;  // "floor", "x_min", "x_max", "y_min", "y_max" or "tube"
+  Kind kind;
+  int direction = 2;  // of a plane: 0, 1, 2 across x, y, z
+  double place = 0;  // of a plane: its coordinate. Of a tube: its radius, and where its axis stands
+
+  /// How far r is from the face; negative outside.
+  double distance(Vec3 r) const;
+  /// The unit normal into the container where the face is nearest to r; zero on a tube's axis.
+  Vec3 normal(Vec3 r) const;
+  /// How fast a point at r with velocity v goes away from the face.
+  double recession(Vec3 r, Vec3 v) const;
+};
+
+/// The faces of a container, the floor first if there is one: a sphere's contacts name them by
+/// their place here.
+class Faces {
+ public:
+  explicit Faces(const Boundary& boundary);
+
+  const Face* begin() const { return faces_.data(); }
+  const Face* end() const { return faces_.data() + size_; }
+  std::size_t size() const { return size_; }
+  const Face& operator[](std::size_t k) const { return faces_[k]; }
+
+ private:
+  void add(const Face& face) { faces_[size_++] = face; }
+
+  std::array<Face, 5> faces_{};
+  std::size_t size_ = 0;
+};
+
+/// Area of the part of the footprint that lies at least `from_sides` away from walls.
+double footprint_area(const Boundary& boundary, double from_sides);
+
+/// Whether (x, y) lies at least `from_sides` away from walls.
+bool in_footprint(const Boundary& boundary, Vec3 r, double from_sides);
 
 /// Brings r, any number of periods away, into the box.
 Vec3 into_periods(const Boundary& boundary, Vec3 r);
-
-/// The shortest vector from b to a, both wrapped.
-inline Vec3 separation(const Boundary& boundary, Vec3 a, Vec3 b) {
-  Vec3 d = a - b;
-  if (boundary.periodic_x) d.x = nearest_image(d.x, boundary.width_x);
-  if (boundary.periodic_y) d.y = nearest_image(d.y, boundary.width_y);
-  if (boundary.periodic_z) d.z = nearest_image(d.z, boundary.height);
-  return d;
-}
-
-/// Whether a sphere centred at r stays clear of floor and sides (touching is clear).
-bool clear_of_boundaries(const Boundary& boundary, Vec3 r);
 
 /// How deep a sphere centred at r reaches into the floor or a side; negative or 0 where it is clear
 /// of them.

@@ -1,8 +1,8 @@
 #include "engine/bed/container.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <utility>
 
 #include "engine/bed/boundary.hpp"
 
@@ -26,46 +26,85 @@ std::optional<std::string> too_narrow(const char* what, double width, double lea
                     : ", or no sphere fits inside");
 }
 
-struct WidthFault {
-  std::optional<std::string> operator()(const PeriodicBox& box) const {
-    return too_narrow("periodic width", std::min(box.width_x, box.width_y), least_periodic_width,
-                      true);
-  }
-  std::optional<std::string> operator()(const WalledBox& box) const {
-    return too_narrow("width between walls", std::min(box.width_x, box.width_y), least_walled_width,
-                      false);
-  }
-  std::optional<std::string> operator()(const Cylinder& tube) const {
-    return too_narrow("cylinder diameter", tube.diameter, least_walled_width, false);
-  }
-  std::optional<std::string> operator()(const FullyPeriodicBox& box) const {
-    return too_narrow("periodic width or height", std::min({box.width_x, box.width_y, box.height}),
-                      least_periodic_width, true);
-  }
-};
+/// The least of the widths that `counts` tells of, x, y and z; infinite if there is none.
+double least_of(Vec3 extent, bool x, bool y, bool z) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  // Not a number is kept: it is no width.
+  double least = none;
+  for (const auto& [counts, width] : {std::pair(x, extent.x), {y, extent.y}, {z, extent.z}})
+    if (counts && !(width >= least)) least = width;
+  return least;
+}
 
 }  // namespace
 
 std::optional<std::string> width_fault(const Container& container) {
-  return std::visit(WidthFault{}, container);
+  const Boundary boundary(container);
+  const Vec3 size = extent(container);
+  if (boundary.tube) return too_narrow("cylinder diameter", size.x, least_walled_width, false);
+  const char* const periodic = boundary.periodic_z ? "periodic width or height" : "periodic width";
+  const auto walled = [&] {
+    return too_narrow("width between walls",
+                      least_of(size, boundary.planes_x(), boundary.planes_y(), false),
+                      least_walled_width, false);
+  };
+  if (!boundary.periodic_x && !boundary.periodic_y) return walled();
+  const auto fault = too_narrow(
+      periodic, least_of(size, boundary.periodic_x, boundary.periodic_y, boundary.periodic_z),
+      least_periodic_width, true);
+  return fault || !boundary.has_walls() ? fault : walled();
+}
+
+std::string name_of(const Container& container) {
+  return std::visit([](const auto& one) { return std::string(one.about.name); }, container);
+}
+
+namespace {
+
+/// Calls act(Box{}) for every kind of container.
+template <class Act, std::size_t... k>
+void for_each_kind(const Act& act, std::index_sequence<k...>) {
+  (act(std::variant_alternative_t<k, Container>{}), ...);
+}
+template <class Act>
+void for_each_kind(const Act& act) {
+  for_each_kind(act, std::make_index_sequence<std::variant_size_v<Container>>());
+}
+
+}  // namespace
+
+std::vector<std::string> container_names() {
+  std::vector<std::string> names;
+  for_each_kind([&](const auto& kind) { names.emplace_back(kind.about.name); });
+  return names;
+}
+
+std::optional<Container> container_of(std::string_view name, Vec3 extent) {
+  std::optional<Container> found;
+  for_each_kind([&](const auto& kind) {
+    if (name == kind.about.name) found = kind.of(extent);
+  });
+  return found;
+}
+
+Vec3 extent(const Container& container) {
+  return std::visit([](const auto& one) { return one.extent(); }, container);
 }
 
 double width_x(const Container& container) {
-  return Boundary(container).width_x;
+  return extent(container).x;
 }
 
 double width_y(const Container& container) {
-  return Boundary(container).width_y;
+  return extent(container).y;
 }
 
 double footprint_area(const Container& container) {
-  const Boundary boundary(container);
-  const double box = boundary.width_x * boundary.width_y;
-  return boundary.sides == Sides::cylinder ? 0.25 * std::numbers::pi * box : box;
+  return footprint_area(Boundary(container), 0);
 }
 
 bool has_gravity(const Container& container) {
-  return Boundary(container).floor;
+  return Boundary(container).has_floor();
 }
 
 }  // namespace jostle::inline engine

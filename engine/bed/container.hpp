@@ -3,17 +3,32 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "engine/bed/vec3.hpp"
 #include "engine/fields.hpp"
 
-// What holds the spheres. Lengths in diameters. Every container but the fully periodic one has a
-// floor at z = 0 and an open top; every container's footprint lies in [0, width_x] x [0, width_y].
+// What holds the spheres: its periods, its walls, its floor, and how large it is. A container is
+// one of the structs below, and nothing else asks which: whatever is done at its sides follows from
+// its shape (engine/bed/boundary.hpp). Lengths in diameters.
 namespace jostle::inline engine {
 
 inline constexpr double sphere_radius = 0.5;
 inline constexpr double sphere_volume = 0.52359877559829887307710723054658;  // pi / 6
+
+/// How a container ends along x, y and z. Its footprint lies in [0, x] x [0, y] of its extent.
+struct ContainerShape {
+  bool periodic_x = false, periodic_y = false;  // else a vertical plane at either end, or the tube
+  bool periodic_z = false;  // else a floor at z = 0 under an open top; then there is gravity
+  bool tube = false;        // the side is the inside of a vertical tube
+
+  constexpr bool has_floor() const { return !periodic_z; }
+  constexpr bool planes_x() const { return !periodic_x && !tube; }
+  constexpr bool planes_y() const { return !periodic_y && !tube; }
+  constexpr bool has_walls() const { return !(periodic_x && periodic_y); }
+};
 
 /// Least widths for which minimum images and walls are right: periodic sides must be wider than
 /// 2 diameters (exclusive), walls and tubes at least 1 diameter.
@@ -37,9 +52,16 @@ constexpr NumberPair<Box> widths(double Box::*x, double Box::*y, Range range) {
           "a number, or a list of two, diameters"};
 }
 
+// Each container gives what scenes call it and its fields there, its shape, its extent along x, y
+// and z (0 under an open top), and itself from an extent.
+
 /// Periodic sides (P.B.C. of Philippe & Bideau 2001). Coordinates in [0, width).
 struct PeriodicBox {
   double width_x = 16, width_y = 16;
+
+  static constexpr ContainerShape shape() { return {.periodic_x = true, .periodic_y = true}; }
+  Vec3 extent() const { return {width_x, width_y, 0}; }
+  static PeriodicBox of(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const PeriodicBox&) const = default;
 
   static constexpr About about{.name = "periodic", .title = "Periodic sides"};
@@ -52,6 +74,10 @@ struct PeriodicBox {
 /// 1/2].
 struct WalledBox {
   double width_x = 16, width_y = 16;
+
+  static constexpr ContainerShape shape() { return {}; }
+  Vec3 extent() const { return {width_x, width_y, 0}; }
+  static WalledBox of(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const WalledBox&) const = default;
 
   static constexpr About about{.name = "walls", .title = "Four walls"};
@@ -63,6 +89,10 @@ struct WalledBox {
 /// A vertical tube whose axis stands at (diameter / 2, diameter / 2).
 struct Cylinder {
   double diameter = 19;
+
+  static constexpr ContainerShape shape() { return {.tube = true}; }
+  Vec3 extent() const { return {diameter, diameter, 0}; }
+  static Cylinder of(Vec3 extent) { return {extent.x}; }
   bool operator==(const Cylinder&) const = default;
 
   static constexpr About about{.name = "cylinder", .title = "A cylinder"};
@@ -76,6 +106,12 @@ struct Cylinder {
 /// Periodic in all three directions and without gravity: the hard-sphere fluid, for checking.
 struct FullyPeriodicBox {
   double width_x = 10, width_y = 10, height = 10;
+
+  static constexpr ContainerShape shape() {
+    return {.periodic_x = true, .periodic_y = true, .periodic_z = true};
+  }
+  Vec3 extent() const { return {width_x, width_y, height}; }
+  static FullyPeriodicBox of(Vec3 extent) { return {extent.x, extent.y, extent.z}; }
   bool operator==(const FullyPeriodicBox&) const = default;
 
   static constexpr About about{.name = "fully_periodic",
@@ -90,13 +126,21 @@ struct FullyPeriodicBox {
 
 using Container = std::variant<PeriodicBox, WalledBox, Cylinder, FullyPeriodicBox>;
 
+/// "walls": what scenes and files call it.
+std::string name_of(const Container& container);
+/// Those of all containers, in the order of the variant.
+std::vector<std::string> container_names();
+/// The container of that name with these widths along x, y, z; nothing if there is none.
+std::optional<Container> container_of(std::string_view name, Vec3 extent);
+
 /// What is wrong with the container's widths, naming the least width; nothing if they are right.
 std::optional<std::string> width_fault(const Container& container);
 
-/// Area of the floor, diameters squared.
+/// Area of the footprint, diameters squared.
 double footprint_area(const Container& container);
 
-/// Widths of the box around the footprint, diameters.
+/// Widths of the box around the footprint, and its height: 0 under an open top. Diameters.
+Vec3 extent(const Container& container);
 double width_x(const Container& container);
 double width_y(const Container& container);
 

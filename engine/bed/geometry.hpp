@@ -1,12 +1,20 @@
 #pragma once
 
+#include <concepts>
+
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
 // The one arithmetic by which positions are wrapped and compared. Whatever decides or checks an
 // overlap uses these functions, so that a stored packing is judged by the very numbers that made
-// it.
+// it. A container itself (its shape is then known to the compiler) and a Boundary are used alike.
 namespace jostle::inline engine {
+
+template <class Box>
+concept Shaped = requires(const Box& box) {
+  { box.shape() } -> std::convertible_to<ContainerShape>;
+  { box.extent() } -> std::convertible_to<Vec3>;
+};
 
 /// A coordinate within one period of [0, width) brought into it. -5e-17 becomes 0, not width.
 inline double wrap_coordinate(double x, double width) {
@@ -22,54 +30,46 @@ inline double nearest_image(double dx, double width) {
   return dx;
 }
 
-inline Vec3 wrapped(const PeriodicBox& box, Vec3 r) {
-  return {wrap_coordinate(r.x, box.width_x), wrap_coordinate(r.y, box.width_y), r.z};
-}
-inline Vec3 wrapped(const FullyPeriodicBox& box, Vec3 r) {
-  return {wrap_coordinate(r.x, box.width_x), wrap_coordinate(r.y, box.width_y),
-          wrap_coordinate(r.z, box.height)};
-}
-inline Vec3 wrapped(const WalledBox&, Vec3 r) {
-  return r;
-}
-inline Vec3 wrapped(const Cylinder&, Vec3 r) {
+/// Brings r, at most one period away, into the box.
+template <Shaped Box>
+Vec3 wrapped(const Box& box, Vec3 r) {
+  const Vec3 extent = box.extent();
+  if (box.shape().periodic_x) r.x = wrap_coordinate(r.x, extent.x);
+  if (box.shape().periodic_y) r.y = wrap_coordinate(r.y, extent.y);
+  if (box.shape().periodic_z) r.z = wrap_coordinate(r.z, extent.z);
   return r;
 }
 
-/// The shortest vector from b to a.
-inline Vec3 separation(const PeriodicBox& box, Vec3 a, Vec3 b) {
-  return {nearest_image(a.x - b.x, box.width_x), nearest_image(a.y - b.y, box.width_y), a.z - b.z};
-}
-inline Vec3 separation(const FullyPeriodicBox& box, Vec3 a, Vec3 b) {
-  return {nearest_image(a.x - b.x, box.width_x), nearest_image(a.y - b.y, box.width_y),
-          nearest_image(a.z - b.z, box.height)};
-}
-inline Vec3 separation(const WalledBox&, Vec3 a, Vec3 b) {
-  return a - b;
-}
-inline Vec3 separation(const Cylinder&, Vec3 a, Vec3 b) {
-  return a - b;
+/// The shortest vector from b to a, both wrapped.
+template <Shaped Box>
+Vec3 separation(const Box& box, Vec3 a, Vec3 b) {
+  const Vec3 extent = box.extent();
+  Vec3 d = a - b;
+  if (box.shape().periodic_x) d.x = nearest_image(d.x, extent.x);
+  if (box.shape().periodic_y) d.y = nearest_image(d.y, extent.y);
+  if (box.shape().periodic_z) d.z = nearest_image(d.z, extent.z);
+  return d;
 }
 
 /// Whether a sphere centred at r stays clear of the floor and the sides (touching is clear).
-inline bool clear_of_boundaries(const PeriodicBox&, Vec3 r) {
-  return r.z >= sphere_radius;
-}
-inline bool clear_of_boundaries(const FullyPeriodicBox&, Vec3) {
-  return true;
-}
-inline bool clear_of_boundaries(const WalledBox& box, Vec3 r) {
-  return r.z >= sphere_radius && r.x >= sphere_radius && r.x <= box.width_x - sphere_radius &&
-         r.y >= sphere_radius && r.y <= box.width_y - sphere_radius;
-}
-inline bool clear_of_boundaries(const Cylinder& tube, Vec3 r) {
-  const double axis = 0.5 * tube.diameter;
+template <Shaped Box>
+bool clear_of_boundaries(const Box& box, Vec3 r) {
+  const ContainerShape shape = box.shape();
+  const Vec3 extent = box.extent();
+  const auto between = [](double at, double width) {
+    return at >= sphere_radius && at <= width - sphere_radius;
+  };
+  if (shape.has_floor() && !(r.z >= sphere_radius)) return false;
+  if (shape.planes_x() && !between(r.x, extent.x)) return false;
+  if (shape.planes_y() && !between(r.y, extent.y)) return false;
+  if (!shape.tube) return true;
+  const double axis = 0.5 * extent.x;
   const double dx = r.x - axis, dy = r.y - axis, reach = axis - sphere_radius;
-  return r.z >= sphere_radius && dx * dx + dy * dy <= reach * reach;
+  return dx * dx + dy * dy <= reach * reach;
 }
 
 /// Whether two spheres overlap (touching is no overlap).
-template <class Box>
+template <Shaped Box>
 bool overlaps(const Box& box, Vec3 a, Vec3 b) {
   return norm_squared(separation(box, a, b)) < 1.0;
 }

@@ -5,7 +5,7 @@
 namespace jostle::inline engine {
 
 SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, double height)
-    : open_top_(Boundary(container).floor) {
+    : open_top_(Boundary(container).has_floor()) {
   const Boundary boundary(container);
   if (!open_top_) height = boundary.height;
   const auto cells = [&](double side) {

@@ -24,7 +24,7 @@ auto order(const KeptPair& pair) {
 }  // namespace
 
 ContactLists::ContactLists(const Container& container, int n_history)
-    : boundary_(container), container_(container), n_history_(n_history) {}
+    : boundary_(container), faces_(boundary_), container_(container), n_history_(n_history) {}
 
 void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers) {
   if (n_spheres_ > 0) {  // else what is to be kept waits already

@@ -58,6 +58,7 @@ class ContactLists {
   /// All that are near, remembered or not.
   std::vector<KeptPair> near_pairs() const;
   std::vector<KeptSide> near_sides() const;
+  const Faces& faces() const { return faces_; }
 
   ContactArrays pairs();
   /// Those with the floor, and with the sides.
@@ -113,6 +114,7 @@ class ContactLists {
   void fill(Near& near, std::size_t n) const;
 
   Boundary boundary_;
+  Faces faces_;  // of which a contact with a side names one
   Container container_;
   int n_history_;
   std::uint32_t n_spheres_ = 0;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "engine/discrete_element/contact_lists.hpp"
@@ -28,16 +27,9 @@ void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
   for (std::uint32_t i = 0; i < n_spheres_; ++i) by_number[numbers_[i]] = i;
   for (const std::uint32_t i : by_number) {
     const Vec3 r = centre_of(rows[i]);
-    if (boundary_.floor && r.z - floor_height < reach) add(floor_, i, 0);
-    if (boundary_.sides == Sides::walls) {
-      if (r.x < reach) add(sides_, i, 1);
-      if (boundary_.width_x - r.x < reach) add(sides_, i, 2);
-      if (r.y < reach) add(sides_, i, 3);
-      if (boundary_.width_y - r.y < reach) add(sides_, i, 4);
-    } else if (boundary_.sides == Sides::cylinder) {
-      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
-      if (boundary_.axis() - std::sqrt(x * x + y * y) < reach) add(sides_, i, 1);
-    }
+    if (r.z - floor_height < reach) add(floor_, i, 0);
+    for (std::uint32_t k = 1; k < faces_.size(); ++k)
+      if (faces_[k].distance(r) < reach) add(sides_, i, k);
   }
   fill(floor_, floor_.first.size());
   fill(sides_, sides_.first.size());
@@ -85,27 +77,8 @@ void ContactLists::measure_sides(std::span<const Row> rows, double floor_height)
     set(floor_, at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
   for (std::size_t at = 0; at < sides_.n; ++at) {
     const Vec3 r = centre_of(rows[sides_.first[at]]);
-    if (boundary_.sides == Sides::cylinder) {
-      const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
-      const double distance = std::sqrt(x * x + y * y);
-      const double inverse = distance > 0 ? 1 / distance : 0;
-      set(sides_, at, {-x * inverse, -y * inverse, 0}, boundary_.axis() - distance);
-      continue;
-    }
-    switch (sides_.source[at]) {
-      case 1:
-        set(sides_, at, {1, 0, 0}, r.x);
-        break;
-      case 2:
-        set(sides_, at, {-1, 0, 0}, boundary_.width_x - r.x);
-        break;
-      case 3:
-        set(sides_, at, {0, 1, 0}, r.y);
-        break;
-      default:
-        set(sides_, at, {0, -1, 0}, boundary_.width_y - r.y);
-        break;
-    }
+    const Face& face = faces_[sides_.source[at]];
+    set(sides_, at, face.normal(r), face.distance(r));
   }
 }
 

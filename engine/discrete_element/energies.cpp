@@ -85,15 +85,8 @@ Approach GrainLoop::approach_of(const KeptSide& side) const {
   const Row& row = rows_[place_of_[side.sphere]];
   const Vec3 r = centre_of(row), v = velocity_of(row);
   if (side.side == 0) return {sphere_radius - (r.z - floor_.height), v.z - floor_.velocity};
-  if (boundary_.sides == Sides::cylinder) {
-    const double x = r.x - boundary_.axis(), y = r.y - boundary_.axis();
-    const double from_axis = std::sqrt(squared(x) + squared(y));
-    const double outwards = from_axis > 0 ? (x * v.x + y * v.y) / from_axis : 0;
-    return {sphere_radius - (boundary_.axis() - from_axis), -outwards};
-  }
-  const double distances[] = {r.x, boundary_.width_x - r.x, r.y, boundary_.width_y - r.y};
-  const double speeds[] = {v.x, -v.x, v.y, -v.y};
-  return {sphere_radius - distances[side.side - 1], speeds[side.side - 1]};
+  const Face& face = lists_.faces()[side.side];
+  return {sphere_radius - face.distance(r), face.recession(r, v)};
 }
 
 // What contacts hold and have dissipated, by their histories and what was counted in steps.

@@ -273,8 +273,8 @@ bool GrainLoop::is_sound() const {
   for (std::size_t at = 0; at < numbers_.size(); ++at) {
     const Vec3 r = centre_of(rows_[at]);
     const bool inside = r.z > floor_.height - 1 && r.z < widest_container &&
-                        (!boundary_.has_walls() || (r.x > -1 && r.x < boundary_.width_x + 1 &&
-                                                    r.y > -1 && r.y < boundary_.width_y + 1));
+                        (boundary_.periodic_x || (r.x > -1 && r.x < boundary_.width_x + 1)) &&
+                        (boundary_.periodic_y || (r.y > -1 && r.y < boundary_.width_y + 1));
     if (!inside || !std::isfinite(r.x + r.y)) return false;
   }
   return true;

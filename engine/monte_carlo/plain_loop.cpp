@@ -46,7 +46,7 @@ bool PlainLoop::passes(std::uint32_t sphere, Vec3 step) {
     if (j != sphere && overlaps(boundary, target, packing_.centres[j])) return false;
   }
   const auto* metropolis = std::get_if<MetropolisMove>(&move_);
-  if (metropolis && boundary.floor && !rise_passes(*metropolis, step.z)) return false;
+  if (metropolis && boundary.has_floor() && !rise_passes(*metropolis, step.z)) return false;
   packing_.centres[sphere] = target;
   return true;
 }

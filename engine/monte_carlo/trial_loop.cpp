@@ -21,20 +21,15 @@ struct WithTypes {
 
   template <class Box>
   std::unique_ptr<TrialLoop> operator()(const Box& box, const PolarMove& move) const {
-    return act(box, Polar(move));
+    if constexpr (Box::shape().has_floor()) return act(box, Polar(move));
+    return nullptr;  // move_fault
   }
   template <class Box>
   std::unique_ptr<TrialLoop> operator()(const Box& box, const MetropolisMove& move) const {
+    if constexpr (!Box::shape().has_floor()) return act(box, WithoutGravity(move));
     if (move.beta != std::numeric_limits<double>::infinity())
       return act(box, Metropolis(move, key));
     return act(box, ZeroTemperature(move));
-  }
-  std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox&, const PolarMove&) const {
-    return nullptr;  // move_fault
-  }
-  std::unique_ptr<TrialLoop> operator()(const FullyPeriodicBox& box,
-                                        const MetropolisMove& move) const {
-    return act(box, WithoutGravity(move));
   }
 };
 

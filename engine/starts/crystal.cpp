@@ -84,41 +84,50 @@ std::string footprint(double x, double y) {
   return number(x) + " x " + number(y);
 }
 
-[[noreturn]] void refuse_footprint(const Crystal& crystal, double x, double y, const RowFit& across,
-                                   const RowFit& rows) {
-  const bool smaller_is_legal =
-      across.smaller > least_periodic_width && rows.smaller > least_periodic_width;
-  throw StartError(std::string(name(crystal.lattice)) + ": whole rows do not fill the footprint " +
-                   footprint(x, y) + "; the nearest that they fill are " +
-                   (smaller_is_legal ? footprint(across.smaller, rows.smaller) + " and " : "") +
-                   footprint(across.larger, rows.larger) +
-                   " diameters: take one of them, or stretch the rows");
+// The widths that are periodic, as messages name them.
+std::string periods(const Boundary& boundary, double x, double y) {
+  if (boundary.periodic_sides()) return footprint(x, y);
+  return boundary.periodic_x ? number(x) : number(y);
 }
 
-CrystalPlan plan_periodic(const Crystal& crystal, const Boundary& boundary) {
-  const double x = boundary.width_x, y = boundary.width_y;
-  const RowFit across = fit_rows(x, 1, 1);
-  const RowFit rows =
-      fit_rows(y, row_spacing(crystal.lattice), crystal.lattice == Lattice::hcp ? 2 : 1);
-  if (!crystal.stretch && !(across.whole && rows.whole)) {
-    refuse_footprint(crystal, x, y, across, rows);
-  }
+[[noreturn]] void refuse_footprint(const Crystal& crystal, const Boundary& boundary,
+                                   const RowFit& across, const RowFit& rows) {
+  const bool smaller_is_legal = (!boundary.periodic_x || across.smaller > least_periodic_width) &&
+                                (!boundary.periodic_y || rows.smaller > least_periodic_width);
+  throw StartError(
+      std::string(name(crystal.lattice)) + ": whole rows do not fill the " +
+      (boundary.periodic_sides() ? "footprint " : "period ") +
+      periods(boundary, boundary.width_x, boundary.width_y) + "; the nearest that they fill are " +
+      (smaller_is_legal ? periods(boundary, across.smaller, rows.smaller) + " and " : "") +
+      periods(boundary, across.larger, rows.larger) +
+      " diameters: take one of them, or stretch the rows");
+}
+
+// Rows along a direction that ends at walls: they keep their spacing, and sites beyond are left
+// out.
+RowFit beyond_walls(double width, double spacing) {
+  return {{static_cast<long>(width / spacing) + 2, spacing}, true, width, width};
+}
+
+// Along a period rows fill it. Between walls the lattice is the perfect one, with a row along the
+// walls x = 0 and y = 0, or with a site on the axis of a tube; sites too near a wall are left out.
+CrystalPlan plan_crystal(const Crystal& crystal, const Boundary& boundary) {
+  const double spacing = row_spacing(crystal.lattice);
+  const RowFit across =
+      boundary.periodic_x ? fit_rows(boundary.width_x, 1, 1) : beyond_walls(boundary.width_x, 1);
+  const RowFit rows = boundary.periodic_y ? fit_rows(boundary.width_y, spacing,
+                                                     crystal.lattice == Lattice::hcp ? 2 : 1)
+                                          : beyond_walls(boundary.width_y, spacing);
+  if (!crystal.stretch && !(across.whole && rows.whole))
+    refuse_footprint(crystal, boundary, across, rows);
   return plan_layers(crystal.lattice, across.rows, rows.rows);
-}
-
-// Between walls the lattice is the perfect one, with a row along the walls x = 0 and y = 0, or with
-// a site on the axis of a tube; sites too near a wall are left out.
-CrystalPlan plan_between_walls(const Crystal& crystal, const Boundary& boundary) {
-  const Rows across = {static_cast<long>(boundary.width_x) + 2, 1};
-  const Rows rows = {static_cast<long>(boundary.width_y / row_spacing(crystal.lattice)) + 2,
-                     row_spacing(crystal.lattice)};
-  return plan_layers(crystal.lattice, across, rows);
 }
 
 // The sites of layer 0 or 1, row by row, at height 0.
 std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Boundary& boundary, bool shifted) {
-  const bool tube = boundary.sides == Sides::cylinder;
-  const double corner = tube ? boundary.axis() : boundary.side_margin();
+  const bool tube = boundary.tube;
+  const double corner_x = tube ? boundary.axis() : boundary.margin_x();
+  const double corner_y = tube ? boundary.axis() : boundary.margin_y();
   const long first_row = tube ? -plan.rows.count : 0, first = tube ? -plan.across.count : 0;
   std::vector<Vec3> sites;
   for (long j = first_row; j < plan.rows.count; ++j) {
@@ -127,7 +136,7 @@ std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Boundary& boundary,
                        (j % 2 != 0 ? plan.row_shift : 0) + (shifted ? plan.layer_shift_x : 0);
       const double y =
           static_cast<double>(j) * plan.rows.spacing + (shifted ? plan.layer_shift_y : 0);
-      const Vec3 site = wrapped(boundary, {corner + x, corner + y, sphere_radius});
+      const Vec3 site = wrapped(boundary, {corner_x + x, corner_y + y, sphere_radius});
       if (clear_of_boundaries(boundary, site)) sites.push_back(site);
     }
   }
@@ -153,8 +162,7 @@ long fit_layers(const Crystal& crystal, CrystalPlan& plan, double height) {
 std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
                                 std::uint32_t n_spheres) {
   const Boundary boundary(container);
-  CrystalPlan plan = boundary.has_walls() ? plan_between_walls(crystal, boundary)
-                                          : plan_periodic(crystal, boundary);
+  CrystalPlan plan = plan_crystal(crystal, boundary);
   const std::vector<Vec3> kinds[2] = {layer_sites(plan, boundary, false),
                                       layer_sites(plan, boundary, true)};
   if (kinds[0].empty() || kinds[1].empty()) {

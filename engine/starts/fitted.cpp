@@ -7,13 +7,14 @@
 namespace jostle::inline engine {
 
 // Spheres of the bulk may lose a support that straddled a wall; they stay where they were poured.
-std::vector<Vec3> fit_pour(const WalledBox& box, std::vector<Vec3> poured, RandomStream& random,
-                           const StopAsked& stop) {
+std::vector<Vec3> fit_pour(const Container& container, std::vector<Vec3> poured,
+                           RandomStream& random, const StopAsked& stop) {
   const auto n_spheres = static_cast<std::uint32_t>(poured.size());
-  PourBed bed(box, n_spheres);
+  const Boundary boundary(container);
+  PourBed bed(container, n_spheres);
   std::vector<std::uint32_t> misfits;
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
-    if (clear_of_boundaries(box, poured[sphere])) {
+    if (clear_of_boundaries(boundary, poured[sphere])) {
       bed.add(poured[sphere]);
     } else {
       misfits.push_back(sphere);

@@ -29,8 +29,8 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random,
               PourTally* tally = nullptr);
 /// A pour with periodic sides, fitted between walls: centres that overlap a wall are taken out and
 /// poured again in their order, the others are returned as they are.
-std::vector<Vec3> fit_pour(const WalledBox& box, std::vector<Vec3> poured, RandomStream& random,
-                           const StopAsked& stop = {});
+std::vector<Vec3> fit_pour(const Container& container, std::vector<Vec3> poured,
+                           RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           std::uint32_t n_spheres, RandomStream& random);
 std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,

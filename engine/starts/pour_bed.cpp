@@ -44,14 +44,13 @@ Vec3 outward(const Obstacle& obstacle, Vec3 p) {
 
 PourBed::PourBed(const Container& container, std::uint32_t n_spheres)
     : boundary_(container), cells_(container, n_spheres, 0) {
-  const bool cylinder = boundary_.sides == Sides::cylinder;
   const double axis = boundary_.axis(), reach = axis - sphere_radius;
-  if (cylinder && reach >= least_room) {
+  if (boundary_.tube && reach >= least_room) {
     tube_ = Obstacle{Obstacle::Kind::tube, {axis, axis, 0}, reach};
-  } else if (boundary_.has_walls()) {
-    add_walls(walls_, {1, 0, 0}, boundary_.width_x, cylinder);
-    add_walls(walls_, {0, 1, 0}, boundary_.width_y, cylinder);
+    return;
   }
+  if (!boundary_.periodic_x) add_walls(walls_, {1, 0, 0}, boundary_.width_x, boundary_.tube);
+  if (!boundary_.periodic_y) add_walls(walls_, {0, 1, 0}, boundary_.width_y, boundary_.tube);
 }
 
 Vec3 PourBed::wrapped(Vec3 p) const {
@@ -129,9 +128,9 @@ bool PourBed::clear(Vec3& p, double tolerance) const {
 }
 
 std::optional<Vec3> PourBed::above(double share_x, double share_y) const {
-  const double margin = boundary_.side_margin();
-  Vec3 p = {margin + share_x * (boundary_.width_x - 2 * margin),
-            margin + share_y * (boundary_.width_y - 2 * margin), top_ + 2};
+  const double margin_x = boundary_.margin_x(), margin_y = boundary_.margin_y();
+  Vec3 p = {margin_x + share_x * (boundary_.width_x - 2 * margin_x),
+            margin_y + share_y * (boundary_.width_y - 2 * margin_y), top_ + 2};
   keep_between_walls(p);
   if (tube_ && gap(*tube_, p) < 0) return std::nullopt;
   return wrapped(p);

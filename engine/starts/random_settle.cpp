@@ -23,8 +23,8 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
   }
   const double height =
       n_spheres * sphere_volume / (footprint_area(container) * settle.dilute_fraction);
-  const double margin = boundary.side_margin();
-  const double room_x = boundary.width_x - 2 * margin, room_y = boundary.width_y - 2 * margin;
+  const double margin_x = boundary.margin_x(), margin_y = boundary.margin_y();
+  const double room_x = boundary.width_x - 2 * margin_x, room_y = boundary.width_y - 2 * margin_y;
   SphereCells cells(container, n_spheres, settle.drop_height + height);
   const auto fits = [&](Vec3 p) {
     return clear_of_boundaries(boundary, p) &&
@@ -35,8 +35,8 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
     bool placed = false;
     for (int draw = 0; draw < max_draws && !placed; ++draw) {
-      const double x = margin + random.uniform() * room_x;
-      const double y = margin + random.uniform() * room_y;
+      const double x = margin_x + random.uniform() * room_x;
+      const double y = margin_y + random.uniform() * room_y;
       const double z = sphere_radius + settle.drop_height + random.uniform() * height;
       const Vec3 p = wrapped(boundary, {x, y, z});
       placed = fits(p);

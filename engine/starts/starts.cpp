@@ -21,11 +21,10 @@ struct Builder {
     return pour(container, n_spheres, random, stop);
   }
   std::vector<Vec3> operator()(const FittedPour&) const {
-    const auto& box = std::get<WalledBox>(container);
-    const PeriodicBox sides{box.width_x, box.width_y};
+    const PeriodicBox sides{width_x(container), width_y(container)};
     std::vector<Vec3> poured = pour(sides, n_spheres, random, stop);
     if (before_fitting != nullptr) *before_fitting = {sides, poured};
-    return fit_pour(box, std::move(poured), random, stop);
+    return fit_pour(container, std::move(poured), random, stop);
   }
   std::vector<Vec3> operator()(const RandomSettle& start) const {
     return scatter(start, container, n_spheres, random);
@@ -64,18 +63,19 @@ struct StartFault {
   Fault operator()(const RandomSettle&) const { return needs_gravity(); }
   Fault operator()(const FittedPour&) const {
     if (const auto fault = needs_gravity()) return fault;
-    const auto* box = std::get_if<WalledBox>(&container);
-    if (box == nullptr) {
+    const Boundary boundary(container);
+    if (!boundary.planes_x() && !boundary.planes_y()) {
       return "a fitted pour is fitted between walls: it needs the sides \"walls\" (elsewhere take "
              "\"steepest_descent\")";
     }
-    const auto fault = width_fault(PeriodicBox{box->width_x, box->width_y});
+    const auto fault = width_fault(PeriodicBox{width_x(container), width_y(container)});
     if (!fault) return std::nullopt;
     return "the pour before the fitting needs periodic sides, and their " + *fault +
            " (widen the box or take \"steepest_descent\")";
   }
   Fault operator()(const Crystal& crystal) const {
-    if (Boundary(container).periodic_sides() || !crystal.stretch) return std::nullopt;
+    const Boundary boundary(container);
+    if (boundary.periodic_x || boundary.periodic_y || !crystal.stretch) return std::nullopt;
     return "stretch spaces rows out to a period, and there is none between walls: leave it out or "
            "use periodic sides";
   }

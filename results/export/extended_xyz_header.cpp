@@ -1,6 +1,7 @@
 #include "results/export/extended_xyz_header.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,6 @@
 #include <stdexcept>
 
 #include "engine/number_reading.hpp"
-#include "results/export/container_text.hpp"
 #include "results/export/printable.hpp"
 
 namespace jostle::inline results {
@@ -132,10 +132,6 @@ Vec3 origin_of(const Keys& keys) {
   return corner;
 }
 
-const char* periodic_directions(std::string_view kind) {
-  return kind == "fully_periodic" ? "T T T" : kind == "periodic" ? "T T F" : "F F F";
-}
-
 /// "T T F" of pbc, however it is spelled.
 std::optional<std::string> pbc_of(const Keys& keys) {
   const auto pbc = keys.find("pbc");
@@ -157,10 +153,11 @@ std::string kind_of(const Keys& keys) {
   const auto pbc = pbc_of(keys);
   const auto named = keys.find("container");
   if (named != keys.end()) {
-    if (!container_from(named->second, {}))
-      refuse("container={} is not known; there are periodic, walls, cylinder and fully_periodic",
-             named->second);
-    const std::string expected = periodic_directions(named->second);
+    const auto container = container_of(named->second, {});
+    if (!container)
+      refuse("container={} is not known; there are {}", named->second,
+             fmt::join(container_names(), ", "));
+    const std::string expected = periodic_directions(Boundary(*container));
     if (pbc && *pbc != expected)
       refuse(
           "pbc=\"{}\" contradicts container={}, which is pbc=\"{}\"; correct one of them, or leave "
@@ -169,30 +166,30 @@ std::string kind_of(const Keys& keys) {
     return named->second;
   }
   if (!pbc)
-    refuse(
-        "neither container=periodic|walls|cylinder|fully_periodic nor pbc=\"T T F\", \"T T T\" "
-        "or \"F F F\"");
-  for (const char* kind : {"periodic", "fully_periodic", "walls"})
-    if (*pbc == periodic_directions(kind)) return kind;
-  refuse(
-      "pbc=\"{}\" is no container of jostle: there are \"T T F\" (periodic), \"T T T\" "
-      "(fully_periodic) and \"F F F\" (walls)",
-      *pbc);
+    refuse("neither container={} nor pbc=\"T T F\" or the like", fmt::join(container_names(), "|"));
+  // "F F F" is a box between walls, not a tube: the first that has them.
+  std::vector<std::string> known;
+  for (const std::string& name : container_names()) {
+    const std::string directions = periodic_directions(Boundary(*container_of(name, {})));
+    if (*pbc == directions) return name;
+    known.push_back(fmt::format("\"{}\" ({})", directions, name));
+  }
+  refuse("pbc=\"{}\" is no container of jostle: there are {}", *pbc, fmt::join(known, ", "));
 }
 
-Container container_of(const Keys& keys) {
+Container container_in(const Keys& keys) {
   const auto widths = widths_of(keys);
   const std::string kind = kind_of(keys);
-  for (std::size_t k = 0; k < (kind == "fully_periodic" ? 3U : 2U); ++k)
+  const Boundary shape(*container_of(kind, {}));
+  for (std::size_t k = 0; k < (shape.periodic_z ? 3U : 2U); ++k)
     if (!(widths[k] > 0) || widths[k] > widest_container)
       refuse("the sides of Lattice must be above 0 and at most {} diameters, not {}",
              widest_container, widths[k]);
   if (widths[2] < 0) refuse("the height of Lattice must not be negative: it is {}", widths[2]);
-  if (kind == "cylinder" && std::abs(widths[0] - widths[1]) > rounding * widths[0])
-    refuse(
-        "container=cylinder has one diameter, and Lattice has the sides {} and {}; make them equal",
-        widths[0], widths[1]);
-  Container container = *container_from(kind, widths);
+  if (shape.tube && std::abs(widths[0] - widths[1]) > rounding * widths[0])
+    refuse("container={} has one diameter, and Lattice has the sides {} and {}; make them equal",
+           kind, widths[0], widths[1]);
+  Container container = *container_of(kind, {widths[0], widths[1], widths[2]});
   if (const auto fault = width_fault(container))
     refuse("{}; check that lengths are in diameters", *fault);
   return container;
@@ -311,9 +308,15 @@ void require_model_size(const std::string& name, double least, double most, doub
       name, least, most, model, rename);
 }
 
+std::string periodic_directions(const Boundary& boundary) {
+  const auto letter = [](bool periodic) { return periodic ? 'T' : 'F'; };
+  return fmt::format("{} {} {}", letter(boundary.periodic_x), letter(boundary.periodic_y),
+                     letter(boundary.periodic_z));
+}
+
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment) {
   const Keys keys = CommentParser(comment).keys();
-  ExtendedXyzHeader header{.container = container_of(keys), .origin = origin_of(keys), .sizes = {}};
+  ExtendedXyzHeader header{.container = container_in(keys), .origin = origin_of(keys), .sizes = {}};
   require_model_keys(keys);
   read_columns(keys, header);
   return header;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
@@ -31,6 +32,9 @@ struct ExtendedXyzHeader {
 /// Reads a comment line. Throws std::invalid_argument: whatever changes the meaning of the
 /// positions is understood or refused (docs/reference/file-format.md#extended-xyz).
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment);
+
+/// "T T F": which directions are periodic, as pbc says it.
+std::string periodic_directions(const Boundary& boundary);
 
 /// Words between blanks.
 std::vector<std::string> words_of(const std::string& line);

@@ -5,8 +5,8 @@
 
 #include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/publish.hpp"
-#include "results/export/container_text.hpp"
 #include "results/export/extended_xyz.hpp"
+#include "results/export/extended_xyz_header.hpp"
 #include "results/export/packing_file.hpp"
 
 namespace jostle::inline results {
@@ -18,9 +18,8 @@ struct Columns {
 };
 
 std::string comment(const Packing& packing, const Columns& columns) {
-  const auto [kind, widths] = container_text(packing.container);
-  const double height = widths[2] > 0 ? widths[2] : top_height(packing) + sphere_radius;
-  const char* sides = kind == "fully_periodic" ? "T T T" : kind == "periodic" ? "T T F" : "F F F";
+  const Vec3 size = extent(packing.container);
+  const double height = size.z > 0 ? size.z : top_height(packing) + sphere_radius;
   std::string properties = "species:S:1:pos:R:3";
   for (const ParticleColumn& column : columns.numbers) {
     const bool real = std::holds_alternative<std::vector<double>>(column.values);
@@ -29,7 +28,8 @@ std::string comment(const Packing& packing, const Columns& columns) {
   for (const VectorColumn& column : columns.vectors)
     properties += fmt::format(":{}:R:3", column.xyz_name);
   return fmt::format("Lattice=\"{} 0 0 0 {} 0 0 0 {}\" Properties={} pbc=\"{}\" container={}",
-                     widths[0], widths[1], height, properties, sides, kind);
+                     size.x, size.y, height, properties,
+                     periodic_directions(Boundary(packing.container)), name_of(packing.container));
 }
 
 void append_frame(std::string& text, const Packing& packing, const Columns& columns,

@@ -4,25 +4,25 @@
 
 #include <iterator>
 
-#include "results/export/container_text.hpp"
+#include "engine/bed/boundary.hpp"
 
 namespace jostle::inline results {
 namespace {
 
 std::string header(const ExportedFrame& frame) {
-  const auto [kind, widths] = container_text(frame.packing.container);
-  const double height = widths[2] > 0 ? widths[2] : top_height(frame.packing) + sphere_radius;
-  const char* bounds = kind == "fully_periodic" ? "pp pp pp"
-                       : kind == "periodic"     ? "pp pp ff"
-                                                : "ff ff ff";
+  const Vec3 size = extent(frame.packing.container);
+  const double height = size.z > 0 ? size.z : top_height(frame.packing) + sphere_radius;
+  const Boundary boundary(frame.packing.container);
+  const auto ends = [](bool periodic) { return periodic ? "pp" : "ff"; };
   std::string columns;
   for (const ParticleColumn& column : frame.columns) columns.append(1, ' ').append(column.name);
   for (const VectorColumn& column : frame.vectors)
     for (const char* name : column.components) columns.append(1, ' ').append(name);
   return fmt::format(
-      "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n0 {}\n0 {}\n0 {}\n"
+      "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {} {} {}\n0 {}\n0 {}\n0 {}\n"
       "ITEM: ATOMS id type x y z{}\n",
-      frame.tap, frame.packing.centres.size(), bounds, widths[0], widths[1], height, columns);
+      frame.tap, frame.packing.centres.size(), ends(boundary.periodic_x), ends(boundary.periodic_y),
+      ends(boundary.periodic_z), size.x, size.y, height, columns);
 }
 
 }  // namespace

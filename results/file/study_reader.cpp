@@ -3,7 +3,6 @@
 #include <charconv>
 #include <span>
 
-#include "results/export/container_text.hpp"
 #include "results/file/layout.hpp"
 #include "results/file/study_writer.hpp"
 #include "results/hdf5/read.hpp"
@@ -24,7 +23,7 @@ Container read_container(hid_t group) {
   const auto widths = read_numbers_attribute<double>(group, "widths");
   const std::string kind = read_text_attribute(group, "container");
   if (widths.size() == 3)
-    if (const auto container = container_from(kind, {widths[0], widths[1], widths[2]}))
+    if (const auto container = container_of(kind, {widths[0], widths[1], widths[2]}))
       return *container;
   throw Hdf5Error("unknown container \"" + kind + "\"");
 }

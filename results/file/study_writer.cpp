@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "engine/number_reading.hpp"
-#include "results/export/container_text.hpp"
 #include "results/file/layout.hpp"
 #include "results/hdf5/write.hpp"
 
@@ -109,12 +108,12 @@ void write_kept(hid_t group, const StudyPoint& point) {
 /// `as`: the number of an earlier point that keeps the same, or its own.
 void write_point(hid_t sweep, std::uint32_t number, const StudyPoint& point, std::uint32_t as) {
   const Hdf5Handle group = create_group(sweep, point_name(number));
-  const ContainerText container = container_text(point.container);
+  const Vec3 size = extent(point.container);
   write_attribute(group, "label", point.label);
   write_attribute(group, "id", point.id);
   write_attribute(group, "seed", point.seed);
-  write_attribute(group, "container", container.kind);
-  write_attribute<double>(group, "widths", container.widths);
+  write_attribute(group, "container", name_of(point.container));
+  write_attribute<double>(group, "widths", std::array{size.x, size.y, size.z});
   write_attribute(group, "n_spheres", point.n_spheres);
   write_attribute(group, "taps", point.taps);
   if (as == number)

@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 
-#include "results/export/container_text.hpp"
 #include "results/export/printable.hpp"
 #include "results/hdf5/handle.hpp"
 
@@ -45,10 +44,10 @@ void validate_labels(const StudyPoint& point, const std::string& name) {
 }
 
 void validate_container(const Container& container, const std::string& name) {
-  const auto [kind, widths] = container_text(container);
+  const Vec3 size = extent(container);
   const auto fault = width_fault(container);
   require(!fault, name + ": " + fault.value_or(""));
-  require(std::ranges::all_of(widths, [](double width) { return width <= widest_container; }),
+  require(std::max({size.x, size.y, size.z}) <= widest_container,
           fmt::format("{} has a container wider than {}", name, widest_container));
 }
 

@@ -77,7 +77,7 @@ Profile smoothed(const Profile& profile, double width) {
 GradientRange gradient_range(const Container& container) {
   GradientRange range;
   const Boundary boundary(container);
-  if (boundary.periodic_sides() && boundary.floor) range.high = 26 * sphere_radius;
+  if (boundary.periodic_sides() && boundary.has_floor()) range.high = 26 * sphere_radius;
   return range;
 }
 

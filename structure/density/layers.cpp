@@ -62,27 +62,17 @@ double places_in_disc(double radius) {
 // few, as places at its edge have half of their cells outside.
 double full_layer(const Container& container) {
   const Boundary boundary(container);
-  const double along_x = boundary.width_x - 2 * boundary.side_margin();
-  const double along_y = boundary.width_y - 2 * boundary.side_margin();
-  switch (boundary.sides) {
-    case Sides::walls:
-      return std::max(places_in_rectangle(along_x, along_y), places_in_rectangle(along_y, along_x));
-    case Sides::cylinder:
-      return places_in_disc(0.5 * along_x);
-    case Sides::none:
-      break;
-  }
-  return along_x * along_y / row;
+  if (boundary.tube) return places_in_disc(boundary.axis() - sphere_radius);
+  if (!boundary.has_walls()) return boundary.width_x * boundary.width_y / row;
+  const double along_x = boundary.width_x - 2 * boundary.margin_x();
+  const double along_y = boundary.width_y - 2 * boundary.margin_y();
+  return std::max(places_in_rectangle(along_x, along_y), places_in_rectangle(along_y, along_x));
 }
 
 // Spheres of a close-packed layer by the area that centres can reach. A layer that lies in the
 // holes of a full one has fewer places: in a tube of 5 d 12 after 19, where this is 14.5.
 double layer_by_area(const Container& container) {
-  const Boundary boundary(container);
-  const double along_x = boundary.width_x - 2 * boundary.side_margin();
-  const double along_y = boundary.width_y - 2 * boundary.side_margin();
-  const double share = boundary.sides == Sides::cylinder ? 0.25 * std::numbers::pi : 1;
-  return std::max(1.0, share * along_x * along_y / row);
+  return std::max(1.0, footprint_area(Boundary(container), sphere_radius) / row);
 }
 
 // Of ascending heights those in [low, high).
@@ -113,7 +103,7 @@ double hcp_layer_height(std::size_t k) {
 }
 
 std::vector<Layer> layers(const Packing& packing, double tolerance) {
-  if (!Boundary(packing.container).floor) {
+  if (!Boundary(packing.container).has_floor()) {
     throw std::invalid_argument(
         "layers: a fully periodic box has no floor for layers to grow from; take another "
         "container");

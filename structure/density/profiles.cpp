@@ -39,7 +39,7 @@ HeightWindow transverse_window(const Packing& packing) {
 }
 
 void require_floor(const Packing& packing) {
-  if (!Boundary(packing.container).floor) {
+  if (!Boundary(packing.container).has_floor()) {
     throw std::invalid_argument(
         "profile: a fully periodic box has no floor, top or walls to measure from; take another "
         "container");

@@ -22,7 +22,7 @@ namespace {
 
 Profile radial_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
   const Boundary boundary(packing.container);
-  if (boundary.sides != Sides::cylinder) {
+  if (!boundary.tube) {
     throw std::invalid_argument("profile: distances from the axis need a cylinder");
   }
   require_window(window);
@@ -46,24 +46,27 @@ Profile radial_profile(const Packing& packing, std::span<const double> edges, He
 
 LateralCentral lateral_and_central(const Packing& packing, HeightWindow window, double reach) {
   const Boundary boundary(packing.container);
-  if (boundary.sides == Sides::cylinder) {
+  if (boundary.tube) {
     const double wall = boundary.axis();
     if (!(wall > reach)) refuse_reach(reach);
     const double edges[] = {0, wall - reach, wall};
     const Profile profile = radial_profile(packing, edges, window);
     return {profile.values[1], profile.values[0]};
   }
-  if (boundary.sides != Sides::walls) {
+  std::vector<Axis> axes;
+  if (boundary.planes_x()) axes.push_back(Axis::x);
+  if (boundary.planes_y()) axes.push_back(Axis::y);
+  if (axes.empty())
     throw std::invalid_argument("profile: lateral and central fractions need walls");
-  }
   LateralCentral mean;
-  for (const Axis axis : {Axis::x, Axis::y}) {
+  const double part = 1.0 / static_cast<double>(axes.size());
+  for (const Axis axis : axes) {
     const double width = axis == Axis::x ? boundary.width_x : boundary.width_y;
     if (!(width > 2 * reach)) refuse_reach(reach);
     const double edges[] = {0, reach, width - reach, width};
     const Profile profile = transverse_profile(packing, axis, edges, window);
-    mean.lateral += 0.25 * (profile.values[0] + profile.values[2]);
-    mean.central += 0.5 * profile.values[1];
+    mean.lateral += 0.5 * part * (profile.values[0] + profile.values[2]);
+    mean.central += part * profile.values[1];
   }
   return mean;
 }

@@ -21,7 +21,7 @@ struct Footprint {
 Footprint footprint(const Packing& packing, Axis axis) {
   require_floor(packing);
   const Boundary boundary(packing.container);
-  if (boundary.sides == Sides::cylinder) {
+  if (boundary.tube) {
     throw std::invalid_argument(
         "profile: a cylinder has no sides along x and y; take its radial profile");
   }
@@ -32,9 +32,8 @@ Footprint footprint(const Packing& packing, Axis axis) {
 
 Boundary walls_of(const Packing& packing) {
   const Boundary boundary(packing.container);
-  if (boundary.sides != Sides::walls) {
-    throw std::invalid_argument(
-        "profile: distances to the nearest of four walls need a walled box");
+  if (!boundary.planes_x() && !boundary.planes_y()) {
+    throw std::invalid_argument("profile: distances to the nearest wall need plane walls");
   }
   return boundary;
 }
@@ -113,23 +112,27 @@ std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
 Profile wall_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
   const Boundary box = walls_of(packing);
   require_window(window);
-  const double deepest = 0.5 * std::min(box.width_x, box.width_y);
+  constexpr double beyond = 1;  // of a sphere's middle: all of it, also where it meets a seam
+  const bool x = box.planes_x(), y = box.planes_y();
+  const double deepest = 0.5 * (x && y ? std::min(box.width_x, box.width_y)
+                                : x    ? box.width_x
+                                       : box.width_y);
   const double depth = window.high - window.low;
   Profile profile = empty_profile(edges, 0, deepest, [&](double distance) {
-    return depth * (box.width_x * box.width_y -
-                    (box.width_x - 2 * distance) * (box.width_y - 2 * distance));
+    return depth * (box.width_x * box.width_y - footprint_area(box, distance));
   });
   for (const Vec3& centre : packing.centres) {
     const double low = window.low - centre.z, high = window.high - centre.z;
     if (low >= sphere_radius || high <= -sphere_radius) continue;
     const double whole = sphere_volume_in_slab(0, low, high);
-    const double distance =
-        std::min({centre.x, box.width_x - centre.x, centre.y, box.width_y - centre.y});
+    const double distance = std::min(x ? std::min(centre.x, box.width_x - centre.x) : deepest,
+                                     y ? std::min(centre.y, box.width_y - centre.y) : deepest);
     share_out(profile, distance - sphere_radius, distance + sphere_radius, [&](double edge) {
       const double right = box.width_x - edge, back = box.width_y - edge;
-      if (right <= edge || back <= edge) return whole;
-      return whole - sphere_volume_in_box({edge - centre.x, edge - centre.y, low},
-                                          {right - centre.x, back - centre.y, high});
+      if ((x && right <= edge) || (y && back <= edge)) return whole;
+      return whole - sphere_volume_in_box(
+                         {x ? edge - centre.x : -beyond, y ? edge - centre.y : -beyond, low},
+                         {x ? right - centre.x : beyond, y ? back - centre.y : beyond, high});
     });
   }
   divide_by_volumes(profile);

@@ -35,47 +35,43 @@ HeightWindow accessible_heights(const Packing& packing) {
 }
 
 AccessibleFootprint::AccessibleFootprint(const Packing& packing) : boundary_(packing.container) {
-  const double margin = boundary_.side_margin();
-  low_x_ = low_y_ = margin;
-  high_x_ = boundary_.width_x - margin;
-  high_y_ = boundary_.width_y - margin;
-  area_ = (high_x_ - low_x_) * (high_y_ - low_y_);
-  if (boundary_.sides == Sides::walls) {
-    for (const Vec3& r : packing.centres) {
+  low_x_ = boundary_.margin_x();
+  low_y_ = boundary_.margin_y();
+  high_x_ = boundary_.width_x - low_x_;
+  high_y_ = boundary_.width_y - low_y_;
+  const double axis = boundary_.axis();
+  if (boundary_.tube) radius_ = axis - sphere_radius;
+  for (const Vec3& r : packing.centres) {
+    if (boundary_.tube) radius_ = std::max(radius_, std::hypot(r.x - axis, r.y - axis));
+    if (boundary_.planes_x()) {
       low_x_ = std::min(low_x_, r.x);
       high_x_ = std::max(high_x_, r.x);
+    }
+    if (boundary_.planes_y()) {
       low_y_ = std::min(low_y_, r.y);
       high_y_ = std::max(high_y_, r.y);
     }
-    area_ = (high_x_ - low_x_) * (high_y_ - low_y_);
-  } else if (boundary_.sides == Sides::cylinder) {
-    const double axis = boundary_.axis();
-    radius_ = axis - margin;
-    for (const Vec3& r : packing.centres) {
-      radius_ = std::max(radius_, std::hypot(r.x - axis, r.y - axis));
-    }
-    area_ = std::numbers::pi * radius_ * radius_;
   }
+  area_ = boundary_.tube ? std::numbers::pi * radius_ * radius_
+                         : (high_x_ - low_x_) * (high_y_ - low_y_);
 }
 
 double AccessibleFootprint::depth(double x, double y) const {
-  if (boundary_.sides == Sides::cylinder) {
-    return radius_ - std::hypot(x - boundary_.axis(), y - boundary_.axis());
-  }
-  if (boundary_.sides == Sides::none) return infinite;
-  return std::min({x - low_x_, high_x_ - x, y - low_y_, high_y_ - y});
+  if (boundary_.tube) return radius_ - std::hypot(x - boundary_.axis(), y - boundary_.axis());
+  double depth = infinite;
+  if (boundary_.planes_x()) depth = std::min({depth, x - low_x_, high_x_ - x});
+  if (boundary_.planes_y()) depth = std::min({depth, y - low_y_, high_y_ - y});
+  return depth;
 }
 
 double AccessibleFootprint::overlap(double dx, double dy) const {
-  if (boundary_.sides == Sides::cylinder) {
-    return lens_area(std::sqrt(dx * dx + dy * dy), radius_) / area_;
-  }
-  if (boundary_.sides == Sides::walls) {
-    const double along_x = high_x_ - low_x_ - std::abs(dx);
-    const double along_y = high_y_ - low_y_ - std::abs(dy);
-    return along_x > 0 && along_y > 0 ? along_x * along_y / area_ : 0;
-  }
-  return within_period(dx, boundary_.width_x) && within_period(dy, boundary_.width_y) ? 1 : 0;
+  if (boundary_.tube) return lens_area(std::sqrt(dx * dx + dy * dy), radius_) / area_;
+  const auto share = [](bool periodic, double displacement, double low, double high) {
+    if (periodic) return within_period(displacement, high) ? 1.0 : 0.0;
+    return std::max(0.0, high - low - std::abs(displacement)) / (high - low);
+  };
+  return share(boundary_.periodic_x, dx, low_x_, high_x_) *
+         share(boundary_.periodic_y, dy, low_y_, high_y_);
 }
 
 StepTable::StepTable(double reach)
@@ -101,20 +97,18 @@ StepTable shares_inside(const std::vector<double>& coordinates, double low, doub
 FootprintShares::FootprintShares(const AccessibleFootprint& footprint,
                                  const std::vector<Vec3>& centres, double reach)
     : footprint_(footprint),
-      sides_(footprint.boundary_.sides),
+      shape_(footprint.boundary_),
       n_centres_(centres.size()),
       reach_(reach) {
-  if (sides_ == Sides::cylinder) fill_disc(footprint, centres);
-  if (sides_ != Sides::walls) return;
-  std::vector<double> x, y;
-  for (const Vec3& r : centres) {
-    x.push_back(r.x);
-    y.push_back(r.y);
-  }
-  std::ranges::sort(x);
-  std::ranges::sort(y);
-  x_ = shares_inside(x, footprint.low_x_, footprint.high_x_, reach);
-  y_ = shares_inside(y, footprint.low_y_, footprint.high_y_, reach);
+  if (shape_.tube) fill_disc(footprint, centres);
+  const auto along = [&](double Vec3::*axis, double low, double high) {
+    std::vector<double> coordinates;
+    for (const Vec3& r : centres) coordinates.push_back(r.*axis);
+    std::ranges::sort(coordinates);
+    return shares_inside(coordinates, low, high, reach);
+  };
+  if (shape_.planes_x()) x_ = along(&Vec3::x, footprint.low_x_, footprint.high_x_);
+  if (shape_.planes_y()) y_ = along(&Vec3::y, footprint.low_y_, footprint.high_y_);
 }
 
 void FootprintShares::fill_disc(const AccessibleFootprint& footprint,
@@ -144,8 +138,11 @@ void FootprintShares::fill_disc(const AccessibleFootprint& footprint,
 }
 
 double FootprintShares::operator()(double dx, double dy, double overlap) const {
-  if (sides_ == Sides::none) return overlap;
-  if (sides_ == Sides::walls) return x_(dx) * y_(dy);
+  if (!shape_.has_walls()) return overlap;
+  if (!shape_.tube) {
+    const double in_period = overlap > 0 ? 1 : 0;
+    return (shape_.planes_x() ? x_(dx) : in_period) * (shape_.planes_y() ? y_(dy) : in_period);
+  }
   const double x = (dx + reach_) / step_, y = (dy + reach_) / step_;
   const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
   const double u = x - static_cast<double>(i), v = y - static_cast<double>(j);
@@ -156,16 +153,22 @@ double FootprintShares::operator()(double dx, double dy, double overlap) const {
 
 double FootprintShares::without_pair(double dx, double dy, double overlap, double x,
                                      double y) const {
-  if (sides_ == Sides::none || n_centres_ <= 2) return overlap;
+  if (!shape_.has_walls() || n_centres_ <= 2) return overlap;
   const auto n = static_cast<double>(n_centres_);
   const auto others = [n](double share, bool latter_inside) {
     return std::max(0.0, (n * share - 1 - (latter_inside ? 1 : 0)) / (n - 2));
   };
-  if (sides_ == Sides::cylinder) {
+  if (shape_.tube) {
     return others((*this)(dx, dy, overlap), footprint_.depth(x + dx, y + dy) >= 0);
   }
-  return others(x_(dx), footprint_.low_x_ <= x + dx && x + dx <= footprint_.high_x_) *
-         others(y_(dy), footprint_.low_y_ <= y + dy && y + dy <= footprint_.high_y_);
+  const double in_period = overlap > 0 ? 1 : 0;
+  const auto along = [&](bool planes, const StepTable& table, double displacement, double from,
+                         double low, double high) {
+    if (!planes) return in_period;
+    return others(table(displacement), low <= from + displacement && from + displacement <= high);
+  };
+  return along(shape_.planes_x(), x_, dx, x, footprint_.low_x_, footprint_.high_x_) *
+         along(shape_.planes_y(), y_, dy, y, footprint_.low_y_, footprint_.high_y_);
 }
 
 std::vector<Vec3> even_directions(int n) {

@@ -81,9 +81,9 @@ class FootprintShares {
   void fill_disc(const AccessibleFootprint& footprint, const std::vector<Vec3>& centres);
 
   AccessibleFootprint footprint_;
-  Sides sides_;
+  ContainerShape shape_;
   std::size_t n_centres_;
-  StepTable x_, y_;  // between walls
+  StepTable x_, y_;  // along a direction between planes
   // In a cylinder, at even steps along x and y from -reach_ on.
   double reach_ = 0, step_ = 0;
   std::size_t n_steps_ = 0;

@@ -12,15 +12,8 @@ namespace {
 
 unsigned boundary_contacts(const Boundary& boundary, Vec3 r, double tolerance) {
   const double reach = sphere_radius + tolerance;
-  unsigned contacts = boundary.floor && r.z <= reach ? 1 : 0;
-  if (boundary.sides == Sides::walls) {
-    for (const double gap : {r.x, boundary.width_x - r.x, r.y, boundary.width_y - r.y}) {
-      contacts += gap <= reach ? 1 : 0;
-    }
-  } else if (boundary.sides == Sides::cylinder) {
-    const double axis = boundary.axis();
-    contacts += axis - std::hypot(r.x - axis, r.y - axis) <= reach ? 1 : 0;
-  }
+  unsigned contacts = 0;
+  for (const Face& face : Faces(boundary)) contacts += face.distance(r) <= reach ? 1 : 0;
   return contacts;
 }
 

@@ -71,15 +71,18 @@ double squared_distance(const Boundary& boundary, Vec3 a, Vec3 b) {
 
 // What a sphere of radius R around `r` fills of a region.
 double filled_by(const Boundary& boundary, const Region& region, Vec3 r) {
-  if (boundary.sides == Sides::walls) {
-    const Vec3 low{region.from_sides, region.from_sides, region.low};
-    const Vec3 high{boundary.width_x - region.from_sides, boundary.width_y - region.from_sides,
-                    region.high};
+  const bool x = boundary.planes_x(), y = boundary.planes_y();
+  if (x || y) {
+    constexpr double beyond = 1;  // of a sphere's middle: all of it, also where it meets a seam
+    const Vec3 low{x ? region.from_sides : r.x - beyond, y ? region.from_sides : r.y - beyond,
+                   region.low};
+    const Vec3 high{x ? boundary.width_x - region.from_sides : r.x + beyond,
+                    y ? boundary.width_y - region.from_sides : r.y + beyond, region.high};
     return sphere_volume_in_box(low - r, high - r);
   }
-  if (boundary.sides == Sides::cylinder) {
-    const double axis = boundary.axis(), x = r.x - axis, y = r.y - axis;
-    return sphere_volume_in_tube(std::sqrt(x * x + y * y), axis - region.from_sides,
+  if (boundary.tube) {
+    const double axis = boundary.axis(), dx = r.x - axis, dy = r.y - axis;
+    return sphere_volume_in_tube(std::sqrt(dx * dx + dy * dy), axis - region.from_sides,
                                  region.low - r.z, region.high - r.z);
   }
   if (!boundary.periodic_z) return sphere_volume_in_slab(r.z, region.low, region.high);
@@ -107,10 +110,12 @@ double filled_part(const Packing& packing, const Region& region, double sigma) {
 
 Vec3 random_point(const Container& container, const Region& region, RandomStream& random) {
   const Boundary boundary(container);
-  const double off = boundary.has_walls() ? region.from_sides : 0;
+  const double off_x = boundary.periodic_x ? 0 : region.from_sides;
+  const double off_y = boundary.periodic_y ? 0 : region.from_sides;
   while (true) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    const Vec3 r{off + (boundary.width_x - 2 * off) * x, off + (boundary.width_y - 2 * off) * y,
+    const Vec3 r{off_x + (boundary.width_x - 2 * off_x) * x,
+                 off_y + (boundary.width_y - 2 * off_y) * y,
                  region.low + (region.high - region.low) * z};
     if (region.contains(container, r)) return r;
   }

@@ -143,7 +143,7 @@ VoronoiCells cells_at_scale(const Packing& packing, const Boundary& box, double 
                             n_blocks(box.height, per_length), box.periodic_x, box.periodic_y,
                             box.periodic_z, 8);
   std::optional<voro::wall_cylinder> tube;
-  if (box.sides == Sides::cylinder) {
+  if (box.tube) {
     const double radius = 0.5 * scale * box.width_x;
     tube.emplace(radius, radius, 0, 0, 0, 1, radius);
     container.add_wall(*tube);

@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "ensemble/processor_clock.hpp"
 #include "ensemble/realization.hpp"
@@ -35,28 +36,30 @@ struct LatticeUnits {
 };
 LatticeUnits lattice_units(const Plan& plan) {
   const auto* crystal = std::get_if<Crystal>(&plan.start);
-  if (crystal == nullptr || !std::holds_alternative<PeriodicBox>(plan.container)) return {};
-  return {1, crystal->lattice == Lattice::hcp ? std::sqrt(3.0) : 1};
+  if (crystal == nullptr) return {};
+  const Boundary boundary(plan.container);
+  return {boundary.periodic_x ? 1 : 0.0, !boundary.periodic_y               ? 0
+                                         : crystal->lattice == Lattice::hcp ? std::sqrt(3.0)
+                                                                            : 1};
 }
 
 /// The container on about `share` of its area. Where one side of a box cannot be cut as far as the
 /// other, the other is cut further.
 Container with_cut_footprint(const Plan& plan, double share) {
-  Container container = plan.container;
+  const Boundary boundary(plan.container);
+  if (!boundary.has_floor()) return plan.container;
+  Vec3 size = extent(plan.container);
   const LatticeUnits units = lattice_units(plan);
   const double factor = std::sqrt(share);
-  const auto cut_box = [&](auto& box) {
-    const double left_x = cut_width(box.width_x, factor, units.x) / box.width_x;
-    const double left_y = cut_width(box.width_y, factor, units.y) / box.width_y;
-    box.width_x = cut_width(box.width_x, share / left_y, units.x);
-    box.width_y = cut_width(box.width_y, share / left_x, units.y);
-  };
-  if (auto* periodic = std::get_if<PeriodicBox>(&container)) cut_box(*periodic);
-  if (auto* walled = std::get_if<WalledBox>(&container)) cut_box(*walled);
-  if (auto* tube = std::get_if<Cylinder>(&container)) {
-    tube->diameter = cut_width(tube->diameter, factor, 0);
+  const double left_x = cut_width(size.x, factor, units.x) / size.x;
+  const double left_y = cut_width(size.y, factor, units.y) / size.y;
+  if (boundary.tube) {
+    size.x = cut_width(size.x, factor, 0);
+  } else {
+    size.x = cut_width(size.x, share / left_y, units.x);
+    size.y = cut_width(size.y, share / left_x, units.y);
   }
-  return container;
+  return *container_of(name_of(plan.container), size);
 }
 
 /// What a tap of one strength took.

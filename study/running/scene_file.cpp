@@ -11,7 +11,6 @@
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/error.hpp"
-#include "results/export/container_text.hpp"
 #include "results/export/input_file.hpp"
 #include "results/export/packing_file.hpp"
 #include "results/export/printable.hpp"
@@ -31,19 +30,18 @@ std::string read_text(const std::string& path) {
 
 /// "periodic, 4 x 5", a height with a third number.
 std::string named(const Container& container) {
-  const auto [kind, widths] = container_text(container);
-  const std::string height = widths[2] > 0 ? fmt::format(" x {}", widths[2]) : "";
-  return fmt::format("{}, {} x {}{}", kind, widths[0], widths[1], height);
+  const Vec3 size = extent(container);
+  const std::string height = size.z > 0 ? fmt::format(" x {}", size.z) : "";
+  return fmt::format("{}, {} x {}{}", name_of(container), size.x, size.y, height);
 }
 
 /// Of one kind and of the same widths, but for digits that another program did not write.
 bool alike(const Container& a, const Container& b) {
   constexpr double rounding = 1e-6;
-  const auto [kind_a, widths_a] = container_text(a);
-  const auto [kind_b, widths_b] = container_text(b);
-  return kind_a == kind_b && std::ranges::equal(widths_a, widths_b, [](double x, double y) {
-           return std::abs(x - y) <= rounding * y;
-         });
+  const auto near = [](double x, double y) { return std::abs(x - y) <= rounding * y; };
+  const Vec3 of_a = extent(a), of_b = extent(b);
+  return a.index() == b.index() && near(of_a.x, of_b.x) && near(of_a.y, of_b.y) &&
+         near(of_a.z, of_b.z);
 }
 
 /// Reads the packings that a scene starts from, and remembers where each was packed.

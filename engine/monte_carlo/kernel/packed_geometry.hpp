@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/bed/container.hpp"
@@ -78,43 +79,82 @@ inline float room_between(double low, double at, double high) {
 
 }  // namespace packed_geometry
 
-/// A container with its constants laid out for the loop. `room` is what a step of the sphere has to
-/// floor and sides, in a form that `leaves` understands: true if a step certainly ends outside.
-template <class Box>
-struct PackedBox;
+// What a box is made of, each chosen by its shape. The room of a sphere is what a step has to floor
+// and sides, in a form that `leaves` understands: true if a step certainly ends outside.
 
-/// Sides that are no obstacle, over a floor.
-struct PackedFloor {
+/// Along x and y. A direction that is not periodic has the period 0, which leaves it as it is.
+template <bool periodic>
+struct PackedPeriods {
+  Pair width;
+  PackedPeriods(ContainerShape shape, Vec3 extent)
+      : width{shape.periodic_x ? extent.x : 0, shape.periodic_y ? extent.y : 0} {}
+  Pair wrapped_lateral(Pair r) const { return packed_geometry::wrap(r, width); }
+  Pair lateral(Pair d) const { return packed_geometry::nearest_image(d, width); }
+};
+template <>
+struct PackedPeriods<false> {
+  PackedPeriods(ContainerShape, Vec3) {}
+  static Pair wrapped_lateral(Pair r) { return r; }
+  static Pair lateral(Pair d) { return d; }
+};
+
+/// Along z.
+template <bool periodic>
+struct PackedHeight {
+  double height;
+  explicit PackedHeight(Vec3 extent) : height(extent.z) {}
+  double wrapped_vertical(double z) const {
+    return packed_geometry::wrap(Pair{z, 0}, Pair{height, 1})[0];
+  }
+  double vertical(double d) const {
+    return packed_geometry::nearest_image(Pair{d, 0}, Pair{height, 1})[0];
+  }
+};
+template <>
+struct PackedHeight<false> {
+  explicit PackedHeight(Vec3) {}
+  static double wrapped_vertical(double z) { return z; }
+  static double vertical(double d) { return d; }
+};
+
+enum class PackedSides { none, floor, floor_and_planes, floor_and_tube };
+
+constexpr PackedSides packed_sides(ContainerShape shape) {
+  if (shape.tube) return PackedSides::floor_and_tube;
+  if (shape.has_walls()) return PackedSides::floor_and_planes;
+  return shape.has_floor() ? PackedSides::floor : PackedSides::none;
+}
+
+template <PackedSides sides>
+struct PackedFaces;
+
+template <>
+struct PackedFaces<PackedSides::none> {
+  PackedFaces(ContainerShape, Vec3) {}
+  static bool clear_of_boundaries(const PackedCentre&) { return true; }
+  static Lanes room(const PackedCentre&) { return Lanes{}; }
+  static bool leaves(const Lanes&, float, float, float) { return false; }
+};
+
+template <>
+struct PackedFaces<PackedSides::floor> {
+  PackedFaces(ContainerShape, Vec3) {}
+  static bool clear_of_boundaries(const PackedCentre& r) { return r.z >= sphere_radius; }
   static Lanes room(const PackedCentre& r) {
     return Lanes{0, 0, packed_geometry::room_below(r), 0};
   }
   static bool leaves(const Lanes& room, float, float, float dz) { return dz < -room[2]; }
 };
 
-/// Free lateral space: what walled boxes and cylinders share.
-struct PackedOpenBox {
-  static PackedCentre wrapped(PackedCentre r) { return r; }
-  static Pair lateral(Pair d) { return d; }
-  static double vertical(double d) { return d; }
-};
-
+/// A direction without planes has room for ever.
 template <>
-struct PackedBox<PeriodicBox> : PackedFloor {
-  Pair width;
-  explicit PackedBox(const PeriodicBox& box) : width{box.width_x, box.width_y} {}
-  PackedCentre wrapped(PackedCentre r) const {
-    return {packed_geometry::wrap(r.xy, width), r.z, 0};
-  }
-  Pair lateral(Pair d) const { return packed_geometry::nearest_image(d, width); }
-  static double vertical(double d) { return d; }
-  static bool clear_of_boundaries(const PackedCentre& r) { return r.z >= sphere_radius; }
-};
-
-template <>
-struct PackedBox<WalledBox> : PackedOpenBox {
-  Pair low = {sphere_radius, sphere_radius}, high;
-  explicit PackedBox(const WalledBox& box)
-      : high{box.width_x - sphere_radius, box.width_y - sphere_radius} {}
+struct PackedFaces<PackedSides::floor_and_planes> {
+  Pair low, high;
+  PackedFaces(ContainerShape shape, Vec3 extent)
+      : low{shape.planes_x() ? sphere_radius : -endless,
+            shape.planes_y() ? sphere_radius : -endless},
+        high{shape.planes_x() ? extent.x - sphere_radius : endless,
+             shape.planes_y() ? extent.y - sphere_radius : endless} {}
   bool clear_of_boundaries(const PackedCentre& r) const {
     return r.z >= sphere_radius && packed_geometry::both(low, r.xy) &&
            packed_geometry::both(r.xy, high);
@@ -130,15 +170,17 @@ struct PackedBox<WalledBox> : PackedOpenBox {
     const Lanes towards = (Lanes)((Bits)Lanes{dx, dy, dz, 0} ^ side);
     return any_of_four(towards > (Lanes)((Bits)room ^ side));
   }
+
+ private:
+  static constexpr double endless = std::numeric_limits<double>::infinity();
 };
 
 template <>
-struct PackedBox<Cylinder> : PackedOpenBox {
+struct PackedFaces<PackedSides::floor_and_tube> {
   Pair axis;
   double reach;
-  explicit PackedBox(const Cylinder& tube)
-      : axis{0.5 * tube.diameter, 0.5 * tube.diameter},
-        reach(0.5 * tube.diameter - sphere_radius) {}
+  PackedFaces(ContainerShape, Vec3 extent)
+      : axis{0.5 * extent.x, 0.5 * extent.x}, reach(0.5 * extent.x - sphere_radius) {}
   bool clear_of_boundaries(const PackedCentre& r) const {
     const Pair d = r.xy - axis;
     return r.z >= sphere_radius && d[0] * d[0] + d[1] * d[1] <= reach * reach;
@@ -156,23 +198,24 @@ struct PackedBox<Cylinder> : PackedOpenBox {
   }
 };
 
-template <>
-struct PackedBox<FullyPeriodicBox> {
-  Pair width;
-  double height;
-  explicit PackedBox(const FullyPeriodicBox& box)
-      : width{box.width_x, box.width_y}, height(box.height) {}
+template <class Box>
+using PeriodsOf = PackedPeriods<Box::shape().periodic_x || Box::shape().periodic_y>;
+template <class Box>
+using HeightOf = PackedHeight<Box::shape().periodic_z>;
+template <class Box>
+using FacesOf = PackedFaces<packed_sides(Box::shape())>;
+
+/// A container with its constants laid out for the loop.
+template <class Box>
+struct PackedBox : PeriodsOf<Box>, HeightOf<Box>, FacesOf<Box> {
+  explicit PackedBox(const Box& box)
+      : PeriodsOf<Box>(box.shape(), box.extent()),
+        HeightOf<Box>(box.extent()),
+        FacesOf<Box>(box.shape(), box.extent()) {}
+
   PackedCentre wrapped(PackedCentre r) const {
-    return {packed_geometry::wrap(r.xy, width),
-            packed_geometry::wrap(Pair{r.z, 0}, Pair{height, 1})[0], 0};
+    return {this->wrapped_lateral(r.xy), this->wrapped_vertical(r.z), 0};
   }
-  Pair lateral(Pair d) const { return packed_geometry::nearest_image(d, width); }
-  double vertical(double d) const {
-    return packed_geometry::nearest_image(Pair{d, 0}, Pair{height, 1})[0];
-  }
-  static bool clear_of_boundaries(const PackedCentre&) { return true; }
-  static Lanes room(const PackedCentre&) { return Lanes{}; }
-  static bool leaves(const Lanes&, float, float, float) { return false; }
 };
 
 /// Squared distance of two centres, to the nearest image.

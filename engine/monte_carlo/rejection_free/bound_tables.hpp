@@ -157,7 +157,7 @@ class BoundTables {
       made_[k].sphere = stale_[k];
       made_[k].planes.n = 0;
       add_plane(made_[k].planes, {0, 0, 1}, own.z - sphere_radius + rounding);
-      add_sides(made_[k].planes, box_, own);
+      add_sides(made_[k].planes, own);
     }
     make_bounds_(bins_, sight_, surroundings(), made_.data(), made_.size(), rows_.data());
     rows_made_ += made_.size();
@@ -174,21 +174,25 @@ class BoundTables {
     planes.gap[w] = static_cast<float>(gap);
   }
 
-  void add_sides(Planes&, const PeriodicBox&, const PackedCentre&) const {}
-  void add_sides(Planes& planes, const WalledBox& box, const PackedCentre& own) const {
+  void add_sides(Planes& planes, const PackedCentre& own) const {
+    const Vec3 extent = box_.extent();
     const double beyond = rounding - sphere_radius;
-    add_plane(planes, {-1, 0, 0}, own.xy[0] + beyond);
-    add_plane(planes, {1, 0, 0}, box.width_x - own.xy[0] + beyond);
-    add_plane(planes, {0, -1, 0}, own.xy[1] + beyond);
-    add_plane(planes, {0, 1, 0}, box.width_y - own.xy[1] + beyond);
-  }
-  // A tube lies within every plane that touches it.
-  void add_sides(Planes& planes, const Cylinder& tube, const PackedCentre& own) const {
-    const double axis = 0.5 * tube.diameter;
-    const double x = own.xy[0] - axis, y = own.xy[1] - axis;
-    const double distance = std::sqrt(x * x + y * y);
-    if (distance < 1e-3) return;
-    add_plane(planes, {x / distance, y / distance, 0}, axis - sphere_radius - distance + rounding);
+    if constexpr (Box::shape().planes_x()) {
+      add_plane(planes, {-1, 0, 0}, own.xy[0] + beyond);
+      add_plane(planes, {1, 0, 0}, extent.x - own.xy[0] + beyond);
+    }
+    if constexpr (Box::shape().planes_y()) {
+      add_plane(planes, {0, -1, 0}, own.xy[1] + beyond);
+      add_plane(planes, {0, 1, 0}, extent.y - own.xy[1] + beyond);
+    }
+    if constexpr (Box::shape().tube) {  // it lies within every plane that touches it
+      const double axis = 0.5 * extent.x;
+      const double x = own.xy[0] - axis, y = own.xy[1] - axis;
+      const double distance = std::sqrt(x * x + y * y);
+      if (distance < 1e-3) return;
+      add_plane(planes, {x / distance, y / distance, 0},
+                axis - sphere_radius - distance + rounding);
+    }
   }
 
   Box box_;

@@ -14,10 +14,10 @@ namespace jostle::inline engine {
 /// side. Differences modulo 2^32 then point to the nearest image without a comparison.
 class PlaceGrid {
  public:
-  explicit PlaceGrid(const PeriodicBox& box)
-      : units_{box.width_x * 0x1p-32, box.width_y * 0x1p-32, open_unit} {}
-  template <class OpenBox>
-  explicit PlaceGrid(const OpenBox&) : units_{open_unit, open_unit, open_unit} {}
+  template <class Box>
+  explicit PlaceGrid(const Box& box)
+      : units_{Box::shape().periodic_x ? box.extent().x * 0x1p-32 : open_unit,
+               Box::shape().periodic_y ? box.extent().y * 0x1p-32 : open_unit, open_unit} {}
 
   GridPlace operator()(const PackedCentre& centre) const {
     return {{rounded(centre.xy[0] / units_[0]), rounded(centre.xy[1] / units_[1]),
@@ -29,7 +29,8 @@ class PlaceGrid {
   double coarsest() const { return *std::ranges::max_element(units_); }
 
  private:
-  // Where nothing is periodic: spheres within 32 diameters of each other are told apart.
+  // Along a direction that is not periodic: spheres within 32 diameters of each other are told
+  // apart.
   static constexpr double open_unit = 0x1p-26;
 
   static std::int32_t rounded(double value) {

@@ -3,32 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
+#include "engine/bed/boundary.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline study {
 namespace {
 
-std::string words(const PeriodicBox& box) {
-  return finite_text("periodic sides, {} x {} diameters", box.width_x, box.width_y);
-}
-std::string words(const WalledBox& box) {
-  return finite_text("four walls, {} x {} diameters", box.width_x, box.width_y);
-}
-std::string words(const Cylinder& tube) {
-  return finite_text("a cylinder, {} diameters wide", tube.diameter);
-}
-std::string words(const FullyPeriodicBox& box) {
-  return finite_text("a fully periodic box, {} x {} x {} diameters", box.width_x, box.width_y,
-                     box.height);
+/// "four walls, 16 x 16 diameters".
+std::string words(const Container& container) {
+  const Vec3 size = extent(container);
+  std::string title =
+      std::visit([](const auto& one) { return std::string(one.about.title); }, container);
+  title.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
+  if (Boundary(container).tube) return finite_text("{}, {} diameters wide", title, size.x);
+  if (size.z > 0) return finite_text("{}, {} x {} x {} diameters", title, size.x, size.y, size.z);
+  return finite_text("{}, {} x {} diameters", title, size.x, size.y);
 }
 
 }  // namespace
 
 std::string bed_words(const StudyPoint& point) {
-  return fmt::format("{} in {}", counted(point.n_spheres, "sphere"),
-                     std::visit([](const auto& one) { return words(one); }, point.container));
+  return fmt::format("{} in {}", counted(point.n_spheres, "sphere"), words(point.container));
 }
 
 std::string study_words(const Study& study) {

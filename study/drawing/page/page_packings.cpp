@@ -83,9 +83,9 @@ ChosenPackings choose(std::vector<KeptPoint> points, std::size_t most) {
 }
 
 Vec3 upper_corner(const Packing& packing) {
-  const auto* const closed = std::get_if<FullyPeriodicBox>(&packing.container);
-  return {width_x(packing.container), width_y(packing.container),
-          closed ? closed->height : std::max(1.0, top_height(packing) + sphere_radius)};
+  Vec3 upper = extent(packing.container);
+  if (!(upper.z > 0)) upper.z = std::max(1.0, top_height(packing) + sphere_radius);
+  return upper;
 }
 
 std::string encoded_positions(const Packing& packing, const Vec3& upper) {

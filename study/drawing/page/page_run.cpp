@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "results/export/container_text.hpp"
 #include "study/drawing/drawn/study_words.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 #include "study/drawing/page/page_json.hpp"
@@ -19,7 +18,7 @@ constexpr std::size_t most_named_points = 2000;  // that are named
 constexpr std::size_t longest_scene = 60000;     // bytes
 
 Json page_container(const Container& container) {
-  return {{"kind", container_text(container).kind},
+  return {{"kind", name_of(container)},
           {"width_x", page_number(width_x(container))},
           {"width_y", page_number(width_y(container))}};
 }

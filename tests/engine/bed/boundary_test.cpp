@@ -19,28 +19,32 @@ std::vector<Container> containers() {
 TEST_CASE("A boundary says of each container where it ends") {
   const Boundary periodic(PeriodicBox{4, 5});
   CHECK(periodic.periodic_sides());
-  CHECK(periodic.floor);
+  CHECK(periodic.has_floor());
   CHECK_FALSE(periodic.has_walls());
   CHECK(periodic.periods() == Vec3{4, 5, 0});
   CHECK(std::isinf(periodic.height));
-  CHECK(periodic.side_margin() == 0);
+  CHECK(periodic.margin_x() == 0);
 
   const Boundary walled(WalledBox{4, 5});
-  CHECK(walled.sides == Sides::walls);
-  CHECK(walled.floor);
+  CHECK(walled.planes_x());
+  CHECK(walled.planes_y());
+  CHECK(walled.has_floor());
   CHECK(walled.periods() == Vec3{});
   CHECK(walled.width_y == 5);
-  CHECK(walled.side_margin() == sphere_radius);
+  CHECK(walled.margin_x() == sphere_radius);
+  CHECK(walled.margin_y() == sphere_radius);
 
   const Boundary tube(Cylinder{7});
-  CHECK(tube.sides == Sides::cylinder);
-  CHECK(tube.floor);
+  CHECK(tube.tube);
+  CHECK_FALSE(tube.planes_x());
+  CHECK(tube.has_walls());
+  CHECK(tube.has_floor());
   CHECK(tube.periods() == Vec3{});
   CHECK(tube.axis() == 3.5);
   CHECK(tube.width_y == 7);
 
   const Boundary bulk(FullyPeriodicBox{4, 5, 6});
-  CHECK_FALSE(bulk.floor);
+  CHECK_FALSE(bulk.has_floor());
   CHECK_FALSE(bulk.has_walls());
   CHECK(bulk.periods() == Vec3{4, 5, 6});
   CHECK(bulk.height == 6);
@@ -78,6 +82,6 @@ TEST_CASE("A boundary wraps, compares and clears as the container's own function
         },
         container);
     CHECK(clear > 100);
-    if (boundary.floor) CHECK(blocked > 100);
+    if (boundary.has_floor()) CHECK(blocked > 100);
   }
 }
