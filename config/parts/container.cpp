@@ -49,6 +49,16 @@ void read_width(const NumberPair<Box>& field, const Reader& in, Box& box) {
   note_width(alone, field.key, in);
 }
 
+/// "periodic; walls: four vertical planes; ...".
+std::string texts_of_kinds() {
+  std::string texts;
+  for_each_alternative<Container>([&]<class Box>(std::type_identity<Box>) {
+    texts.append(texts.empty() ? "" : "; ").append(Box::about.name);
+    if (!Box::about.text.empty()) texts.append(": ").append(Box::about.text);
+  });
+  return texts + ".";
+}
+
 }  // namespace
 
 template <class Box>
@@ -105,11 +115,8 @@ Json value_schema(const OneOf<Container>&, Definitions& definitions) {
     box.properties["sides"] = {{"const", Box::about.name}};
     boxes.push_back(described_as(box.json(), Box::about.title, "", std::nullopt, ""));
   });
-  const Json sides = described_as(
-      words_schema(names_of<Container>()), "Sides",
-      "periodic; walls: four vertical planes; cylinder: a tube; fully_periodic: periodic in z too "
-      "and without gravity (the hard-sphere fluid).",
-      std::nullopt, "");
+  const Json sides = described_as(words_schema(names_of<Container>()), "Sides", texts_of_kinds(),
+                                  std::nullopt, "");
   return {{"type", "object"},
           {"required", Json::array({"sides"})},
           {"properties", {{"sides", sides}}},

@@ -26,13 +26,13 @@ std::optional<std::string> too_narrow(const char* what, double width, double lea
                     : ", or no sphere fits inside");
 }
 
-/// The least of the widths that `counts` tells of, x, y and z; infinite if there is none.
+/// Returns the least width along the chosen directions: infinite if none is chosen, NaN if one of
+/// them is NaN.
 double least_of(Vec3 extent, bool x, bool y, bool z) {
   constexpr double none = std::numeric_limits<double>::infinity();
-  // Not a number is kept: it is no width.
   double least = none;
   for (const auto& [counts, width] : {std::pair(x, extent.x), {y, extent.y}, {z, extent.z}})
-    if (counts && !(width >= least)) least = width;
+    if (counts && (std::isnan(width) || width < least)) least = width;
   return least;
 }
 

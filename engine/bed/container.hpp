@@ -52,8 +52,8 @@ constexpr NumberPair<Box> widths(double Box::*x, double Box::*y, Range range) {
           "a number, or a list of two, diameters"};
 }
 
-// Each container gives what scenes call it and its fields there, its shape, its extent along x, y
-// and z (0 under an open top), and itself from an extent.
+// Each container gives what scenes and captions call it and its fields there, its shape, its extent
+// along x, y and z (0 under an open top), and itself from an extent.
 
 /// Periodic sides (P.B.C. of Philippe & Bideau 2001). Coordinates in [0, width).
 struct PeriodicBox {
@@ -80,7 +80,8 @@ struct WalledBox {
   static WalledBox of(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const WalledBox&) const = default;
 
-  static constexpr About about{.name = "walls", .title = "Four walls"};
+  static constexpr About about{
+      .name = "walls", .text = "four vertical planes", .title = "Four walls"};
   static constexpr auto fields() {
     return std::tuple{widths(&WalledBox::width_x, &WalledBox::width_y, walled_width_range)};
   }
@@ -95,7 +96,7 @@ struct Cylinder {
   static Cylinder of(Vec3 extent) { return {extent.x}; }
   bool operator==(const Cylinder&) const = default;
 
-  static constexpr About about{.name = "cylinder", .title = "A cylinder"};
+  static constexpr About about{.name = "cylinder", .text = "a tube", .title = "A cylinder"};
   static constexpr auto fields() {
     return std::tuple{field("diameter", &Cylinder::diameter, Number{walled_width_range},
                             "Of a cylinder, in diameters of a sphere",
@@ -114,8 +115,10 @@ struct FullyPeriodicBox {
   static FullyPeriodicBox of(Vec3 extent) { return {extent.x, extent.y, extent.z}; }
   bool operator==(const FullyPeriodicBox&) const = default;
 
-  static constexpr About about{.name = "fully_periodic",
-                               .title = "Periodic in all directions, without gravity"};
+  static constexpr About about{
+      .name = "fully_periodic",
+      .text = "periodic in z too and without gravity (the hard-sphere fluid)",
+      .title = "A fully periodic box"};
   static constexpr auto fields() {
     return std::tuple{
         widths(&FullyPeriodicBox::width_x, &FullyPeriodicBox::width_y, periodic_width_range),

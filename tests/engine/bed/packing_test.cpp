@@ -26,7 +26,14 @@ TEST_CASE("least widths are named") {
   CHECK(width_fault(Cylinder{0.5})->find("least is 1") != std::string::npos);
   CHECK_FALSE(width_fault(Cylinder{1}));
   CHECK(width_fault(FullyPeriodicBox{5, 5, 1})->find("height") != std::string::npos);
-  CHECK(width_fault(PeriodicBox{std::numeric_limits<double>::quiet_NaN(), 5}));
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  for (const Container& container :
+       {Container{PeriodicBox{no_number, 5}}, Container{PeriodicBox{5, no_number}},
+        Container{WalledBox{no_number, 5}}, Container{WalledBox{5, no_number}},
+        Container{Cylinder{no_number}}, Container{FullyPeriodicBox{5, 5, no_number}}}) {
+    CAPTURE(container.index());
+    CHECK(width_fault(container));
+  }
 }
 
 TEST_CASE("the deepest overlap is found across seams, floors and walls") {
