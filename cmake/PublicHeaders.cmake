@@ -9,6 +9,7 @@ set(JOSTLE_PUBLIC_HEADERS
     engine/bed/container.hpp
     engine/bed/packing.hpp
     engine/bed/random.hpp
+    engine/bed/sizes.hpp
     engine/bed/slab.hpp
     engine/bed/vec3.hpp
     engine/bed/window.hpp

@@ -152,6 +152,7 @@ bool moves_floor(const Tap& tap) {
 }
 
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {
+  require_equal_spheres(packing, "taps");
   return std::visit(Excite{packing, random}, tap);
 }
 

@@ -86,6 +86,7 @@ Region bulk_of(const Packing& packing) {
 
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {
+  require_equal_spheres(packing, "measures of structure");
   require_diameters(packing);
   MeasuredPacking in{
       .packing = packing, .region = settings.region.value_or(bulk_of(packing)), .points = points};

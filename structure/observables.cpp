@@ -139,6 +139,7 @@ Observer::Observer(const std::vector<Observable>& observables, std::vector<Heigh
 }
 
 std::vector<double> Observer::operator()(const Packing& packing) const {
+  require_equal_spheres(packing, "observables");
   std::vector<double> values;
   values.reserve(observables_.size());
   Orders orders(packing);

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/cell_grid.hpp"
@@ -20,21 +22,89 @@ struct Deepest {
   }
 };
 
-void see_pair(const Boundary& boundary, const std::vector<Vec3>& centres, std::size_t i,
-              std::size_t j, Deepest& deepest) {
-  const double squared = norm_squared(separation(boundary, centres[i], centres[j]));
-  if (squared < 1) {
-    deepest.see(1 - std::sqrt(squared), static_cast<long>(i), static_cast<long>(j));
+void see_pair(const Boundary& boundary, const Packing& packing, std::size_t i, std::size_t j,
+              Deepest& deepest) {
+  const double squared = norm_squared(separation(boundary, packing.centres[i], packing.centres[j]));
+  const double touching = packing.radius(i) + packing.radius(j);
+  if (squared < touching * touching) {
+    deepest.see(touching - std::sqrt(squared), static_cast<long>(std::min(i, j)),
+                static_cast<long>(std::max(i, j)));
   }
+}
+
+void see_boundaries(const Boundary& boundary, const Packing& packing, Deepest& deepest) {
+  if (boundary.periodic_z && !boundary.has_walls()) return;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double deeper = packing.radius(i) - sphere_radius;  // than a sphere of diameter 1
+    deepest.see(boundary_depth(boundary, packing.centres[i]) + deeper, static_cast<long>(i), -1);
+  }
+}
+
+/// Spheres whose radii differ by less than a factor of two, in cells of their own.
+struct SizeClass {
+  std::vector<std::uint32_t> spheres;
+  double largest_radius = 0;
+  CellGrid grid;
+};
+
+/// Classes from the largest spheres down, so that cells are as small as their spheres allow
+/// (Krijgsman, Ogarko & Luding, Comput. Part. Mech. 1, 357, 2014).
+std::vector<SizeClass> size_classes(const Boundary& boundary, const Packing& packing) {
+  std::vector<SizeClass> classes;
+  const double largest = packing.largest_radius();
+  for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
+    std::size_t number = 0;
+    for (double r = 0.5 * largest; packing.radius(i) <= r; r *= 0.5) ++number;
+    if (classes.size() <= number) classes.resize(number + 1);
+    classes[number].spheres.push_back(i);
+    classes[number].largest_radius = std::max(classes[number].largest_radius, packing.radius(i));
+  }
+  for (SizeClass& c : classes) {
+    if (c.spheres.empty()) continue;
+    c.grid.build(boundary, 2 * c.largest_radius, static_cast<std::uint32_t>(c.spheres.size()),
+                 [&](std::uint32_t k) { return packing.centres[c.spheres[k]]; });
+  }
+  return classes;
 }
 
 }  // namespace
 
+void require_equal_spheres(const Packing& packing, const char* what) {
+  if (!packing.sizes) return;
+  throw std::invalid_argument(std::string(what) +
+                              " require equal spheres of diameter 1, and this packing has sizes: "
+                              "with sizes only volumes, heights, packing fractions and overlaps "
+                              "are computed. Leave the sizes out");
+}
+
 double mean_height(const Packing& packing) {
   assert(!packing.centres.empty());
   double sum = 0;
-  for (const Vec3& centre : packing.centres) sum += centre.z;
-  return sum / static_cast<double>(packing.centres.size());
+  if (!packing.sizes) {
+    for (const Vec3& centre : packing.centres) sum += centre.z;
+    return sum / static_cast<double>(packing.centres.size());
+  }
+  double weights = 0;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double d = packing.sizes->diameter(i), weight = d * d * d;
+    sum += weight * packing.centres[i].z;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+double bed_height(const Packing& packing) {
+  return 2 * mean_height(packing);
+}
+
+double solid_volume(const Packing& packing) {
+  if (!packing.sizes) return static_cast<double>(packing.centres.size()) * sphere_volume;
+  double cubes = 0;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double d = packing.sizes->diameter(i);
+    cubes += d * d * d;
+  }
+  return cubes * sphere_volume;
 }
 
 double top_height(const Packing& packing) {
@@ -43,14 +113,20 @@ double top_height(const Packing& packing) {
   return top;
 }
 
+double surface_height(const Packing& packing) {
+  double top = 0;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i)
+    top = std::max(top, packing.centres[i].z + packing.radius(i));
+  return top;
+}
+
 Overlap deepest_overlap_brute_force(const Packing& packing) {
   Deepest deepest;
   const Boundary boundary(packing.container);
-  const std::vector<Vec3>& centres = packing.centres;
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    deepest.see(boundary_depth(boundary, centres[i]), static_cast<long>(i), -1);
-    for (std::size_t j = i + 1; j < centres.size(); ++j) {
-      see_pair(boundary, centres, i, j, deepest);
+  see_boundaries(boundary, packing, deepest);
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    for (std::size_t j = i + 1; j < packing.centres.size(); ++j) {
+      see_pair(boundary, packing, i, j, deepest);
     }
   }
   return deepest.found;
@@ -59,15 +135,19 @@ Overlap deepest_overlap_brute_force(const Packing& packing) {
 Overlap deepest_overlap(const Packing& packing) {
   Deepest deepest;
   const Boundary boundary(packing.container);
-  const std::vector<Vec3>& centres = packing.centres;
-  CellGrid grid;
-  grid.build(boundary, 1.0, static_cast<std::uint32_t>(centres.size()),
-             [&](std::uint32_t i) { return centres[i]; });
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    deepest.see(boundary_depth(boundary, centres[i]), static_cast<long>(i), -1);
-    grid.for_each_near(centres[i], [&](std::uint32_t j) {
-      if (j > i) see_pair(boundary, centres, i, j, deepest);
-    });
+  see_boundaries(boundary, packing, deepest);
+  const std::vector<SizeClass> classes = size_classes(boundary, packing);
+  for (std::size_t own = 0; own < classes.size(); ++own) {
+    for (const std::uint32_t i : classes[own].spheres) {
+      // Smaller spheres look for larger ones: a cell of theirs is as wide as any such pair reaches.
+      for (std::size_t other = 0; other <= own; ++other) {
+        if (classes[other].spheres.empty()) continue;
+        classes[other].grid.for_each_near(packing.centres[i], [&](std::uint32_t k) {
+          const std::uint32_t j = classes[other].spheres[k];
+          if (other < own || j > i) see_pair(boundary, packing, i, j, deepest);
+        });
+      }
+    }
   }
   return deepest.found;
 }

@@ -1,24 +1,45 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "engine/bed/container.hpp"
+#include "engine/bed/sizes.hpp"
 #include "engine/bed/vec3.hpp"
 
 namespace jostle::inline engine {
 
-/// Equal hard spheres of diameter 1 in a container.
+/// Hard spheres in a container.
 struct Packing {
   Container container;
-  std::vector<Vec3> centres;  // [n_spheres], diameters
+  std::vector<Vec3> centres;                     // [n_spheres], diameters
+  std::shared_ptr<const Sizes> sizes = nullptr;  // null: all of diameter 1 and mass 1
+
+  double radius(std::size_t sphere) const { return sizes ? sizes->radius(sphere) : sphere_radius; }
+  double smallest_radius() const { return sizes ? sizes->smallest_radius() : sphere_radius; }
+  double largest_radius() const { return sizes ? sizes->largest_radius() : sphere_radius; }
 };
 
-/// <Z>, the mean height of the centres, diameters: the mean potential energy a sphere in units of
-/// m g d. Summed in order of the spheres. Requires at least one sphere.
+/// Throws std::invalid_argument where the packing has sizes, which `what` (a plural, "taps") does
+/// not take: the one place that says what is possible with a mixture.
+void require_equal_spheres(const Packing& packing, const char* what);
+
+/// <Z>, the mean height of the centres, diameters, each weighted by the volume of its sphere; of
+/// equal spheres the mean potential energy per sphere in units of m g d. Summed in order of the
+/// spheres. Requires at least one sphere.
 double mean_height(const Packing& packing);
+
+/// 2 <Z>, diameters: the height of the bed if its packing fraction is the same at all heights.
+double bed_height(const Packing& packing);
+
+/// The volume of all spheres, diameters cubed.
+double solid_volume(const Packing& packing);
 
 /// Greatest height of a centre, diameters; 0 for an empty packing.
 double top_height(const Packing& packing);
+
+/// Greatest height that a sphere reaches, diameters; 0 for an empty packing.
+double surface_height(const Packing& packing);
 
 /// The deepest overlap in a packing, over all pairs, the floor and the walls.
 struct Overlap {

@@ -13,7 +13,8 @@ enum class Purpose : std::uint32_t {
   trials = 3,
   resampling = 4,
   start_trials = 5,
-  void_points = 6
+  void_points = 6,
+  sizes = 7
 };
 
 enum class StreamKey : std::uint64_t {};

@@ -28,6 +28,10 @@ double cap_integral(double low, double high) {
          sphere_volume * (std::max(high, 1.0) - std::max(low, 1.0));
 }
 
+double whole_volume(double diameter) {
+  return diameter * diameter * diameter * sphere_volume;
+}
+
 double quantile(std::vector<double>& heights, double q) {
   const double position = q * static_cast<double>(heights.size() - 1);
   const auto below = static_cast<std::ptrdiff_t>(position);
@@ -39,10 +43,38 @@ double quantile(std::vector<double>& heights, double q) {
   return low + (position - static_cast<double>(below)) * (high - low);
 }
 
+struct Weighted {
+  double height, weight;
+};
+
+// Equal weights give quantile(). The spheres' middles, in order of height, lie at the sums of
+// weights up to them; between two of them heights are interpolated.
+HeightWindow weighted_quantiles(const Packing& packing, QuantileWindow quantiles) {
+  std::vector<Weighted> spheres;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i)
+    spheres.push_back({packing.centres[i].z, whole_volume(2 * packing.radius(i))});
+  std::ranges::sort(spheres, {}, &Weighted::height);
+  double span = 0;
+  for (std::size_t k = 1; k < spheres.size(); ++k)
+    span += 0.5 * (spheres[k - 1].weight + spheres[k].weight);
+  const auto at = [&](double q) {
+    double before = 0;
+    for (std::size_t k = 1; k < spheres.size(); ++k) {
+      const Weighted &low = spheres[k - 1], &high = spheres[k];
+      const double step = 0.5 * (low.weight + high.weight), beyond = q * span - before;
+      if (beyond <= step)
+        return low.height + std::max(0.0, beyond / step) * (high.height - low.height);
+      before += step;
+    }
+    return spheres.back().height;
+  };
+  return {at(quantiles.low), at(quantiles.high)};
+}
+
 // Area of the cut through a sphere centred at height z.
-double cut_area(double z, double height) {
+double cut_area(double z, double height, double radius) {
   constexpr double pi = 6 * sphere_volume;
-  const double squared = 0.25 - (height - z) * (height - z);
+  const double squared = radius * radius - (height - z) * (height - z);
   return squared > 0 ? pi * squared : 0;
 }
 
@@ -56,9 +88,12 @@ double fraction_of(double solid, double volume) {
 
 }  // namespace
 
-double sphere_volume_in_slab(double z, double low, double high) {
-  const double bottom = z - sphere_radius;
-  return cap_volume(high - bottom) - cap_volume(low - bottom);
+double sphere_volume_in_slab(double z, double low, double high, double diameter) {
+  const double bottom = z - 0.5 * diameter;
+  if (diameter == 1) return cap_volume(high - bottom) - cap_volume(low - bottom);
+  const double scale = 1 / diameter;
+  return diameter * diameter * diameter *
+         (cap_volume((high - bottom) * scale) - cap_volume((low - bottom) * scale));
 }
 
 double solids_fraction(const Packing& packing, HeightWindow window) {
@@ -68,9 +103,10 @@ double solids_fraction(const Packing& packing, HeightWindow window) {
   const double middle = 0.5 * (window.low + window.high);
   double solid = 0;
   const auto add = [&](double shift) {
-    for (const Vec3& centre : packing.centres) {
-      const double z = centre.z + shift;
-      solid += is_cut ? cut_area(z, middle) : sphere_volume_in_slab(z, window.low, window.high);
+    for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+      const double z = packing.centres[i].z + shift, radius = packing.radius(i);
+      solid += is_cut ? cut_area(z, middle, radius)
+                      : sphere_volume_in_slab(z, window.low, window.high, 2 * radius);
     }
   };
   add(0);
@@ -93,12 +129,15 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
     return tapered_solids_fraction(packing, {middle - 0.5 * taper, middle + 0.5 * taper}, depth);
   }
   double solid = 0;
-  for (const Vec3& centre : packing.centres) {
-    const double low = window.low - (centre.z - sphere_radius);
-    const double high = window.high - (centre.z - sphere_radius);
-    if (low - 0.5 * taper > 1 || high + 0.5 * taper < 0) continue;
-    solid += cap_integral(high - 0.5 * taper, high + 0.5 * taper) -
-             cap_integral(low - 0.5 * taper, low + 0.5 * taper);
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    // In diameters of the sphere, whose integral has the dimension of a length to the fourth.
+    const double diameter = 2 * packing.radius(i), bottom = packing.centres[i].z - 0.5 * diameter;
+    const double low = (window.low - bottom) / diameter, high = (window.high - bottom) / diameter;
+    const double half = 0.5 * taper / diameter;
+    if (low - half > 1 || high + half < 0) continue;
+    const double integral =
+        cap_integral(high - half, high + half) - cap_integral(low - half, low + half);
+    solid += packing.sizes ? diameter * diameter * diameter * diameter * integral : integral;
   }
   return fraction_of(solid / taper, footprint_area(packing.container) * depth);
 }
@@ -107,6 +146,7 @@ HeightWindow resolve(const Window& window, const Packing& packing) {
   if (const auto* heights = std::get_if<HeightWindow>(&window)) return *heights;
   assert(!packing.centres.empty());
   const auto& quantiles = std::get<QuantileWindow>(window);
+  if (packing.sizes) return weighted_quantiles(packing, quantiles);
   std::vector<double> heights(packing.centres.size());
   std::ranges::transform(packing.centres, heights.begin(), &Vec3::z);
   const double low = quantile(heights, quantiles.low);

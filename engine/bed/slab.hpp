@@ -8,9 +8,9 @@
 // Solids fractions in closed form: a plane cuts a sphere into segments of known volume.
 namespace jostle::inline engine {
 
-/// Volume of the part of a unit-diameter sphere centred at height z that lies in
-/// [low, high], diameters cubed. Requires low <= high.
-double sphere_volume_in_slab(double z, double low, double high);
+/// Volume of the part of a sphere centred at height z that lies in [low, high], diameters cubed.
+/// Requires low <= high and diameter > 0.
+double sphere_volume_in_slab(double z, double low, double high, double diameter = 1);
 
 /// Solids fraction of the container between two heights: volume of spheres / volume of the slab.
 /// Exact but for rounding. Of a window without depth, as the quantiles of a single layer on the
@@ -28,6 +28,8 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
 
 /// The window in heights: a height window is itself; a quantile window is taken from the heights
 /// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
+/// In a mixture a centre counts by the volume of its sphere: the q-quantile lies where the fraction
+/// q of the volume is below, half of each sphere's volume being counted below its centre.
 HeightWindow resolve(const Window& window, const Packing& packing);
 
 }  // namespace jostle::inline engine

@@ -65,6 +65,7 @@ GrainLoop::GrainLoop(const Container& container, const ReducedSettings& settings
       lists_(container, kernels_.n_history) {}
 
 void GrainLoop::load(const Packing& bed) {
+  require_equal_spheres(bed, "discrete elements");
   std::vector<GrainState> grains(bed.centres.size());
   for (std::size_t i = 0; i < grains.size(); ++i) grains[i].centre = bed.centres[i];
   lists_.keep({}, {});

@@ -40,6 +40,7 @@ class MonteCarloDynamics final : public Dynamics {
       : settings_(settings), streams_(streams) {}
 
   void load(const Packing& bed) override {
+    require_equal_spheres(bed, "Monte Carlo trials");
     packing_ = bed;
     loop_.reset();
   }

@@ -15,6 +15,7 @@ PlainLoop::PlainLoop(Packing packing, const Move& move, StreamKey key)
       move_(move),
       key_(key),
       step_(std::visit([](const auto& chosen) { return chosen.max_step; }, move)) {
+  require_equal_spheres(packing_, "Monte Carlo trials");
   if (const auto* polar = std::get_if<PolarMove>(&move_)) theta_table_ = make_theta_table(*polar);
 }
 

@@ -34,6 +34,7 @@ std::string comment(const Packing& packing, const Columns& columns) {
 
 void append_frame(std::string& text, const Packing& packing, const Columns& columns,
                   std::optional<std::uint64_t> tap) {
+  require_equal_spheres(packing, "extended XYZ files");
   text += fmt::format("{}\n{}", packing.centres.size(), comment(packing, columns));
   text += tap ? fmt::format(" tap={}\n", *tap) : "\n";
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {

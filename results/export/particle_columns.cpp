@@ -55,6 +55,7 @@ Packing wrapped_inside(const Packing& packing) {
 }
 
 std::vector<ParticleColumn> particle_columns(const Packing& packing) {
+  require_equal_spheres(packing, "exported columns");
   const Packing moved = wrapped_inside(packing);
   const NeighbourTable nearest = nearest_neighbours(moved, 12);
   std::vector<double> q6;

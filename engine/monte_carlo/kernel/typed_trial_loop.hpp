@@ -25,6 +25,7 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   void load(const Packing& packing) override {
+    require_equal_spheres(packing, "Monte Carlo trials");
     neighbourhood_.load(packing);
     batch_valid_ = false;
   }

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/bed/container.hpp"
+#include "engine/bed/random.hpp"
+#include "engine/bed/sizes.hpp"
+
+// Kinds of spheres and the laws of their diameters, from which the sizes of a realization are
+// drawn.
+namespace jostle::inline engine {
+
+/// Laws are cut at so many standard deviations, so that the extremes of a mixture are known.
+inline constexpr double cut_of_diameter_laws = 3;
+
+/// All spheres of one diameter.
+struct FixedDiameter {
+  double value = 1;
+  bool operator==(const FixedDiameter&) const = default;
+};
+
+/// The logarithm of the diameter is normal, cut at 3 standard deviations; mean and deviation are
+/// those of the diameter without the cut.
+struct LognormalDiameter {
+  double mean = 1, deviation = 0.1;
+  bool operator==(const LognormalDiameter&) const = default;
+};
+
+/// Normal, cut at 3 standard deviations; mean and deviation are those without the cut.
+struct NormalDiameter {
+  double mean = 1, deviation = 0.1;
+  bool operator==(const NormalDiameter&) const = default;
+};
+
+/// Uniform in [from, to].
+struct UniformDiameter {
+  double from = 0.8, to = 1.2;
+  bool operator==(const UniformDiameter&) const = default;
+};
+
+/// The diameter of every sphere of the kind, in their order: [count].
+struct ListedDiameters {
+  std::vector<double> values;
+  bool operator==(const ListedDiameters&) const = default;
+};
+
+using DiameterLaw = std::variant<FixedDiameter, LognormalDiameter, NormalDiameter, UniformDiameter,
+                                 ListedDiameters>;
+
+/// The least and the greatest diameter that a law can give.
+struct DiameterRange {
+  double least = 0, greatest = 0;
+};
+
+/// Requires a law without a fault.
+DiameterRange range_of(const DiameterLaw& law);
+
+/// Returns why the law gives no diameters of `count` spheres, or nothing.
+std::optional<std::string> diameter_fault(const DiameterLaw& law, std::uint32_t count);
+
+/// One kind of a mixture.
+struct MixtureKind {
+  std::string name;
+  std::uint32_t count = 0;
+  DiameterLaw diameter = FixedDiameter{};
+  double density = 1;  // relative
+  bool operator==(const MixtureKind&) const = default;
+};
+
+/// Returns everything that is wrong with a mixture as a whole, where its kinds have no faults:
+/// names twice, more spheres than a packing holds, a ratio of diameters above 10.
+std::vector<std::string> mixture_faults(const std::vector<MixtureKind>& kinds);
+
+/// The extremes of all kinds. Requires at least one kind.
+DiameterRange range_of(const std::vector<MixtureKind>& kinds);
+
+/// Returns why spheres as large do not go into the container, or nothing: periodic widths exceed
+/// two diameters of the largest sphere, other widths are at least one.
+std::optional<std::string> width_fault(const Container& container, double largest_diameter);
+
+/// Draws the sizes of a realization: kind by kind in their order, sphere by sphere. Only lognormal,
+/// normal and uniform diameters take numbers from the stream. Requires kinds without faults.
+std::shared_ptr<const Sizes> draw_sizes(const std::vector<MixtureKind>& kinds,
+                                        RandomStream& random);
+
+}  // namespace jostle::inline engine
