@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/sized_grid.hpp"
 
 namespace jostle::inline engine {
 
@@ -38,9 +38,10 @@ class LateralOffsets {
   LateralOffsets(Packing& packing, const Shake& shake)
       : packing_(packing), boundary_(packing.container), shake_(shake) {
     // Both spheres of a pair may have gone up to one radius of the disc since the grid was built.
-    grid_.build(boundary_, 1 + 2 * shake.lateral_radius,
-                static_cast<std::uint32_t>(packing.centres.size()),
-                [&](std::uint32_t i) { return packing.centres[i]; });
+    grid_.build(
+        boundary_, 2 * shake.lateral_radius, static_cast<std::uint32_t>(packing.centres.size()),
+        [&](std::uint32_t i) { return packing.centres[i]; },
+        [&](std::uint32_t i) { return packing.radius(i); });
     origins_ = packing.centres;
   }
 
@@ -66,10 +67,13 @@ class LateralOffsets {
   }
 
   bool is_free(std::uint32_t i, Vec3 target) const {
-    if (!clear_of_boundaries(boundary_, target)) return false;
+    const double radius = packing_.radius(i);
+    if (!clear_of_boundaries(boundary_, target, radius)) return false;
     bool free = true;
-    grid_.for_each_near(origins_[i], [&](std::uint32_t j) {
-      if (j != i && overlaps(boundary_, target, packing_.centres[j])) free = false;
+    grid_.for_each_near(origins_[i], radius, [&](std::uint32_t j) {
+      if (j == i) return;
+      const double touching = radius + packing_.radius(j);
+      if (overlaps(boundary_, target, packing_.centres[j], touching)) free = false;
     });
     return free;
   }
@@ -77,7 +81,7 @@ class LateralOffsets {
   Packing& packing_;
   Boundary boundary_;
   const Shake& shake_;
-  CellGrid grid_;
+  SizedGrid grid_;
   std::vector<Vec3> origins_;
 };
 
@@ -90,8 +94,10 @@ struct Excite {
     return {};
   }
   TapReport operator()(const DilateFloorHeld& tap) const {
-    // z + (z - 1/2) delta, so that a sphere on the floor keeps its height to the bit.
-    for (Vec3& centre : packing.centres) centre.z += (centre.z - sphere_radius) * tap.delta;
+    // z + (z - r) delta, so that a sphere on the floor keeps its height to the bit. In a mixture r
+    // is the smallest radius for all: with each sphere's own, touching pairs would overlap.
+    const double held = packing.smallest_radius();
+    for (Vec3& centre : packing.centres) centre.z += (centre.z - held) * tap.delta;
     return {};
   }
   TapReport operator()(const Lift& tap) const {
@@ -152,7 +158,6 @@ bool moves_floor(const Tap& tap) {
 }
 
 TapReport excite(Packing& packing, const Tap& tap, RandomStream& random) {
-  require_equal_spheres(packing, "taps");
   return std::visit(Excite{packing, random}, tap);
 }
 

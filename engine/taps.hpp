@@ -27,7 +27,9 @@ struct Dilate {
   }
 };
 
-/// (z - 1/2) -> (z - 1/2)(1 + delta): a sphere on the floor stays. Rosato et al. 2010, fig. 2.
+/// (z - 1/2) -> (z - 1/2)(1 + delta): a sphere on the floor stays. Rosato et al. 2010, fig. 2. In a
+/// mixture the smallest radius takes the place of 1/2, so that no pair comes to overlap: only the
+/// smallest spheres on the floor stay.
 struct DilateFloorHeld {
   double delta = 0.025;
   bool operator==(const DilateFloorHeld&) const = default;

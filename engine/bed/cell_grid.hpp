@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -67,12 +68,47 @@ class CellGrid {
     for_each_in(line, length, visit);
   }
 
+  /// Calls visit(j) once for every sphere in the cells that come within `reach` of `r`, whatever
+  /// the cutoff, and for some in cells a little farther away.
+  template <class Visit>
+  void for_each_in_reach(Vec3 r, double reach, Visit&& visit) const {
+    const std::array<CellSpan, 3> spans = {span(axes_[0], r.x, reach), span(axes_[1], r.y, reach),
+                                           span(axes_[2], r.z, reach)};
+    for (int a = 0; a < spans[2].length; ++a) {
+      for (int b = 0; b < spans[1].length; ++b) {
+        for (int c = 0; c < spans[0].length; ++c) {
+          const std::size_t cell =
+              cell_number(spans[0].cell(c), spans[1].cell(b), spans[2].cell(a));
+          for (std::uint32_t j = heads_[cell]; j != none; j = next_[j]) visit(j);
+        }
+      }
+    }
+  }
+
   std::size_t bytes() const {
     return sizeof(std::uint32_t) * (heads_.capacity() + next_.capacity() + cell_of_.capacity());
   }
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
+
+  // Consecutive cells of an axis, beyond whose end the first comes again.
+  struct CellSpan {
+    int first, length, count;
+    int cell(int k) const { return first + k < count ? first + k : first + k - count; }
+  };
+  static CellSpan span(const CellAxis& axis, double at, double reach) {
+    const double cells = std::min(std::ceil(reach * axis.per_length), 1e9);
+    const int beyond = std::min(static_cast<int>(cells), axis.count);
+    const int home = axis.own_cell(at);
+    if (axis.period == 0) {
+      const int low = std::max(0, home - beyond), high = std::min(axis.count - 1, home + beyond);
+      return {low, high - low + 1, axis.count};
+    }
+    if (2 * beyond + 1 >= axis.count) return {0, axis.count, axis.count};
+    return {home >= beyond ? home - beyond : home - beyond + axis.count, 2 * beyond + 1,
+            axis.count};
+  }
 
   template <class Visit>
   void for_each_in(const std::array<std::array<int, 3>, 3>& line, const std::array<int, 3>& length,

@@ -53,25 +53,25 @@ Vec3 separation(const Box& box, Vec3 a, Vec3 b) {
 
 /// Whether a sphere centred at r stays clear of the floor and the sides (touching is clear).
 template <Shaped Box>
-bool clear_of_boundaries(const Box& box, Vec3 r) {
+bool clear_of_boundaries(const Box& box, Vec3 r, double radius = sphere_radius) {
   const ContainerShape shape = box.shape();
   const Vec3 extent = box.extent();
-  const auto between = [](double at, double width) {
-    return at >= sphere_radius && at <= width - sphere_radius;
+  const auto between = [radius](double at, double width) {
+    return at >= radius && at <= width - radius;
   };
-  if (shape.has_floor() && !(r.z >= sphere_radius)) return false;
+  if (shape.has_floor() && !(r.z >= radius)) return false;
   if (shape.planes_x() && !between(r.x, extent.x)) return false;
   if (shape.planes_y() && !between(r.y, extent.y)) return false;
   if (!shape.tube) return true;
   const double axis = 0.5 * extent.x;
-  const double dx = r.x - axis, dy = r.y - axis, reach = axis - sphere_radius;
+  const double dx = r.x - axis, dy = r.y - axis, reach = axis - radius;
   return dx * dx + dy * dy <= reach * reach;
 }
 
-/// Whether two spheres overlap (touching is no overlap).
+/// Whether two spheres overlap (touching is no overlap). `touching` is the sum of their radii.
 template <Shaped Box>
-bool overlaps(const Box& box, Vec3 a, Vec3 b) {
-  return norm_squared(separation(box, a, b)) < 1.0;
+bool overlaps(const Box& box, Vec3 a, Vec3 b, double touching = 1) {
+  return norm_squared(separation(box, a, b)) < touching * touching;
 }
 
 }  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/sized_grid.hpp"
 
 namespace jostle::inline engine {
 
@@ -40,41 +40,13 @@ void see_boundaries(const Boundary& boundary, const Packing& packing, Deepest& d
   }
 }
 
-/// Spheres whose radii differ by less than a factor of two, in cells of their own.
-struct SizeClass {
-  std::vector<std::uint32_t> spheres;
-  double largest_radius = 0;
-  CellGrid grid;
-};
-
-/// Classes from the largest spheres down, so that cells are as small as their spheres allow
-/// (Krijgsman, Ogarko & Luding, Comput. Part. Mech. 1, 357, 2014).
-std::vector<SizeClass> size_classes(const Boundary& boundary, const Packing& packing) {
-  std::vector<SizeClass> classes;
-  const double largest = packing.largest_radius();
-  for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
-    std::size_t number = 0;
-    for (double r = 0.5 * largest; packing.radius(i) <= r; r *= 0.5) ++number;
-    if (classes.size() <= number) classes.resize(number + 1);
-    classes[number].spheres.push_back(i);
-    classes[number].largest_radius = std::max(classes[number].largest_radius, packing.radius(i));
-  }
-  for (SizeClass& c : classes) {
-    if (c.spheres.empty()) continue;
-    c.grid.build(boundary, 2 * c.largest_radius, static_cast<std::uint32_t>(c.spheres.size()),
-                 [&](std::uint32_t k) { return packing.centres[c.spheres[k]]; });
-  }
-  return classes;
-}
-
 }  // namespace
 
 void require_equal_spheres(const Packing& packing, const char* what) {
   if (!packing.sizes) return;
   throw std::invalid_argument(std::string(what) +
-                              " require equal spheres of diameter 1, and this packing has sizes: "
-                              "with sizes only volumes, heights, packing fractions and overlaps "
-                              "are computed. Leave the sizes out");
+                              " require equal spheres of diameter 1, and this packing has sizes. "
+                              "Leave the sizes out");
 }
 
 double mean_height(const Packing& packing) {
@@ -136,18 +108,15 @@ Overlap deepest_overlap(const Packing& packing) {
   Deepest deepest;
   const Boundary boundary(packing.container);
   see_boundaries(boundary, packing, deepest);
-  const std::vector<SizeClass> classes = size_classes(boundary, packing);
-  for (std::size_t own = 0; own < classes.size(); ++own) {
-    for (const std::uint32_t i : classes[own].spheres) {
-      // Smaller spheres look for larger ones: a cell of theirs is as wide as any such pair reaches.
-      for (std::size_t other = 0; other <= own; ++other) {
-        if (classes[other].spheres.empty()) continue;
-        classes[other].grid.for_each_near(packing.centres[i], [&](std::uint32_t k) {
-          const std::uint32_t j = classes[other].spheres[k];
-          if (other < own || j > i) see_pair(boundary, packing, i, j, deepest);
-        });
-      }
-    }
+  const auto n = static_cast<std::uint32_t>(packing.centres.size());
+  SizedGrid grid;
+  grid.build(
+      boundary, 0, n, [&](std::uint32_t i) { return packing.centres[i]; },
+      [&](std::uint32_t i) { return packing.radius(i); });
+  for (std::uint32_t i = 0; i < n; ++i) {
+    grid.for_each_near(packing.centres[i], packing.radius(i), [&](std::uint32_t j) {
+      if (j > i) see_pair(boundary, packing, i, j, deepest);
+    });
   }
   return deepest.found;
 }

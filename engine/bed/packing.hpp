@@ -16,6 +16,7 @@ struct Packing {
   std::shared_ptr<const Sizes> sizes = nullptr;  // null: all of diameter 1 and mass 1
 
   double radius(std::size_t sphere) const { return sizes ? sizes->radius(sphere) : sphere_radius; }
+  double mass(std::size_t sphere) const { return sizes ? sizes->mass(sphere) : 1; }
   double smallest_radius() const { return sizes ? sizes->smallest_radius() : sphere_radius; }
   double largest_radius() const { return sizes ? sizes->largest_radius() : sphere_radius; }
 };

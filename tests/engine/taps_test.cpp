@@ -51,6 +51,47 @@ TEST_CASE("no tap creates an overlap beyond rounding") {
   }
 }
 
+TEST_CASE("no tap of a mixture creates an overlap beyond rounding") {
+  for (const double ratio : {1.4, 4.0, 10.0}) {
+    for (const Container& container :
+         {Container{PeriodicBox{7, 7}}, Container{WalledBox{5, 5}}, Container{Cylinder{5.5}}}) {
+      const Packing packing = random_mixture(container, graded_diameters(60, 0.3, ratio), 6, 4);
+      for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
+                             Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{1e-16}}}) {
+        const Packing after = excited(packing, tap);
+        CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
+        CHECK(after.sizes == packing.sizes);
+      }
+    }
+  }
+}
+
+TEST_CASE("a dilation about the floor holds the smallest radius for all spheres of a mixture") {
+  // A small sphere leans on a large one, both on the floor. Held about its own radius each would
+  // stay, and nothing would be gained; about 1/2 the small one would sink into the floor.
+  Packing pair{PeriodicBox{9, 9}, {{2, 2, 1}, {2 + std::sqrt(1.0), 2, 0.25}}};
+  pair.sizes = std::make_shared<const Sizes>(std::vector<double>{2, 0.5});
+  REQUIRE(deepest_overlap_brute_force(pair).depth == 0);
+  const Packing after = excited(pair, DilateFloorHeld{0.1});
+  CHECK(after.centres[1].z == 0.25);
+  CHECK(after.centres[0].z == Approx(1 + 0.75 * 0.1));
+  CHECK(deepest_overlap_brute_force(after).depth == 0);
+  // A large sphere on top of a small one: held about its own radius it would rise by less than
+  // what carries it, and overlap it.
+  Packing tower{PeriodicBox{9, 9}, {{2, 2, 0.25}, {2, 2, 1.5}, {2, 2, 2.75}}};
+  tower.sizes = std::make_shared<const Sizes>(std::vector<double>{0.5, 2, 0.5});
+  CHECK(deepest_overlap_brute_force(excited(tower, DilateFloorHeld{0.5})).depth == 0);
+}
+
+TEST_CASE("sizes of diameter 1 change no tap") {
+  Packing equal = random_packing(WalledBox{5, 5}, 60, 8, 4), forced = equal;
+  forced.sizes = std::make_shared<const Sizes>(std::vector<double>(60, 1.0));
+  for (const Tap& tap :
+       {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}}, Tap{Shake{0.05, 0.3, 5}}}) {
+    CHECK(excited(forced, tap).centres == excited(equal, tap).centres);
+  }
+}
+
 TEST_CASE("taps of a touching bed leave overlaps of rounding only") {
   RandomStream random(stream_key(12, 0, 0, Purpose::start));
   const PeriodicBox box{6, 6.928203230275509};

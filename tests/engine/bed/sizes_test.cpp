@@ -12,8 +12,6 @@
 #include "engine/bed/random.hpp"
 #include "engine/bed/slab.hpp"
 #include "engine/engines.hpp"
-#include "engine/monte_carlo/plain_loop.hpp"
-#include "engine/taps.hpp"
 
 using namespace jostle;
 
@@ -169,21 +167,13 @@ TEST_CASE("heights of a mixture are weighted by volume") {
   CHECK(window.high == Approx(7.5).margin(0.02));
 }
 
-TEST_CASE("taps and engines reject spheres of several sizes by name") {
+TEST_CASE("discrete elements reject spheres of several sizes by name") {
   Packing packing{PeriodicBox{9, 9}, {{1, 1, 1}, {4, 4, 0.5}}};
   packing.sizes = sizes_of({2, 1});
-  RandomStream random(stream_key(8, 0, 0, Purpose::tap));
-  const auto rejected = [](const std::string& what) {
-    return Catch::Matchers::StartsWith(what + " require equal spheres");
-  };
-  CHECK_THROWS_WITH(excite(packing, Lift{0.2}, random), rejected("taps"));
-  CHECK_THROWS_WITH(make_dynamics(MonteCarlo{}, {})->load(packing), rejected("Monte Carlo trials"));
   CHECK_THROWS_WITH(make_dynamics(DiscreteElement{}, {})->load(packing),
-                    rejected("discrete elements"));
-  CHECK_THROWS_WITH(PlainLoop(packing, PolarMove{}, {}), rejected("Monte Carlo trials"));
+                    Catch::Matchers::StartsWith("discrete elements require equal spheres"));
   packing.sizes = nullptr;
-  CHECK_NOTHROW(excite(packing, Lift{0.2}, random));
-  CHECK_NOTHROW(make_dynamics(MonteCarlo{}, {})->load(packing));
+  CHECK_NOTHROW(make_dynamics(DiscreteElement{}, {})->load(packing));
 }
 
 TEST_CASE("sizes of diameter 1 change nothing") {
