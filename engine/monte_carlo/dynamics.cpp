@@ -28,7 +28,7 @@ HeightWindow start_stop_window(const Stop& stop, const Packing& packing) {
   if (rule == nullptr) return {0, 0};
   if (const auto* heights = std::get_if<HeightWindow>(&rule->window)) return *heights;
   constexpr double settled_fraction = 0.57;  // 0.56 to 0.58, Rosato et al. 2010, sec. II
-  const double solid = sphere_volume * static_cast<double>(packing.centres.size());
+  const double solid = solid_volume(packing);
   const double depth = solid / (settled_fraction * footprint_area(packing.container));
   const auto& quantiles = std::get<QuantileWindow>(rule->window);
   return {quantiles.low * depth, quantiles.high * depth};
@@ -40,7 +40,6 @@ class MonteCarloDynamics final : public Dynamics {
       : settings_(settings), streams_(streams) {}
 
   void load(const Packing& bed) override {
-    require_equal_spheres(bed, "Monte Carlo trials");
     packing_ = bed;
     loop_.reset();
   }
@@ -118,7 +117,8 @@ class MonteCarloDynamics final : public Dynamics {
     if (loop_) return *loop_;
     loop_ = make_trial_loop(packing_.container, relaxation().move,
                             state_.tapping ? streams_.taps : streams_.start, best_instruction_set(),
-                            relaxation().sampler);
+                            relaxation().sampler,
+                            packing_.sizes ? SphereSizes::several : SphereSizes::equal);
     loop_->load(packing_);
     if (state_.move.next_trial > 0) loop_->restore(state_.move, state_.sampler);
     return *loop_;

@@ -80,8 +80,9 @@ struct StepAdaptation {
 };
 
 /// x + step (1 - 2 xi), xi uniform in [0, 1]^3; accepted if nothing overlaps and dz <= 0, else with
-/// probability exp(-beta dz), beta in units of 1/(m g d). Rosato et al. 2010, sec. II. Beta is
-/// unused where there is no gravity.
+/// probability exp(-beta dz), beta in units of 1/(m g d). Rosato et al. 2010, sec. II. In a mixture
+/// a sphere's own mass makes it exp(-beta m dz), m in masses of a sphere of diameter 1 and density
+/// 1. Beta is unused where there is no gravity.
 struct MetropolisMove {
   double max_step = 0.1;
   double beta = std::numeric_limits<double>::infinity();

@@ -15,7 +15,6 @@ PlainLoop::PlainLoop(Packing packing, const Move& move, StreamKey key)
       move_(move),
       key_(key),
       step_(std::visit([](const auto& chosen) { return chosen.max_step; }, move)) {
-  require_equal_spheres(packing_, "Monte Carlo trials");
   if (const auto* polar = std::get_if<PolarMove>(&move_)) theta_table_ = make_theta_table(*polar);
 }
 
@@ -42,21 +41,26 @@ void PlainLoop::run(std::uint64_t n_trials) {
 bool PlainLoop::passes(std::uint32_t sphere, Vec3 step) {
   const Boundary boundary(packing_.container);
   const Vec3 target = wrapped(boundary, packing_.centres[sphere] + step);
-  if (!clear_of_boundaries(boundary, target)) return false;
+  const double radius = packing_.radius(sphere);
+  if (!clear_of_boundaries(boundary, target, radius)) return false;
   for (std::size_t j = 0; j < packing_.centres.size(); ++j) {
-    if (j != sphere && overlaps(boundary, target, packing_.centres[j])) return false;
+    if (j == sphere) continue;
+    if (overlaps(boundary, target, packing_.centres[j], radius + packing_.radius(j))) return false;
   }
   const auto* metropolis = std::get_if<MetropolisMove>(&move_);
-  if (metropolis && boundary.has_floor() && !rise_passes(*metropolis, step.z)) return false;
+  if (metropolis && boundary.has_floor() &&
+      !rise_passes(*metropolis, packing_.mass(sphere), step.z)) {
+    return false;
+  }
   packing_.centres[sphere] = target;
   return true;
 }
 
-bool PlainLoop::rise_passes(const MetropolisMove& move, double dz) const {
+bool PlainLoop::rise_passes(const MetropolisMove& move, double mass, double dz) const {
   if (dz <= 0) return true;
   if (std::isinf(move.beta)) return false;
   const double u = (philox_block(key_, next_trial_, 1)[0] + 0.5) * 0x1p-32;
-  return u < exponential(-(move.beta * dz));
+  return u < exponential(-(move.beta * (mass * dz)));
 }
 
 }  // namespace jostle::inline engine

@@ -26,7 +26,7 @@ class PlainLoop {
 
  private:
   bool passes(std::uint32_t sphere, Vec3 step);
-  bool rise_passes(const MetropolisMove& move, double dz) const;
+  bool rise_passes(const MetropolisMove& move, double mass, double dz) const;
 
   Packing packing_;
   Move move_;

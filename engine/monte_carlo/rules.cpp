@@ -11,17 +11,18 @@ std::optional<std::string> move_fault(const Move& move, const Container& contain
 }
 
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
-                                         const Container& container) {
+                                         const Container& container, SphereSizes sizes) {
   static_assert(std::variant_size_v<Move> == 2, "say here what samplers suit the new move");
   if (sampler == Sampler::exhaustive) return std::nullopt;
   std::string why;
+  const auto add = [&](const char* reason) {
+    why += (why.empty() ? "" : "; ") + std::string(reason);
+  };
+  if (sizes == SphereSizes::several) add("skipping needs equal spheres, and this is a mixture");
   if (!has_gravity(container)) {
-    why = "skipping needs trials that only fall, and without gravity (fully_periodic) none does";
+    add("skipping needs trials that only fall, and without gravity (fully_periodic) none does");
   }
   if (const auto* metropolis = std::get_if<MetropolisMove>(&move)) {
-    const auto add = [&](const char* reason) {
-      why += (why.empty() ? "" : "; ") + std::string(reason);
-    };
     if (metropolis->beta != std::numeric_limits<double>::infinity()) {
       add("skipping needs trials that only fall, and a finite beta lets some rise");
     }

@@ -31,6 +31,9 @@ enum class Sampler {
 inline constexpr NameTable<Sampler, 2> samplers{
     {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::rejection_free}}};
 
+/// What a loop is compiled for: equal spheres cost less.
+enum class SphereSizes { equal, several };
+
 /// What the rejection-free sampler must remember besides MoveState; unused by the exhaustive one.
 struct SamplerState {
   bool active = false;                // else every trial is looked at, as after each tap
@@ -53,13 +56,14 @@ struct TrialTally {
   std::uint64_t bound_rows = 0;     // rejection-free: makings of a sphere's bounds
 };
 
-/// Trial moves of hard spheres: proposes, tests for overlap, accepts or rejects. The container and
-/// the move are chosen once, here; the loop inside is compiled for that pair.
+/// Trial moves of hard spheres: proposes, tests for overlap, accepts or rejects. The container, the
+/// move and whether spheres have sizes are chosen once, here; the loop inside is compiled for them.
 class TrialLoop {
  public:
   virtual ~TrialLoop() = default;
 
-  /// Takes over the centres of a packing in the loop's container.
+  /// Takes over the centres and the sizes of a packing in the loop's container. Throws
+  /// std::invalid_argument where it has sizes and the loop is made for equal spheres.
   virtual void load(const Packing& packing) = 0;
   /// Writes the centres back: packing.centres, [n_spheres], in the order they were loaded.
   virtual void store(Packing& packing) const = 0;
@@ -68,7 +72,7 @@ class TrialLoop {
   /// Begins the relaxation of a tap: resets the Metropolis step where the move asks for it.
   virtual void begin_tap() = 0;
 
-  /// <Z> of the spheres as they stand, diameters, summed in the order they were loaded.
+  /// <Z> of the spheres as they stand, as mean_height() of their packing gives it.
   virtual double mean_height() const = 0;
   /// Solids fraction between two heights (engine/bed/slab.hpp).
   virtual double solids_fraction(HeightWindow window) const = 0;
@@ -86,16 +90,19 @@ class TrialLoop {
 std::optional<std::string> move_fault(const Move& move, const Container& container);
 
 /// Why the sampler does not suit the move in the container; nothing if it does. The rejection-free
-/// sampler needs trials that never rise: gravity, and of the Metropolis move beta = infinity and an
-/// adaptation that counts all trials.
+/// sampler needs equal spheres and trials that never rise: gravity, and of the Metropolis move
+/// beta = infinity and an adaptation that counts all trials.
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
-                                         const Container& container);
+                                         const Container& container,
+                                         SphereSizes sizes = SphereSizes::equal);
 
-/// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials.
+/// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials. A loop for
+/// several sizes takes equal spheres too, and then makes the same trajectory as the other.
 /// Throws std::invalid_argument with move_fault or sampler_fault where there is one.
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
                                            StreamKey key,
                                            InstructionSet set = best_instruction_set(),
-                                           Sampler sampler = Sampler::exhaustive);
+                                           Sampler sampler = Sampler::exhaustive,
+                                           SphereSizes sizes = SphereSizes::equal);
 
 }  // namespace jostle::inline engine

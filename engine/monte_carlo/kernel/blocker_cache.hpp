@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "engine/large_pages.hpp"
@@ -20,7 +22,73 @@ struct alignas(64) BlockerCache {
 
   Lanes x = {far, far, far, far}, y = {}, z = {};  // one blocker a lane, diameters
   Lanes room;                                      // as PackedBox::room gives it
+
+  /// How many of the first neighbours have a lane.
+  static constexpr std::uint32_t shown() { return size; }
+  template <class Box>
+  [[gnu::always_inline]] void see_faces(const PackedBox<Box>& box, const PackedCentre& from,
+                                        double) {
+    room = box.room(from);
+  }
+  template <class Box>
+  [[gnu::always_inline]] void see(const PackedBox<Box>& box, const PackedCentre& from,
+                                  const PackedCentre& to, std::uint32_t lane, double) {
+    const Pair lateral = box.lateral(to.xy - from.xy);
+    x[lane] = static_cast<float>(lateral[0]);
+    y[lane] = static_cast<float>(lateral[1]);
+    z[lane] = static_cast<float>(box.vertical(to.z - from.z));
+  }
 };
+
+/// The same for spheres of several sizes. A step d of a sphere that sees a blocker at b, s being
+/// the sum of their radii, overlaps it where |b - d|^2 < s^2, that is where 2 b.d - |d|^2 > c with
+/// c = |b|^2 - s^2. A face within reach takes the last lane: as a sphere so large that it is flat.
+struct alignas(64) SizedBlockerCache {
+  static constexpr std::uint32_t size = 4;
+
+  Lanes x = {}, y = {}, z = {};  // 2 b
+  Lanes c = {endless, endless, endless, endless};
+
+  std::uint32_t shown() const {
+    const float squared = x[3] * x[3] + y[3] * y[3] + z[3] * z[3];
+    return squared > nearest_flat * nearest_flat ? size - 1 : size;
+  }
+  /// `longest`: no step is longer.
+  template <class Box>
+  [[gnu::always_inline]] void see_faces(const PackedBox<Box, SeveralSizes>& box,
+                                        const PackedCentre& from, double longest) {
+    const FaceAhead face = box.nearest_face(from);
+    if (!(face.room < longest)) return;
+    const Vec3 twice = (2 * flat) * face.normal;
+    set(size - 1, twice, 2 * flat * (face.room + margin * (std::max(face.room, 0.0) + longest)));
+  }
+  template <class Box>
+  [[gnu::always_inline]] void see(const PackedBox<Box, SeveralSizes>& box, const PackedCentre& from,
+                                  const PackedCentre& to, std::uint32_t lane, double longest) {
+    const Pair lateral = box.lateral(to.xy - from.xy);
+    const Vec3 b{lateral[0], lateral[1], box.vertical(to.z - from.z)};
+    const double squared = norm_squared(b), touching = SeveralSizes::touching_squared(from, to);
+    set(lane, 2.0 * b, squared - touching + 2 * margin * (squared + longest * longest));
+  }
+
+ private:
+  static constexpr float endless = std::numeric_limits<float>::infinity();
+  // The radius of a face, and more than any coordinate of a sphere can be: diameters.
+  static constexpr double flat = 0x1p20;
+  static constexpr float nearest_flat = 0x1p18f;
+  // Roundings of 2 b.d - |d|^2 and c come to less than 6 x 2^-24 (|b| + |d|)^2.
+  static constexpr double margin = 1e-6;
+
+  void set(std::uint32_t lane, Vec3 twice, double least) {
+    x[lane] = static_cast<float>(twice.x);
+    y[lane] = static_cast<float>(twice.y);
+    z[lane] = static_cast<float>(twice.z);
+    c[lane] = static_cast<float>(least);
+  }
+};
+
+template <class Spheres>
+using BlockerCacheOf = std::conditional_t<Spheres::several, SizedBlockerCache, BlockerCache>;
 
 /// Whether the cache rejects a step, diameters.
 template <class Box>
@@ -32,70 +100,73 @@ template <class Box>
   const auto blocked = x * x + y * y + z * z < touching;
   return any_of_four(blocked) | PackedBox<Box>::leaves(cache.room, dx, dy, dz);
 }
+template <class Box>
+[[gnu::always_inline]] inline bool certainly_rejects(const SizedBlockerCache& cache, float dx,
+                                                     float dy, float dz) {
+  const Lanes ahead = cache.x * dx + cache.y * dy + cache.z * dz;
+  return any_of_four(ahead - (dx * dx + dy * dy + dz * dz) > cache.c);
+}
 
-/// The caches of all spheres. Lanes 0 to 3 of cache i hold the first four of row i of the lists:
+/// The caches of all spheres. The lanes of cache i hold the first of row i of the lists:
 /// where a row or a centre changes, refresh() or follow() bring up to date what shows it.
 /// Neighbourhood calls them; nothing else need.
-template <class Box>
+template <class Box, class Spheres = EqualSpheres>
 class BlockerCaches {
  public:
-  using Index = NeighbourLists::Index;
+  using Index = std::uint32_t;
+  using Cache = BlockerCacheOf<Spheres>;
+  using Lists = NeighbourListsOf<Spheres>;
+  using Sides = PackedBox<Box, Spheres>;
 
-  /// All caches anew.
-  void build(const PackedBox<Box>& box, const PackedCentres& centres, const NeighbourLists& lists) {
+  /// All caches anew, for steps up to `longest`.
+  void build(const Sides& box, const PackedCentres& centres, const Lists& lists, double longest) {
+    longest_ = longest;
     caches_.resize(centres.size());
     for (Index i = 0; i < centres.size(); ++i) refresh(box, centres, lists, i);
   }
 
   /// Row i has changed.
-  [[gnu::noinline]] void refresh(const PackedBox<Box>& box, const PackedCentres& centres,
-                                 const NeighbourLists& lists, Index i) {
-    BlockerCache cache;
+  [[gnu::noinline]] void refresh(const Sides& box, const PackedCentres& centres, const Lists& lists,
+                                 Index i) {
+    Cache cache;
+    cache.see_faces(box, centres[i], longest_);
     const Index* const row = lists.row(i);
-    const Index n = std::min(row[0], BlockerCache::size);
+    const Index n = std::min(row[0], cache.shown());
     for (Index lane = 0; lane < n; ++lane)
-      see(box, centres[i], centres[row[1 + lane]], cache, lane);
-    cache.room = box.room(centres[i]);
+      cache.see(box, centres[i], centres[row[1 + lane]], lane, longest_);
     caches_[i] = cache;
   }
 
   /// Sphere i has moved, or entered other rows: its own cache, and those that show it.
-  [[gnu::noinline]] void follow(const PackedBox<Box>& box, const PackedCentres& centres,
-                                const NeighbourLists& lists, Index i) {
+  [[gnu::noinline]] void follow(const Sides& box, const PackedCentres& centres, const Lists& lists,
+                                Index i) {
     refresh(box, centres, lists, i);
     const Index* const row = lists.row(i);
     for (Index m = 1; m <= row[0]; ++m) {
       const Index j = row[m];
       const Index* const other = lists.row(j);
-      const Index n = std::min(other[0], BlockerCache::size);
+      const Index n = std::min(other[0], caches_[j].shown());
       for (Index lane = 0; lane < n; ++lane) {
-        if (other[1 + lane] == i) see(box, centres[j], centres[i], caches_[j], lane);
+        if (other[1 + lane] == i) caches_[j].see(box, centres[j], centres[i], lane, longest_);
       }
     }
   }
 
   /// The neighbour at place `place` of row i, counted from 0, blocks more often than was thought.
-  [[gnu::noinline]] void promote(const PackedBox<Box>& box, const PackedCentres& centres,
-                                 NeighbourLists& lists, Index i, Index place) {
+  [[gnu::noinline]] void promote(const Sides& box, const PackedCentres& centres, Lists& lists,
+                                 Index i, Index place) {
     lists.swap(i, place, place - 1);
-    if (place == BlockerCache::size) {
-      see(box, centres[i], centres[lists.row(i)[place]], caches_[i], place - 1);
+    if (place == caches_[i].shown()) {
+      caches_[i].see(box, centres[i], centres[lists.row(i)[place]], place - 1, longest_);
     }
   }
 
-  const BlockerCache* data() const { return caches_.data(); }
-  std::size_t bytes() const { return sizeof(BlockerCache) * caches_.capacity(); }
+  const Cache* data() const { return caches_.data(); }
+  std::size_t bytes() const { return sizeof(Cache) * caches_.capacity(); }
 
  private:
-  [[gnu::always_inline]] static void see(const PackedBox<Box>& box, const PackedCentre& from,
-                                         const PackedCentre& to, BlockerCache& cache, Index lane) {
-    const Pair lateral = box.lateral(to.xy - from.xy);
-    cache.x[lane] = static_cast<float>(lateral[0]);
-    cache.y[lane] = static_cast<float>(lateral[1]);
-    cache.z[lane] = static_cast<float>(box.vertical(to.z - from.z));
-  }
-
-  std::vector<BlockerCache, LargePageAllocator<BlockerCache>> caches_;
+  double longest_ = 0;
+  std::vector<Cache, LargePageAllocator<Cache>> caches_;
 };
 
 }  // namespace jostle::inline engine

@@ -39,7 +39,7 @@ concept MovePolicy = requires(Policy& move, const Policy& same, const ProposalKe
   { same.trial(t) } -> std::same_as<std::uint32_t>;
   /// Whether a displacement that is looked at rises, and may pass or not; dz of the batch.
   { same.rises(step) } -> std::same_as<bool>;
-  /// Whether it does; trial number, dz in diameters.
+  /// Whether it does; trial number, m g dz in units of m g d.
   { same.accepts_rise(std::uint64_t{}, step) } -> std::same_as<bool>;
   /// The step through a tap: what it begins with, and how it adapts (true: it changed).
   same.begin_tap(state);
@@ -144,7 +144,7 @@ class ZeroTemperature : public CubicStep {
   FallingTrials falling_;
 };
 
-/// The Metropolis move at a finite beta: an upward move passes with probability exp(-beta dz).
+/// The Metropolis move at a finite beta: an upward move passes with probability exp(-beta m g dz).
 class Metropolis : public CubicStep {
  public:
   static constexpr bool geometry_decides = false;
@@ -154,9 +154,9 @@ class Metropolis : public CubicStep {
   static TrialRange looked_at(std::uint32_t begin, std::uint32_t end) { return {begin, end}; }
   static std::uint32_t trial(std::uint32_t k) { return k; }
   static bool rises(double dz) { return dz > 0; }
-  [[gnu::noinline]] bool accepts_rise(std::uint64_t trial, double dz) const {
+  [[gnu::noinline]] bool accepts_rise(std::uint64_t trial, double cost) const {
     const double u = (philox_block(key_, trial, 1)[0] + 0.5) * 0x1p-32;
-    return u < exponential(-(move_.beta * dz));
+    return u < exponential(-(move_.beta * cost));
   }
 
  private:

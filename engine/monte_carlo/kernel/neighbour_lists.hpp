@@ -2,22 +2,25 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
-#include "engine/large_pages.hpp"
-#include "engine/monte_carlo/kernel/packed_geometry.hpp"
+#include "engine/bed/sized_grid.hpp"
+#include "engine/monte_carlo/kernel/list_rows.hpp"
+#include "engine/monte_carlo/kernel/packed_centre.hpp"
 
 namespace jostle::inline engine {
 
-/// Verlet lists: for every sphere the others whose origins lie within 1 + skin of its own, the
-/// likeliest blockers first. An origin is where a sphere stood when its list was last made; a list
-/// holds every sphere that can be touched as long as no sphere is farther than skin / 2 from its
-/// origin. A sphere that goes farther gets a new origin and a new list, alone. Sphere i stands in
-/// list j if and only if j stands in list i. What a list holds beyond what can be touched, and its
-/// order, decides no trial: only how fast it is made.
-class NeighbourLists {
+/// Verlet lists: for every sphere the others whose origins lie within the sum of both radii + skin
+/// of its own, the likeliest blockers first. An origin is where a sphere stood when its list was
+/// last made; a list holds every sphere that can be touched as long as no sphere is farther than
+/// skin / 2 from its origin. A sphere that goes farther gets a new origin and a new list, alone.
+/// Sphere i stands in list j if and only if j stands in list i. What a list holds beyond what can
+/// be touched, and its order, decides no trial: only how fast it is made.
+template <class Spheres>
+class NeighbourListsOf {
  public:
   using Index = std::uint32_t;
 
@@ -30,13 +33,13 @@ class NeighbourLists {
     skin_ = skin;
     drift_ = drift;
     origins_.assign(centres.begin(), centres.end());
-    grid_.build(Boundary(box), 1 + skin, n, [&](Index i) { return unpacked(centres[i]); });
-    for (bool all_fit = false; !all_fit; stride_ *= 2) {
-      rows_.assign(static_cast<std::size_t>(n) * stride_, 0);
-      all_fit = true;
-      for (Index i = 0; i < n && all_fit; ++i) all_fit = make_row(box, i);
-      if (all_fit) break;
+    const auto position = [&](Index i) { return unpacked(centres[i]); };
+    if constexpr (Spheres::several) {
+      grid_.build(Boundary(box), skin, n, position, [&](Index i) { return centres[i].radius; });
+    } else {
+      grid_.build(Boundary(box), 1 + skin, n, position);
     }
+    rows_.make_all(n, [&](Index i) { return make_row(box, i); });
   }
 
   /// Gives sphere i a new origin and list, takes it out of the lists of its former neighbours and
@@ -54,13 +57,18 @@ class NeighbourLists {
     return true;
   }
 
-  /// Row i is rows() + i * stride(): its length, then the spheres.
-  const Index* rows() const { return rows_.data(); }
-  std::size_t stride() const { return stride_; }
-  const Index* row(Index i) const { return &rows_[i * stride_]; }
+  using Rows = std::conditional_t<Spheres::several, OffsetRows, StridedRows>;
+
+  /// Row i: its length, then the spheres.
+  const Index* row(Index i) const { return rows_[i]; }
+  typename Rows::Place rows_place() const { return rows_.place(); }
+  /// Of equal spheres row i is rows() + i * stride().
+  const Index* rows() const { return rows_.place().first; }
+  std::size_t stride() const requires(!Spheres::several) { return rows_.place().stride; }
   /// Exchanges the spheres at two places of list i, counted from 0.
   void swap(Index i, Index a, Index b) {
-    std::swap(rows_[i * stride_ + 1 + a], rows_[i * stride_ + 1 + b]);
+    Index* const row = rows_[i];
+    std::swap(row[1 + a], row[1 + b]);
   }
   /// [n] origins; lists are good while no sphere is farther than sqrt(half_skin_squared()) from
   /// its.
@@ -68,8 +76,7 @@ class NeighbourLists {
   double half_skin_squared() const { return 0.25 * skin_ * skin_; }
 
   std::size_t bytes() const {
-    return grid_.bytes() + sizeof(Index) * rows_.capacity() +
-           sizeof(PackedCentre) * origins_.capacity();
+    return grid_.bytes() + rows_.bytes() + sizeof(PackedCentre) * origins_.capacity();
   }
 
  private:
@@ -83,45 +90,59 @@ class NeighbourLists {
 
   template <class Box>
   bool make_row(const Box& box, Index i) {
-    const double reach = (1 + skin_) * (1 + skin_);
     const Vec3 centre = unpacked(origins_[i]);
     candidates_.clear();
-    grid_.for_each_near(centre, [&](Index j) {
-      const Vec3 away = separation(box, centre, unpacked(origins_[j]));
-      if (j != i && norm_squared(away) < reach) {
-        candidates_.push_back({norm_squared(away + drift_), j});
-      }
-    });
-    if (candidates_.size() >= stride_ - stride_ / 4) return false;  // room for newcomers
+    if constexpr (Spheres::several) {
+      const double radius = origins_[i].radius;
+      grid_.for_each_near(centre, radius, [&](Index j) {
+        const double touching = radius + origins_[j].radius;
+        consider(box, i, j, touching + skin_, touching);
+      });
+    } else {
+      grid_.for_each_near(centre, [&](Index j) { consider(box, i, j, 1 + skin_, 1); });
+    }
+    if (!rows_.holds(i, candidates_.size())) return false;
     std::sort(candidates_.begin(), candidates_.end());
-    Index* row = &rows_[i * stride_];
+    Index* row = rows_[i];
     *row = static_cast<Index>(candidates_.size());
     for (const Candidate& candidate : candidates_) *++row = candidate.sphere;
     return true;
   }
 
+  // The nearest come first: with several sizes by the distance over the sum of radii.
+  template <class Box>
+  [[gnu::always_inline]] void consider(const Box& box, Index i, Index j, double reach,
+                                       double touching) {
+    const Vec3 away = separation(box, unpacked(origins_[i]), unpacked(origins_[j]));
+    if (j == i || !(norm_squared(away) < reach * reach)) return;
+    double key = norm_squared(away + drift_);
+    if constexpr (Spheres::several) key /= touching * touching;
+    candidates_.push_back({key, j});
+  }
+
   bool enter(Index i, Index newcomer) {
-    Index* const row = &rows_[i * stride_];
+    Index* const row = rows_[i];
     const Index length = *row;
-    if (length + 1 >= stride_) return false;
+    if (length + 1 >= rows_.room(i)) return false;
     row[1 + length] = newcomer;
     *row = length + 1;
     return true;
   }
 
   void leave(Index i, Index leaver) {
-    Index* const row = &rows_[i * stride_];
+    Index* const row = rows_[i];
     Index* const last = row + (*row)--;
     *std::find(row + 1, last, leaver) = *last;
   }
 
-  CellGrid grid_;
+  std::conditional_t<Spheres::several, SizedGrid, CellGrid> grid_;
   double skin_ = 0;
   Vec3 drift_;
   PackedCentres origins_;
-  std::size_t stride_ = 16;  // of the rows: a cache line
-  std::vector<Index, LargePageAllocator<Index>> rows_;
+  Rows rows_;
   std::vector<Candidate> candidates_;
 };
+
+using NeighbourLists = NeighbourListsOf<EqualSpheres>;
 
 }  // namespace jostle::inline engine

@@ -22,21 +22,32 @@ struct Reach {
 /// every move brings those up to date that show the sphere.
 enum class BlockerCaching { off, on };
 
-template <class Box, BlockerCaching caching>
+template <class Box, BlockerCaching caching, class Spheres = EqualSpheres>
 class NeighbourhoodView;
 
 /// The spheres of a loop, who is near whom, and what blocks each most often. Trials ask and move
 /// through a view: there is no other way to move a sphere, and a view keeps lists and caches good.
 /// Lists and caches are made when a view is asked for that needs them.
-template <class Box>
+template <class Box, class Spheres = EqualSpheres>
 class Neighbourhood {
  public:
+  using Lists = NeighbourListsOf<Spheres>;
+  using Index = typename Lists::Index;
+  template <BlockerCaching caching>
+  using View = NeighbourhoodView<Box, caching, Spheres>;
+
   explicit Neighbourhood(const Box& box) : box_(box), packed_box_(box) {}
 
   /// Takes over the centres of a packing in this container, any number.
   void load(const Packing& packing) {
     centres_.resize(packing.centres.size());
-    std::ranges::transform(packing.centres, centres_.begin(), packed);
+    if constexpr (Spheres::several) {
+      for (std::size_t i = 0; i < centres_.size(); ++i)
+        centres_[i] = packed_sphere(packing.centres[i], packing.radius(i));
+      spare_skin_ = spare_skin * (2 * packing.smallest_radius());
+    } else {
+      std::ranges::transform(packing.centres, centres_.begin(), packed);
+    }
     built_for_ = -1;
   }
   /// Writes them back, in the order they were loaded.
@@ -48,17 +59,17 @@ class Neighbourhood {
   /// A view for trials that keep within `reach`. At most one view at a time, and none across
   /// load().
   template <BlockerCaching caching>
-  NeighbourhoodView<Box, caching> view(const Reach& reach) {
+  View<caching> view(const Reach& reach) {
     reach_ = reach;
     caches_follow_ = caches_follow_ && caching == BlockerCaching::on;
     if (reach.longest > built_for_) build<caching>();
     if (caching == BlockerCaching::on && !caches_follow_) build_caches();
-    return NeighbourhoodView<Box, caching>(*this);
+    return View<caching>(*this);
   }
 
   const PackedCentres& centres() const { return centres_; }
-  const NeighbourLists& lists() const { return lists_; }
-  const BlockerCaches<Box>& caches() const { return caches_; }
+  const Lists& lists() const { return lists_; }
+  const BlockerCaches<Box, Spheres>& caches() const { return caches_; }
   /// Buildings of all lists, and renewals of one sphere's.
   std::uint64_t builds() const { return builds_; }
   std::uint64_t renewals() const { return renewals_; }
@@ -67,27 +78,28 @@ class Neighbourhood {
   }
 
  private:
-  template <class, BlockerCaching>
+  template <class, BlockerCaching, class>
   friend class NeighbourhoodView;
 
-  // Room in the skin beyond the longest step, diameters (bench/: little changes from 0.1 to 0.3).
+  // Room in the skin beyond the longest step, diameters of the smallest sphere (bench/: little
+  // changes from 0.1 to 0.3).
   static constexpr double spare_skin = 0.2;
 
   template <BlockerCaching caching>
   [[gnu::noinline]] void build() {
-    lists_.build(box_, centres_, 2 * reach_.longest + spare_skin, {0, 0, reach_.drift});
+    lists_.build(box_, centres_, 2 * reach_.longest + spare_skin_, {0, 0, reach_.drift});
     built_for_ = reach_.longest;
     ++builds_;
     if (caching == BlockerCaching::on) build_caches();
   }
   [[gnu::noinline]] void build_caches() {
-    caches_.build(packed_box_, centres_, lists_);
+    caches_.build(packed_box_, centres_, lists_, built_for_);
     caches_follow_ = true;
   }
 
   // Sphere i gets the list of where it stands, and its former neighbours forget it.
   template <BlockerCaching caching>
-  void renew(NeighbourLists::Index i) {
+  void renew(Index i) {
     const auto* const row = lists_.row(i);
     if (caching == BlockerCaching::on) former_.assign(row + 1, row + 1 + row[0]);
     if (!lists_.renew(box_, i, centres_[i])) return build<caching>();
@@ -97,26 +109,28 @@ class Neighbourhood {
   }
 
   Box box_;
-  PackedBox<Box> packed_box_;
+  PackedBox<Box, Spheres> packed_box_;
   Reach reach_;
+  double spare_skin_ = spare_skin;
   double built_for_ = -1;  // longest step of the reach that lists were built for; negative: none
   bool caches_follow_ = false;
   std::uint64_t builds_ = 0, renewals_ = 0;
   PackedCentres centres_;
-  NeighbourLists lists_;
-  BlockerCaches<Box> caches_;
-  std::vector<NeighbourLists::Index> former_;  // neighbours of the sphere whose list is renewed
+  Lists lists_;
+  BlockerCaches<Box, Spheres> caches_;
+  std::vector<Index> former_;  // neighbours of the sphere whose list is renewed
 };
 
 /// What trials ask of a neighbourhood, and how they move its spheres. It holds in members what the
 /// loop reads again and again: the compiler cannot know that no store to a centre changes them.
 /// What is rare, and the second look at a trial that its cache lets pass, is never inlined.
-template <class Box, BlockerCaching caching>
+template <class Box, BlockerCaching caching, class Spheres>
 class NeighbourhoodView {
  public:
-  using Index = NeighbourLists::Index;
+  using Index = std::uint32_t;
+  using Cache = BlockerCacheOf<Spheres>;
 
-  explicit NeighbourhoodView(Neighbourhood<Box>& all) : all_(all), box_(all.packed_box_) {
+  explicit NeighbourhoodView(Neighbourhood<Box, Spheres>& all) : all_(all), box_(all.packed_box_) {
     refresh();
   }
   NeighbourhoodView(const NeighbourhoodView&) = delete;
@@ -125,7 +139,7 @@ class NeighbourhoodView {
   /// Where a step, diameters, leads sphere i, wrapped.
   [[gnu::always_inline]] PackedCentre target(Index i, Pair lateral, double dz) const {
     const PackedCentre& from = centres_[i];
-    return box_.wrapped({from.xy + lateral, from.z + dz, 0});
+    return box_.wrapped({from.xy + lateral, from.z + dz, Spheres::several ? from.radius : 0});
   }
 
   /// Whether the cache alone rejects the step: then rejects() would. False decides nothing.
@@ -168,15 +182,18 @@ class NeighbourhoodView {
   std::uint64_t distance_tests() const { return distance_tests_; }
 
  private:
-  [[gnu::always_inline]] const Index* row(Index i) const { return rows_ + i * stride_; }
+  [[gnu::always_inline]] const Index* row(Index i) const { return rows_[i]; }
 
   void refresh() {
     centres_ = all_.centres_.data();
-    rows_ = all_.lists_.rows();
-    stride_ = all_.lists_.stride();
+    rows_ = all_.lists_.rows_place();
     caches_ = all_.caches_.data();
     origins_ = all_.lists_.origins();
     half_skin_squared_ = all_.lists_.half_skin_squared();
+  }
+
+  [[gnu::always_inline]] bool touches(const PackedCentre& r, const PackedCentre& other) const {
+    return distance_squared(box_, r, other) < Spheres::touching_squared(r, other);
   }
 
   // One of the first n neighbours.
@@ -185,7 +202,7 @@ class NeighbourhoodView {
     const Index* const last = near + 1 + n;
     for (const Index* j = near + 1; j < last; ++j) {
       ++distance_tests_;
-      if (distance_squared(box_, r, centres_[*j]) < 1.0) return true;
+      if (touches(r, centres_[*j])) return true;
     }
     return false;
   }
@@ -194,14 +211,15 @@ class NeighbourhoodView {
   // hold those that block most often.
   [[gnu::noinline]] bool blocked_beyond_cache(Index i, const PackedCentre& r) {
     const Index* const near = row(i);
-    for (Index place = BlockerCache::size; place < near[0]; ++place) {
+    const Index shown = caches_[i].shown();
+    for (Index place = shown; place < near[0]; ++place) {
       ++distance_tests_;
-      if (distance_squared(box_, r, centres_[near[1 + place]]) < 1.0) {
+      if (touches(r, centres_[near[1 + place]])) {
         all_.caches_.promote(box_, all_.centres_, all_.lists_, i, place);
         return true;
       }
     }
-    return blocked_by_first(i, r, std::min(*near, BlockerCache::size));
+    return blocked_by_first(i, r, std::min(*near, shown));
   }
 
   [[gnu::noinline]] bool free_by_new_list(Index i, const PackedCentre& r) {
@@ -216,12 +234,11 @@ class NeighbourhoodView {
     all_.caches_.follow(box_, all_.centres_, all_.lists_, i);
   }
 
-  Neighbourhood<Box>& all_;
-  PackedBox<Box> box_;
+  Neighbourhood<Box, Spheres>& all_;
+  PackedBox<Box, Spheres> box_;
   PackedCentre* centres_;
-  const Index* rows_;
-  std::size_t stride_;
-  const BlockerCache* caches_;
+  typename Neighbourhood<Box, Spheres>::Lists::Rows::Place rows_;
+  const Cache* caches_;
   const PackedCentre* origins_;
   double half_skin_squared_;
   std::uint64_t distance_tests_ = 0;

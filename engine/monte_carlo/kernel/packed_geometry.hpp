@@ -4,38 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
-#include "engine/large_pages.hpp"
 #include "engine/monte_carlo/kernel/four_floats.hpp"
+#include "engine/monte_carlo/kernel/packed_centre.hpp"
 
 // The arithmetic of engine/bed/geometry.hpp for the trial loop: x and y side by side in one
 // register and no branches. It gives the same numbers, bit for bit (a zero may differ in its sign);
 // the trial loop is tested against the plain functions.
 namespace jostle::inline engine {
-
-/// Two lateral coordinates, in one register.
-using Pair = double __attribute__((vector_size(16), may_alias));
-
-/// Four numbers in single precision, in one register.
-using Lanes = float __attribute__((vector_size(16), may_alias));
-
-/// A centre ready for the loop: aligned, half a cache line.
-struct alignas(32) PackedCentre {
-  Pair xy;
-  double z, unused;
-};
-
-using PackedCentres = std::vector<PackedCentre, LargePageAllocator<PackedCentre>>;
-
-inline PackedCentre packed(Vec3 r) {
-  return {Pair{r.x, r.y}, r.z, 0};
-}
-inline Vec3 unpacked(const PackedCentre& r) {
-  return {r.xy[0], r.xy[1], r.z};
-}
 
 namespace packed_geometry {
 
@@ -125,21 +103,35 @@ constexpr PackedSides packed_sides(ContainerShape shape) {
   return shape.has_floor() ? PackedSides::floor : PackedSides::none;
 }
 
-template <PackedSides sides>
+/// Room to the face that is nearest, and the unit normal towards it.
+struct FaceAhead {
+  double room = std::numeric_limits<double>::infinity();
+  Vec3 normal{};
+
+  void see(double other_room, Vec3 other_normal) {
+    if (other_room < room) *this = {other_room, other_normal};
+  }
+};
+
+template <PackedSides sides, class Spheres>
 struct PackedFaces;
 
-template <>
-struct PackedFaces<PackedSides::none> {
+template <class Spheres>
+struct PackedFaces<PackedSides::none, Spheres> {
   PackedFaces(ContainerShape, Vec3) {}
   static bool clear_of_boundaries(const PackedCentre&) { return true; }
+  static FaceAhead nearest_face(const PackedCentre&) { return {}; }
   static Lanes room(const PackedCentre&) { return Lanes{}; }
   static bool leaves(const Lanes&, float, float, float) { return false; }
 };
 
-template <>
-struct PackedFaces<PackedSides::floor> {
+template <class Spheres>
+struct PackedFaces<PackedSides::floor, Spheres> {
   PackedFaces(ContainerShape, Vec3) {}
-  static bool clear_of_boundaries(const PackedCentre& r) { return r.z >= sphere_radius; }
+  static bool clear_of_boundaries(const PackedCentre& r) { return r.z >= Spheres::radius(r); }
+  static FaceAhead nearest_face(const PackedCentre& r) {
+    return {r.z - Spheres::radius(r), {0, 0, -1}};
+  }
   static Lanes room(const PackedCentre& r) {
     return Lanes{0, 0, packed_geometry::room_below(r), 0};
   }
@@ -147,17 +139,26 @@ struct PackedFaces<PackedSides::floor> {
 };
 
 /// A direction without planes has room for ever.
-template <>
-struct PackedFaces<PackedSides::floor_and_planes> {
+template <class Spheres>
+struct PackedFaces<PackedSides::floor_and_planes, Spheres> {
   Pair low, high;
   PackedFaces(ContainerShape shape, Vec3 extent)
-      : low{shape.planes_x() ? sphere_radius : -endless,
-            shape.planes_y() ? sphere_radius : -endless},
-        high{shape.planes_x() ? extent.x - sphere_radius : endless,
-             shape.planes_y() ? extent.y - sphere_radius : endless} {}
+      : low{shape.planes_x() ? Spheres::known_radius : -endless,
+            shape.planes_y() ? Spheres::known_radius : -endless},
+        high{shape.planes_x() ? extent.x - Spheres::known_radius : endless,
+             shape.planes_y() ? extent.y - Spheres::known_radius : endless} {}
   bool clear_of_boundaries(const PackedCentre& r) const {
-    return r.z >= sphere_radius && packed_geometry::both(low, r.xy) &&
-           packed_geometry::both(r.xy, high);
+    return r.z >= Spheres::radius(r) && packed_geometry::both(Spheres::raised(low, r), r.xy) &&
+           packed_geometry::both(r.xy, Spheres::lowered(high, r));
+  }
+  FaceAhead nearest_face(const PackedCentre& r) const {
+    const Pair below = r.xy - Spheres::raised(low, r), above = Spheres::lowered(high, r) - r.xy;
+    FaceAhead nearest{r.z - Spheres::radius(r), {0, 0, -1}};
+    nearest.see(below[0], {-1, 0, 0});
+    nearest.see(above[0], {1, 0, 0});
+    nearest.see(below[1], {0, -1, 0});
+    nearest.see(above[1], {0, 1, 0});
+    return nearest;
   }
   Lanes room(const PackedCentre& r) const {
     return Lanes{packed_geometry::room_between(low[0], r.xy[0], high[0]),
@@ -175,15 +176,26 @@ struct PackedFaces<PackedSides::floor_and_planes> {
   static constexpr double endless = std::numeric_limits<double>::infinity();
 };
 
-template <>
-struct PackedFaces<PackedSides::floor_and_tube> {
+template <class Spheres>
+struct PackedFaces<PackedSides::floor_and_tube, Spheres> {
   Pair axis;
-  double reach;
+  double reach;  // of centres from the axis, but for what is unknown of the radius
   PackedFaces(ContainerShape, Vec3 extent)
-      : axis{0.5 * extent.x, 0.5 * extent.x}, reach(0.5 * extent.x - sphere_radius) {}
+      : axis{0.5 * extent.x, 0.5 * extent.x}, reach(0.5 * extent.x - Spheres::known_radius) {}
   bool clear_of_boundaries(const PackedCentre& r) const {
     const Pair d = r.xy - axis;
-    return r.z >= sphere_radius && d[0] * d[0] + d[1] * d[1] <= reach * reach;
+    const double own = Spheres::lowered(Pair{reach, reach}, r)[0];
+    return r.z >= Spheres::radius(r) && d[0] * d[0] + d[1] * d[1] <= own * own;
+  }
+  FaceAhead nearest_face(const PackedCentre& r) const {
+    const Pair d = r.xy - axis;
+    const double from_axis = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+    FaceAhead nearest{r.z - Spheres::radius(r), {0, 0, -1}};
+    if (from_axis > 0) {
+      nearest.see(Spheres::lowered(Pair{reach, reach}, r)[0] - from_axis,
+                  {d[0] / from_axis, d[1] / from_axis, 0});
+    }
+    return nearest;
   }
   // The outward normal, the room below and the room along the normal.
   Lanes room(const PackedCentre& r) const {
@@ -202,25 +214,25 @@ template <class Box>
 using PeriodsOf = PackedPeriods<Box::shape().periodic_x || Box::shape().periodic_y>;
 template <class Box>
 using HeightOf = PackedHeight<Box::shape().periodic_z>;
-template <class Box>
-using FacesOf = PackedFaces<packed_sides(Box::shape())>;
+template <class Box, class Spheres>
+using FacesOf = PackedFaces<packed_sides(Box::shape()), Spheres>;
 
 /// A container with its constants laid out for the loop.
-template <class Box>
-struct PackedBox : PeriodsOf<Box>, HeightOf<Box>, FacesOf<Box> {
+template <class Box, class Spheres = EqualSpheres>
+struct PackedBox : PeriodsOf<Box>, HeightOf<Box>, FacesOf<Box, Spheres> {
   explicit PackedBox(const Box& box)
       : PeriodsOf<Box>(box.shape(), box.extent()),
         HeightOf<Box>(box.extent()),
-        FacesOf<Box>(box.shape(), box.extent()) {}
+        FacesOf<Box, Spheres>(box.shape(), box.extent()) {}
 
   PackedCentre wrapped(PackedCentre r) const {
-    return {this->wrapped_lateral(r.xy), this->wrapped_vertical(r.z), 0};
+    return {this->wrapped_lateral(r.xy), this->wrapped_vertical(r.z), r.radius};
   }
 };
 
 /// Squared distance of two centres, to the nearest image.
-template <class Box>
-inline double distance_squared(const PackedBox<Box>& box, const PackedCentre& a,
+template <class Box, class Spheres>
+inline double distance_squared(const PackedBox<Box, Spheres>& box, const PackedCentre& a,
                                const PackedCentre& b) {
   const Pair d = box.lateral(a.xy - b.xy);
   const double dz = box.vertical(a.z - b.z);

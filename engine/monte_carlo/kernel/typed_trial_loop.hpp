@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <memory>
 #include <utility>
 
 #include "engine/bed/slab.hpp"
@@ -14,9 +15,10 @@
 
 namespace jostle::inline engine {
 
-/// The trial loop of one container and one move. One trial is: propose, wrap, test floor and sides,
-/// test the neighbours, accept or reject. Everything else happens once a batch or more rarely.
-template <class Box, MovePolicy Policy>
+/// The trial loop of one container and one move, for equal spheres or several sizes. One trial is:
+/// propose, wrap, test floor and sides, test the neighbours, accept or reject. Everything else
+/// happens once a batch or more rarely.
+template <class Box, MovePolicy Policy, class Spheres = EqualSpheres>
 class TypedTrialLoop final : public TrialLoop {
  public:
   TypedTrialLoop(const Box& box, Policy move, StreamKey key, const ProposalKernels& kernels)
@@ -25,7 +27,9 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   void load(const Packing& packing) override {
-    require_equal_spheres(packing, "Monte Carlo trials");
+    if constexpr (!Spheres::several)
+      require_equal_spheres(packing, "trials of a loop made for equal spheres");
+    sizes_ = packing.sizes;
     neighbourhood_.load(packing);
     batch_valid_ = false;
   }
@@ -52,15 +56,14 @@ class TypedTrialLoop final : public TrialLoop {
   }
 
   double mean_height() const override {
+    if constexpr (Spheres::several) return jostle::mean_height(stored());
     double sum = 0;
     for (const PackedCentre& centre : neighbourhood_.centres()) sum += centre.z;
     return sum / static_cast<double>(n_spheres());
   }
 
   double solids_fraction(HeightWindow window) const override {
-    Packing packing{box_, {}};
-    store(packing);
-    return jostle::solids_fraction(packing, window);
+    return jostle::solids_fraction(stored(), window);
   }
 
   std::uint32_t n_spheres() const override {
@@ -81,6 +84,19 @@ class TypedTrialLoop final : public TrialLoop {
   static constexpr std::uint32_t group = 16;  // trials held against caches together
   // So many spheres are beyond the caches of a processor: what a trial needs is fetched early.
   static constexpr std::uint32_t many_spheres = 10'000;
+
+  Packing stored() const {
+    Packing packing{box_, {}, sizes_};
+    store(packing);
+    return packing;
+  }
+
+  // m g dz of a rise, in units of m g d: m is that of a sphere of diameter 1.
+  [[gnu::always_inline]] double cost_of_rise(std::uint32_t sphere, double dz) const {
+    if constexpr (Spheres::several)
+      if (sizes_) return sizes_->mass(sphere) * dz;
+    return dz;
+  }
 
   void propose(std::uint64_t first) {
     const BatchOrigin origin{static_cast<std::uint64_t>(key_), first, n_spheres()};
@@ -119,7 +135,7 @@ class TypedTrialLoop final : public TrialLoop {
       if (here.rejects(i, target)) continue;
       if (rises) {
         const std::uint64_t trial = state_.next_trial + (t - begin);
-        if (!move_.accepts_rise(trial, unit * batch_.dz[t])) continue;
+        if (!move_.accepts_rise(trial, cost_of_rise(i, unit * batch_.dz[t]))) continue;
       }
       const bool moved = here.move(i, target);
       counts.accepted += moved;
@@ -203,7 +219,8 @@ class TypedTrialLoop final : public TrialLoop {
   Policy move_;
   MoveState state_;
   TrialTally tally_;
-  Neighbourhood<Box> neighbourhood_;
+  std::shared_ptr<const Sizes> sizes_;
+  Neighbourhood<Box, Spheres> neighbourhood_;
   CachingRule caching_;
   ProposalBatch batch_;
   bool batch_valid_ = false;

@@ -35,26 +35,30 @@ Packing points(const Container& container, int n, double height, std::uint64_t s
 
 PackedCentres packed_centres(const Packing& packing) {
   PackedCentres centres;
-  for (const Vec3& r : packing.centres) centres.push_back(packed(r));
+  for (std::size_t i = 0; i < packing.centres.size(); ++i)
+    centres.push_back(packed_sphere(packing.centres[i], packing.radius(i)));
   return centres;
 }
 
-std::vector<std::uint32_t> list_of(const NeighbourLists& lists, std::uint32_t i) {
-  const auto* row = lists.rows() + i * lists.stride();
+template <class Spheres>
+std::vector<std::uint32_t> list_of(const NeighbourListsOf<Spheres>& lists, std::uint32_t i) {
+  const auto* row = lists.row(i);
   return {row + 1, row + 1 + *row};
 }
 
 // Lists against all pairs: each neighbour exactly once, none missing, none too far.
+template <class Spheres = EqualSpheres>
 void check_lists(const Packing& packing, double skin) {
   std::visit(
       [&](const auto& box) {
-        NeighbourLists lists;
+        NeighbourListsOf<Spheres> lists;
         lists.build(box, packed_centres(packing), skin, {0, 0, -0.04});
         for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
           std::vector<std::uint32_t> found = list_of(lists, i), expected;
           for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
             const Vec3 away = separation(box, packing.centres[i], packing.centres[j]);
-            if (j != i && norm_squared(away) < (1 + skin) * (1 + skin)) expected.push_back(j);
+            const double reach = packing.radius(i) + packing.radius(j) + skin;
+            if (j != i && norm_squared(away) < reach * reach) expected.push_back(j);
           }
           std::ranges::sort(found);
           REQUIRE(found == expected);
@@ -77,6 +81,17 @@ TEST_CASE("neighbour lists hold exactly the pairs that all pairs give") {
   }
 }
 
+TEST_CASE("neighbour lists of several sizes hold exactly the pairs that all pairs give") {
+  for (const Container& container : containers()) {
+    CAPTURE(container.index(), width_x(container), width_y(container));
+    for (const double ratio : {1.0, 1.4, 3.0, 10.0}) {
+      Packing packing = points(container, 80, 10, 1);
+      packing.sizes = std::make_shared<const Sizes>(graded_diameters(80, 0.25, ratio));
+      for (const double skin : {0.05, 0.3, 4.0}) check_lists<SeveralSizes>(packing, skin);
+    }
+  }
+}
+
 TEST_CASE("neighbour lists hold on a crystal whose rows lie on the seams") {
   for (const double skin : {0.0, 1e-9, 0.2, 0.5}) {
     check_lists(cubic_packing(PeriodicBox{6, 6}, 6, 1), skin);
@@ -85,19 +100,23 @@ TEST_CASE("neighbour lists hold on a crystal whose rows lie on the seams") {
   }
 }
 
-TEST_CASE("lists renewed one by one still hold all that can be touched") {
-  // Spheres walk at random, every one that leaves half a skin gets a new list, as in the trial
-  // loop.
+namespace {
+
+// Spheres walk at random, every one that leaves half a skin gets a new list, as in the trial loop.
+template <class Spheres>
+void check_renewals(double smallest, double ratio) {
   for (const Container& container : containers()) {
-    CAPTURE(container.index(), width_x(container), width_y(container));
+    CAPTURE(container.index(), width_x(container), width_y(container), ratio);
     constexpr double skin = 0.4, longest = 0.1;
     const std::uint32_t n = 60;
     Packing packing = points(container, n, 6, 9);
+    if (Spheres::several)
+      packing.sizes = std::make_shared<const Sizes>(graded_diameters(n, smallest, ratio));
     std::visit(
         [&](const auto& box) {
           RandomStream random(stream_key(10, 0, 0, Purpose::trials));
           auto centres = packed_centres(packing);
-          NeighbourLists lists;
+          NeighbourListsOf<Spheres> lists;
           lists.build(box, centres, skin, {0, 0, -0.04});
           int renewals = 0, builds = 0;
           for (int step = 0; step < 30'000; ++step) {
@@ -113,7 +132,7 @@ TEST_CASE("lists renewed one by one still hold all that can be touched") {
                 ++builds;
               }
             }
-            centres[i] = packed(r);
+            centres[i] = packed_sphere(r, packing.radius(i));
             if (step % 97 != 0) continue;
             for (std::uint32_t a = 0; a < n; ++a) {
               const auto list = list_of(lists, a);
@@ -123,7 +142,7 @@ TEST_CASE("lists renewed one by one still hold all that can be touched") {
               for (std::uint32_t b = 0; b < n; ++b) {
                 const Vec3 away =
                     separation(box, unpacked(lists.origins()[a]), unpacked(centres[b]));
-                const double reach = 1 + 0.5 * skin;
+                const double reach = packing.radius(a) + packing.radius(b) + 0.5 * skin;
                 const bool listed = std::ranges::find(list, b) != list.end();
                 if (b != a && norm_squared(away) < reach * reach) REQUIRE(listed);
                 const auto other = list_of(lists, b);
@@ -137,6 +156,13 @@ TEST_CASE("lists renewed one by one still hold all that can be touched") {
         },
         container);
   }
+}
+
+}  // namespace
+
+TEST_CASE("lists renewed one by one still hold all that can be touched") {
+  check_renewals<EqualSpheres>(1, 1);
+  for (const double ratio : {1.4, 10.0}) check_renewals<SeveralSizes>(0.25, ratio);
 }
 
 TEST_CASE("a search by cells misses nothing within its cutoff and meets nothing twice") {

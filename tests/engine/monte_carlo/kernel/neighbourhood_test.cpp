@@ -14,9 +14,30 @@ std::vector<Container> containers() {
   return {PeriodicBox{4.2, 3.1}, WalledBox{4, 3.5}, Cylinder{4.4}, FullyPeriodicBox{4, 3.4, 4.6}};
 }
 
+// Every lane of every cache is as a new one would be.
+template <class Box>
+void check_caches(const PackedBox<Box, SeveralSizes>& box,
+                  const Neighbourhood<Box, SeveralSizes>& neighbourhood, double longest) {
+  const PackedCentres& centres = neighbourhood.centres();
+  for (std::uint32_t i = 0; i < centres.size(); ++i) {
+    const SizedBlockerCache& cache = neighbourhood.caches().data()[i];
+    SizedBlockerCache expected;
+    expected.see_faces(box, centres[i], longest);
+    const auto* row = neighbourhood.lists().row(i);
+    for (std::uint32_t lane = 0; lane < std::min(expected.shown(), row[0]); ++lane)
+      expected.see(box, centres[i], centres[row[1 + lane]], lane, longest);
+    for (std::uint32_t lane = 0; lane < SizedBlockerCache::size; ++lane) {
+      REQUIRE(cache.x[lane] == expected.x[lane]);
+      REQUIRE(cache.y[lane] == expected.y[lane]);
+      REQUIRE(cache.z[lane] == expected.z[lane]);
+      REQUIRE(cache.c[lane] == expected.c[lane]);
+    }
+  }
+}
+
 // Every lane of every cache shows where its sphere stands, the rest nothing.
 template <class Box>
-void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbourhood) {
+void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbourhood, double) {
   const PackedCentres& centres = neighbourhood.centres();
   for (std::uint32_t i = 0; i < centres.size(); ++i) {
     const BlockerCache& cache = neighbourhood.caches().data()[i];
@@ -36,23 +57,25 @@ void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbour
 }
 
 // Whether a step is rejected, by all spheres and in double precision.
-template <class Box>
+template <class Spheres, class Box>
 bool rejected(const Box& box, const PackedCentres& centres, std::uint32_t i, Vec3 step) {
   const Vec3 target = wrapped(box, unpacked(centres[i]) + step);
-  if (!clear_of_boundaries(box, target)) return true;
+  const double radius = Spheres::radius(centres[i]);
+  if (!clear_of_boundaries(box, target, radius)) return true;
   for (std::uint32_t j = 0; j < centres.size(); ++j) {
-    if (j != i && overlaps(box, target, unpacked(centres[j]))) return true;
+    const double touching = radius + Spheres::radius(centres[j]);
+    if (j != i && overlaps(box, target, unpacked(centres[j]), touching)) return true;
   }
   return false;
 }
 
 // Random trials, each held against all spheres.
-template <class Box>
+template <class Box, class Spheres>
 struct Walk {
   Box box;
   double longest;
-  PackedBox<Box> packed_box{box};
-  Neighbourhood<Box> neighbourhood{box};
+  PackedBox<Box, Spheres> packed_box{box};
+  Neighbourhood<Box, Spheres> neighbourhood{box};
   RandomStream random{stream_key(32, 0, 0, Purpose::trials)};
   int moved = 0, certainly_rejected = 0, promoted = 0;
 
@@ -65,12 +88,12 @@ struct Walk {
   }
 
   template <BlockerCaching caching>
-  void make_trial(NeighbourhoodView<Box, caching>& here) {
+  void make_trial(NeighbourhoodView<Box, caching, Spheres>& here) {
     const PackedCentres& centres = neighbourhood.centres();
     const auto i = static_cast<std::uint32_t>(random.below(centres.size()));
     const auto part = [&] { return longest * (2 * random.uniform() - 1); };
     const Vec3 step{part(), part(), part()};
-    const bool is_rejected = rejected(box, centres, i, step);
+    const bool is_rejected = rejected<Spheres>(box, centres, i, step);
     const PackedCentre target = here.target(i, Pair{step.x, step.y}, step.z);
     REQUIRE(unpacked(target) == wrapped(box, unpacked(centres[i]) + step));
     if constexpr (caching == BlockerCaching::on) {
@@ -92,41 +115,51 @@ struct Walk {
     return {row + 1, row + 1 + row[0]};
   }
 
-  Packing stored() const {
-    Packing packing{box, {}};
+  Packing stored(Packing packing) const {
     neighbourhood.store(packing);
     return packing;
   }
 };
 
+template <class Spheres>
+void check_walk(const Packing& packing) {
+  CAPTURE(packing.container.index(), packing.largest_radius());
+  std::visit(
+      [&](const auto& box) {
+        using Box = std::decay_t<decltype(box)>;
+        constexpr double longest = 0.4, reach = std::numbers::sqrt3 * longest;
+        Walk<Box, Spheres> walk(box, longest);
+        walk.neighbourhood.load(packing);
+        for (int stretch = 0; stretch < 200; ++stretch) {
+          const bool caching = stretch % 5 != 4;
+          if (stretch % 40 == 39) walk.neighbourhood.load(walk.stored(packing));
+          if (caching) {
+            walk.template make_trials<BlockerCaching::on>({reach, -0.1}, 200);
+            check_caches(walk.packed_box, walk.neighbourhood, reach);
+          } else {
+            walk.template make_trials<BlockerCaching::off>({reach, -0.1}, 200);
+          }
+        }
+        CHECK(walk.moved > 1000);
+        CHECK(walk.certainly_rejected > 1000);
+        CHECK(walk.promoted > 100);
+        CHECK(walk.neighbourhood.renewals() > 20);
+      },
+      packing.container);
+}
+
 }  // namespace
 
 TEST_CASE("a neighbourhood rejects what all spheres reject, whatever moved and however cached") {
+  for (const Container& container : containers())
+    check_walk<EqualSpheres>(random_packing(container, 24, 5, 31));
+}
+
+TEST_CASE("a neighbourhood of several sizes rejects what all spheres reject") {
   for (const Container& container : containers()) {
-    CAPTURE(container.index());
-    const Packing packing = random_packing(container, 24, 5, 31);
-    std::visit(
-        [&](const auto& box) {
-          using Box = std::decay_t<decltype(box)>;
-          constexpr double longest = 0.4, reach = std::numbers::sqrt3 * longest;
-          Walk<Box> walk(box, longest);
-          walk.neighbourhood.load(packing);
-          for (int stretch = 0; stretch < 200; ++stretch) {
-            const bool caching = stretch % 5 != 4;
-            if (stretch % 40 == 39) walk.neighbourhood.load(walk.stored());
-            if (caching) {
-              walk.template make_trials<BlockerCaching::on>({reach, -0.1}, 200);
-              check_caches(walk.packed_box, walk.neighbourhood);
-            } else {
-              walk.template make_trials<BlockerCaching::off>({reach, -0.1}, 200);
-            }
-          }
-          CHECK(walk.moved > 1000);
-          CHECK(walk.certainly_rejected > 1000);
-          CHECK(walk.promoted > 100);
-          CHECK(walk.neighbourhood.renewals() > 20);
-        },
-        container);
+    check_walk<SeveralSizes>(random_packing(container, 24, 5, 31));
+    check_walk<SeveralSizes>(random_mixture(container, graded_diameters(24, 0.9, 1.4), 5, 31));
+    check_walk<SeveralSizes>(random_mixture(container, graded_diameters(60, 0.5, 2.9), 4, 31));
   }
 }
 
