@@ -30,7 +30,7 @@ std::vector<std::uint64_t> taps_up_to(std::uint64_t last) {
   return taps;
 }
 
-std::string digest_of_straight(const std::string& path, const synthetic::Sizes& sizes) {
+std::string digest_of_straight(const std::string& path, const synthetic::StudySize& sizes) {
   const Study study = synthetic::study(sizes);
   const auto store = RunStore::create(path, study, {}, provenance());
   synthetic::run_pending(*store, study, {.checkpoint_every = 20'011});
@@ -39,7 +39,7 @@ std::string digest_of_straight(const std::string& path, const synthetic::Sizes& 
 }
 
 /// Stops the run's realizations after so many steps each, then resumes it, until it has ended.
-std::string digest_of_stopped(const std::string& path, const synthetic::Sizes& sizes,
+std::string digest_of_stopped(const std::string& path, const synthetic::StudySize& sizes,
                               std::uint64_t steps, bool killed) {
   const Study study = synthetic::study(sizes);
   RunStore::create(path, study, {}, provenance());
@@ -67,11 +67,11 @@ constexpr bool memory_is_watched = false;
 #endif
 
 void check_snapshots_of_many_blocks(bool killed) {
-  const synthetic::Sizes sizes{.points = 1,
-                               .realizations = 3,
-                               .spheres = 2,
-                               .taps = 9000,
-                               .snapshot_taps = taps_up_to(9000)};
+  const synthetic::StudySize sizes{.points = 1,
+                                   .realizations = 3,
+                                   .spheres = 2,
+                                   .taps = 9000,
+                                   .snapshot_taps = taps_up_to(9000)};
   REQUIRE(chunk_along_first({9001, 3, 3})[0] < 9001);
   const TemporaryFolder folder;
   const std::string straight = folder / "straight.h5";
@@ -87,16 +87,17 @@ void check_snapshots_of_many_blocks(bool killed) {
 
 void check_memory_of_fold(bool of_series) {
   if (memory_is_watched) return;
-  const synthetic::Sizes sizes = of_series ? synthetic::Sizes{.points = 1,
-                                                              .realizations = 2,
-                                                              .spheres = 2,
-                                                              .taps = 2'000'000,
-                                                              .snapshot_taps = {}}
-                                           : synthetic::Sizes{.points = 1,
-                                                              .realizations = 2,
-                                                              .spheres = 20'000,
-                                                              .taps = 200,
-                                                              .snapshot_taps = taps_up_to(200)};
+  const synthetic::StudySize sizes = of_series
+                                         ? synthetic::StudySize{.points = 1,
+                                                                .realizations = 2,
+                                                                .spheres = 2,
+                                                                .taps = 2'000'000,
+                                                                .snapshot_taps = {}}
+                                         : synthetic::StudySize{.points = 1,
+                                                                .realizations = 2,
+                                                                .spheres = 20'000,
+                                                                .taps = 200,
+                                                                .snapshot_taps = taps_up_to(200)};
   constexpr double megabytes_of_the_run = 180, most = 80;
   const TemporaryFolder folder;
   const Ending ending = run_forked({}, folder / "messages", [&] {
@@ -120,7 +121,7 @@ void check_memory_of_fold(bool of_series) {
 }  // namespace
 
 TEST_CASE("series of many blocks are written as those of one, stopped or killed on the way") {
-  const synthetic::Sizes sizes{
+  const synthetic::StudySize sizes{
       .points = 1, .realizations = 2, .spheres = 2, .taps = 200'000, .snapshot_taps = {}};
   const std::size_t n_columns = synthetic::study(sizes).points[0].n_columns();
   REQUIRE(rows_a_block(2, n_columns) < sizes.taps);
@@ -151,7 +152,7 @@ TEST_CASE("snapshots of many blocks are written as those of one, stopped on the 
 TEST_CASE("parts that go on while they are read give what was there") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
-  const synthetic::Sizes sizes{
+  const synthetic::StudySize sizes{
       .points = 1, .realizations = 1, .taps = 60'000, .snapshot_taps = {0, 10'000, 60'000}};
   const Study study = synthetic::study(sizes);
   const std::size_t n_columns = study.points[0].n_columns();
@@ -187,7 +188,7 @@ TEST_CASE("a fold of series takes little memory, however large the run", "[slow]
 /// Megabytes that a merge of so many shards takes, each with so much of every series that all of a
 /// reader's 32 MB are used.
 double megabytes_of_merge(std::uint32_t n_inputs) {
-  const synthetic::Sizes sizes{
+  const synthetic::StudySize sizes{
       .points = 1, .realizations = 8, .spheres = 2, .taps = 100'000, .snapshot_taps = {}};
   const TemporaryFolder folder;
   std::vector<std::string> inputs;

@@ -15,12 +15,12 @@ using namespace jostle;
 using Catch::Matchers::Contains;
 using synthetic::provenance;
 using synthetic::run_to_end;
-using synthetic::Sizes;
+using synthetic::StudySize;
 
 namespace {
 
 std::vector<std::string> run_shards(const TemporaryFolder& folder, std::uint32_t count,
-                                    const Sizes& sizes = {}) {
+                                    const StudySize& sizes = {}) {
   std::vector<std::string> paths;
   for (std::uint32_t i = 1; i <= count; ++i) {
     paths.push_back(folder / fmt::format("shard{}.h5", i));
@@ -64,7 +64,7 @@ TEST_CASE("merged shards have the digest of one big run") {
 
 TEST_CASE("a merged file can be resumed with more taps") {
   const TemporaryFolder folder;
-  const Sizes longer{.realizations = 4, .taps = 8};
+  const StudySize longer{.realizations = 4, .taps = 8};
   const std::string expected = run_to_end(folder / "one.h5", longer);
   const std::string output = folder / "all.h5";
   merge_files(run_shards(folder, 2), output, provenance());

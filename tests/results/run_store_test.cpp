@@ -16,11 +16,11 @@ using namespace jostle;
 using synthetic::Conduct;
 using synthetic::provenance;
 using synthetic::run_pending;
-using synthetic::Sizes;
+using synthetic::StudySize;
 
 namespace {
 
-std::string straight_digest(const TemporaryFolder& folder, const Sizes& sizes = {}) {
+std::string straight_digest(const TemporaryFolder& folder, const StudySize& sizes = {}) {
   return synthetic::run_to_end(folder / "straight.h5", sizes);
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("a gracefully stopped file shows what is there") {
 
 TEST_CASE("more taps and more realizations give the file of the longer scene") {
   const TemporaryFolder folder;
-  const Sizes longer{.realizations = 5, .taps = 9, .snapshot_taps = {0, 2, 6, 8}};
+  const StudySize longer{.realizations = 5, .taps = 9, .snapshot_taps = {0, 2, 6, 8}};
   const std::string expected = straight_digest(folder, longer);
   const std::string path = folder / "a.h5";
   const std::uint64_t steps = GENERATE(10, 1000);  // interrupted, complete
@@ -277,11 +277,11 @@ TEST_CASE("realizations on several threads give the bytes of one after another",
 
 TEST_CASE("series longer than a segment are published piece by piece") {
   const TemporaryFolder folder;
-  const Sizes sizes{.points = 1,
-                    .realizations = 1,
-                    .spheres = 20000,
-                    .taps = 12,
-                    .snapshot_taps = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}};
+  const StudySize sizes{.points = 1,
+                        .realizations = 1,
+                        .spheres = 20000,
+                        .taps = 12,
+                        .snapshot_taps = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}};
   const Study study = synthetic::study(sizes);
   const std::string path = folder / "a.h5";
   {

@@ -14,7 +14,7 @@ inline void run_pending(RunStore& store, const Study& study, const Conduct& cond
 }
 
 /// Runs a shard of a study from start to end into a file; returns its digest.
-inline std::string run_to_end(const std::string& path, const Sizes& sizes = {},
+inline std::string run_to_end(const std::string& path, const StudySize& sizes = {},
                               const Shard& shard = {}) {
   const Study all = study(sizes);
   const auto store = RunStore::create(path, all, shard, provenance(), true);

@@ -62,12 +62,13 @@ void check_steps(const char* what, const Steps<Size>& steps, const Size& small, 
   }
 }
 
-void check_growth(const char* what, const synthetic::Sizes& small, const synthetic::Sizes& large) {
+void check_growth(const char* what, const synthetic::StudySize& small,
+                  const synthetic::StudySize& large) {
   const TemporaryFolder folder;
-  const auto path = [&](const synthetic::Sizes& sizes) {
+  const auto path = [&](const synthetic::StudySize& sizes) {
     return folder / fmt::format("{}_{}_{}.h5", sizes.points, sizes.realizations, sizes.taps);
   };
-  const auto written = [&](const synthetic::Sizes& sizes) {
+  const auto written = [&](const synthetic::StudySize& sizes) {
     const Study study = synthetic::study(sizes);
     std::filesystem::remove(path(sizes));
     const auto store = RunStore::create(path(sizes), study, {}, synthetic::provenance());
@@ -75,12 +76,12 @@ void check_growth(const char* what, const synthetic::Sizes& small, const synthet
     synthetic::run_pending(*store, study, {.checkpoint_every = 10'000});
     store->finish();
   };
-  const auto opened = [&](const synthetic::Sizes& sizes) {
+  const auto opened = [&](const synthetic::StudySize& sizes) {
     const ResultsFile file(path(sizes));
     REQUIRE(file.realizations().size() == std::size_t{sizes.points} * sizes.realizations);
   };
-  const auto digested = [&](const synthetic::Sizes& sizes) { digest_of(path(sizes)); };
-  const Steps<synthetic::Sizes> steps = {
+  const auto digested = [&](const synthetic::StudySize& sizes) { digest_of(path(sizes)); };
+  const Steps<synthetic::StudySize> steps = {
       {"run and fold", written}, {"open", opened}, {"digest", digested}};
   check_steps(what, steps, small, large);
 }

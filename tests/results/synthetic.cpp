@@ -132,7 +132,7 @@ class Rows : public Sink {
 
 }  // namespace
 
-Study study(const Sizes& sizes) {
+Study study(const StudySize& sizes) {
   Study study;
   study.scene = "{\"name\": \"synthetic\"} // as typed, with an \xc3\xbc\n";
   study.resolved_scene = fmt::format("taps {}, realizations {}", sizes.taps, sizes.realizations);

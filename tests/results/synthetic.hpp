@@ -11,14 +11,14 @@
 // their state as real ones do, so that a wrong restart gives wrong rows.
 namespace jostle::synthetic {
 
-struct Sizes {
+struct StudySize {
   std::uint32_t points = 2, realizations = 3, spheres = 5;
   std::uint64_t taps = 6;
   std::vector<std::uint64_t> snapshot_taps = {0, 2, 6};
 };
 
 /// A study with two observables; its resolved scene names the sizes.
-Study study(const Sizes& sizes = {});
+Study study(const StudySize& sizes = {});
 
 struct Conduct {
   std::uint64_t checkpoint_every = 2;  // steps, of which a tap takes three

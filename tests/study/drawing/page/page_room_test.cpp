@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/results/temporary_folder.hpp"
 #include "results/file/results_writer.hpp"
 #include "results/tables.hpp"
 #include "study/drawing/page/page.hpp"
@@ -12,6 +11,7 @@
 #include "study/drawing/page/page_json.hpp"
 #include "study/drawing/page/page_packings.hpp"
 #include "tests/results/synthetic.hpp"
+#include "tests/results/temporary_folder.hpp"
 
 // Files that hold more than a page has room for: the page stays small, keeps the ends, and says
 // what it leaves out.
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t most_bytes = 10'000'000;
 
-struct Sizes {
+struct StudySize {
   std::uint32_t points = 1, realizations = 1, spheres = 0;  // spheres of each kept packing
   std::uint64_t taps = 10;
   std::size_t snapshots = 0;
@@ -38,7 +38,7 @@ std::vector<Vec3> lattice(std::uint32_t n) {
   return centres;
 }
 
-Study study_of(const Sizes& sizes) {
+Study study_of(const StudySize& sizes) {
   Study study = synthetic::study({.points = sizes.points,
                                   .realizations = sizes.realizations,
                                   .spheres = std::max(1u, sizes.spheres),
@@ -56,7 +56,7 @@ Study study_of(const Sizes& sizes) {
 }
 
 /// The curve that is stored, [taps + 1, columns]: one tap of the first column is far above all.
-std::vector<double> rows_of(const Sizes& sizes, std::size_t n_columns, std::uint64_t peak) {
+std::vector<double> rows_of(const StudySize& sizes, std::size_t n_columns, std::uint64_t peak) {
   std::vector<double> rows;
   rows.reserve((sizes.taps + 1) * n_columns);
   for (std::uint64_t tap = 0; tap <= sizes.taps; ++tap) {
@@ -68,7 +68,7 @@ std::vector<double> rows_of(const Sizes& sizes, std::size_t n_columns, std::uint
   return rows;
 }
 
-ResultsFile file_of(const Sizes& sizes, const std::string& path, std::uint64_t peak = 7) {
+ResultsFile file_of(const StudySize& sizes, const std::string& path, std::uint64_t peak = 7) {
   const Study study = study_of(sizes);
   const std::size_t n_columns = study.points.front().n_columns();
   const std::vector<double> rows = rows_of(sizes, n_columns, peak);
