@@ -38,18 +38,21 @@ void check_overlaps(const Packing& packing, double most_overlap) {
 }  // namespace
 
 std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
-                              std::uint32_t n_spheres) {
+                              const StartSpheres& spheres) {
   if (given.centres == nullptr) refuse("it holds no centres; read them from a file first");
-  if (given.centres->size() != n_spheres) {
+  if (given.centres->size() != spheres.n) {
     refuse("it holds " + std::to_string(given.centres->size()) + " spheres where " +
-           std::to_string(n_spheres) + " are asked for; ask for as many as it holds");
+           std::to_string(spheres.n) + " are asked for; ask for as many as it holds");
   }
+  const bool same_sizes = given.sizes == spheres.sizes ||
+                          (given.sizes && spheres.sizes && *given.sizes == *spheres.sizes);
+  if (!same_sizes) refuse("it holds spheres of other sizes than those asked for");
   // Far outside the container a coordinate is no rounding: refused here, before any neighbours are
   // sought.
   constexpr double far_outside = 1;
   const Boundary boundary(container);
-  Packing packing{container, {}};
-  packing.centres.reserve(n_spheres);
+  Packing packing{container, {}, spheres.sizes};
+  packing.centres.reserve(spheres.n);
   for (const Vec3& centre : *given.centres) {
     const std::string name = "sphere " + std::to_string(packing.centres.size());
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {

@@ -38,6 +38,6 @@ std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& contain
 std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
                        RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
-                              std::uint32_t n_spheres);
+                              const StartSpheres& spheres);
 
 }  // namespace jostle::inline engine

@@ -1,9 +1,13 @@
 #include "engine/starts/starts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <span>
 #include <utility>
 
+#include "engine/bed/mixture.hpp"
 #include "engine/starts/parts.hpp"
 
 namespace jostle::inline engine {
@@ -12,6 +16,7 @@ namespace {
 
 struct Builder {
   const Container& container;
+  const StartSpheres& spheres;
   std::uint32_t n_spheres;
   RandomStream& random;
   const StopAsked& stop;
@@ -36,8 +41,23 @@ struct Builder {
     return grow(start, std::get<FullyPeriodicBox>(container), n_spheres, random, stop);
   }
   std::vector<Vec3> operator()(const GivenPacking& start) const {
-    return check_given(start, container, n_spheres);
+    return check_given(start, container, spheres);
   }
+};
+
+struct MixtureFault {
+  using Fault = std::optional<std::string>;
+  static Fault equal(const char* what) {
+    return std::string(what) +
+           " requires equal spheres of diameter 1: start a mixture from a file that holds its "
+           "packing";
+  }
+  Fault operator()(const SteepestDescentPour&) const { return equal("a steepest-descent pour"); }
+  Fault operator()(const FittedPour&) const { return equal("a fitted pour"); }
+  Fault operator()(const RandomSettle&) const { return equal("random_settle"); }
+  Fault operator()(const Crystal&) const { return equal("a crystal"); }
+  Fault operator()(const Grow&) const { return equal("grow"); }
+  Fault operator()(const GivenPacking&) const { return std::nullopt; }
 };
 
 /// Whether spheres may move before tap 0.
@@ -115,14 +135,61 @@ std::optional<std::string> settling_fault(const Start& start) {
          "relaxed before tap 0";
 }
 
+std::vector<std::uint32_t> pour_sequence(const StartSpheres& spheres, RandomStream& random) {
+  std::vector<std::uint32_t> sequence;
+  std::vector<bool> has_place(spheres.n, false);
+  for (const PlacedSphere& placed : spheres.placed) {
+    sequence.push_back(placed.sphere);
+    has_place.at(placed.sphere) = true;
+  }
+  const auto first_free = static_cast<std::ptrdiff_t>(sequence.size());
+  for (std::uint32_t sphere = 0; sphere < spheres.n; ++sphere) {
+    if (!has_place[sphere]) sequence.push_back(sphere);
+  }
+  if (!spheres.sizes) return sequence;
+  const std::span others(sequence.begin() + first_free, sequence.end());
+  const auto radius = [&](std::uint32_t sphere) { return spheres.sizes->radius(sphere); };
+  switch (spheres.order) {
+    case PourOrder::random:  // Fisher & Yates
+      for (std::size_t left = others.size(); left > 1; --left)
+        std::swap(others[left - 1], others[random.below(left)]);
+      break;
+    case PourOrder::as_listed:
+      break;
+    case PourOrder::large_first:
+      std::ranges::stable_sort(others, std::greater{}, radius);
+      break;
+    case PourOrder::small_first:
+      std::ranges::stable_sort(others, std::less{}, radius);
+      break;
+  }
+  return sequence;
+}
+
+std::optional<std::string> mixture_fault(const Start& start) {
+  return std::visit(MixtureFault{}, start);
+}
+
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
                    RandomStream& random, const StopAsked& stop, Packing* before_fitting) {
-  for (const auto& fault : {width_fault(container), start_fault(start, container),
-                            n_spheres_fault(start, container, n_spheres)}) {
+  return make_start(start, container, StartSpheres{n_spheres}, random, stop, before_fitting);
+}
+
+Packing make_start(const Start& start, const Container& container, const StartSpheres& spheres,
+                   RandomStream& random, const StopAsked& stop, Packing* before_fitting) {
+  const auto& sizes = spheres.sizes;
+  for (const auto& fault :
+       {sizes ? width_fault(container, 2 * sizes->largest_radius()) : width_fault(container),
+        sizes ? mixture_fault(start) : std::nullopt, start_fault(start, container),
+        n_spheres_fault(start, container, spheres.n)}) {
     if (fault) throw StartError("start: " + *fault);
   }
-  const Builder build{container, n_spheres, random, stop, before_fitting};
-  return {container, std::visit(build, start)};
+  if (sizes && sizes->size() != spheres.n)
+    throw StartError("start: " + std::to_string(spheres.n) +
+                     " spheres are asked for, and sizes of " + std::to_string(sizes->size()) +
+                     " are given: give one per sphere");
+  const Builder build{container, spheres, spheres.n, random, stop, before_fitting};
+  return {container, std::visit(build, start), sizes};
 }
 
 }  // namespace jostle::inline engine

@@ -117,7 +117,8 @@ struct Grow {
 /// error.
 struct GivenPacking {
   std::shared_ptr<const std::vector<Vec3>> centres;
-  double most_overlap = 0;  // diameters; above 0 for discrete elements alone
+  double most_overlap = 0;                       // diameters; above 0 for discrete elements alone
+  std::shared_ptr<const Sizes> sizes = nullptr;  // null: all of diameter 1
   bool operator==(const GivenPacking&) const = default;
 };
 
@@ -128,6 +129,37 @@ using Start =
 inline constexpr double deepest_given_overlap = 0.1;
 /// Spheres that grow without order jam beyond this solids fraction.
 inline constexpr double densest_growth = 0.64;
+
+/// The order in which the spheres of a mixture are poured. Their numbers are those of the list of
+/// kinds whatever the order.
+enum class PourOrder { random, as_listed, large_first, small_first };
+inline constexpr NameTable<PourOrder, 4> pour_orders{{{"random", PourOrder::random},
+                                                      {"as_listed", PourOrder::as_listed},
+                                                      {"large_first", PourOrder::large_first},
+                                                      {"small_first", PourOrder::small_first}}};
+
+/// A sphere that is poured before all that have no place, from above (x, y).
+struct PlacedSphere {
+  std::uint32_t sphere = 0;
+  double x = 0, y = 0;  // diameters
+  bool operator==(const PlacedSphere&) const = default;
+};
+
+/// The spheres that a start places: `n` of diameter 1, or those of `sizes`.
+struct StartSpheres {
+  std::uint32_t n = 0;
+  std::shared_ptr<const Sizes> sizes = nullptr;  // null: equal spheres; else of n spheres
+  PourOrder order = PourOrder::random;           // of spheres with sizes
+  std::vector<PlacedSphere> placed{};            // in the order in which they are poured
+};
+
+/// Returns the numbers of the spheres in the order in which they are poured, [n]: placed ones
+/// first, then the others in their order; of equal diameters the lower number first. Equal spheres
+/// are poured as they are numbered. Only PourOrder::random takes numbers from the stream.
+std::vector<std::uint32_t> pour_sequence(const StartSpheres& spheres, RandomStream& random);
+
+/// Returns why the start cannot place spheres of several sizes, or nothing.
+std::optional<std::string> mixture_fault(const Start& start);
 
 /// Why the container, however many spheres it is to hold, cannot be filled in this way; nothing if
 /// it can. Without floor and gravity only growth, a crystal and a given packing do; growth does
@@ -162,6 +194,11 @@ using StopAsked = std::function<bool()>;
 /// a sweep or the pour of a sphere; never hangs. A fitted pour leaves in `before_fitting`, where
 /// given, what was poured with periodic sides.
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
+                   RandomStream& random, const StopAsked& stop = {},
+                   Packing* before_fitting = nullptr);
+/// The same with spheres of several sizes, which the packing then has. A given packing must have
+/// the same sizes.
+Packing make_start(const Start& start, const Container& container, const StartSpheres& spheres,
                    RandomStream& random, const StopAsked& stop = {},
                    Packing* before_fitting = nullptr);
 
