@@ -16,7 +16,7 @@ import numpy
 
 from crafted_test import SEAL, sealed
 from report_test import EVERYTHING, HOSTILE
-from support import BAD_INPUT, BROKEN, SHIM, SOURCE, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, EVERY, SHIM, SOURCE, TINY, Case, changed
 
 PYTHON = sys.executable  # has what the tests need
 KINDS = ("csv", "json", "py", "svg", "pdf")
@@ -76,6 +76,7 @@ class Figures(Case):
         self.assertEqual({path.suffix[1:] for path in (self.folder / folder).iterdir()}, set(KINDS))
 
 
+@unittest.skipUnless(EVERY, "draws 120 figures: in every case")
 class Everything(Figures):
     def test_a_file_that_has_everything(self):
         self.write(EVERYTHING)

@@ -7,7 +7,8 @@ import subprocess
 import sys
 import unittest
 
-from support import BAD_INPUT, BROKEN, JOSTLE, OK, PLAIN, SHIM, SLOW, SOURCE, STOPPED, TINY, Case, changed
+from support import (BAD_INPUT, BROKEN, EVERY, JOSTLE, OK, PLAIN, SHIM, SLOW, SOURCE, STOPPED, TINY, Case, changed,
+                     some)
 
 sys.path.insert(0, str(SOURCE / "python"))
 import jostle  # noqa: E402
@@ -30,8 +31,8 @@ class Names(Case):
     def test_names_of_every_length_that_a_folder_takes(self):
         self.run_scene("-o", "short.h5")
         digest = self.digest("short.h5")
-        for name in (*(name_of(size) for size in (236, 237, 242, 243, 246, 249, 250, 251, LONGEST)),
-                     name_of(LONGEST, "\N{GREEK SMALL LETTER PHI}"), name_of(LONGEST - 1, "\N{SNOWMAN}")):
+        sizes = some((236, 237, 242, 243, 246, 249, 250, 251, LONGEST), 4)
+        for name in (*map(name_of, sizes), name_of(LONGEST, "\N{GREEK SMALL LETTER PHI}"), name_of(LONGEST - 1, "\N{SNOWMAN}")):
             with self.subTest(size=len(name.encode())):
                 self.run_scene("-o", name)
                 self.assertEqual(self.digest(name), digest)
@@ -46,7 +47,7 @@ class Names(Case):
     def test_a_run_with_the_longest_name_is_killed_and_goes_on(self):
         self.write(SLOW)
         self.run_scene("-o", "straight.h5")
-        for size in (243, LONGEST):
+        for size in (243, LONGEST) if EVERY else (LONGEST,):
             name = name_of(size)
             process = self.popen("run", "scene.json", "--no-progress", "-o", name, "--checkpoint-every", "50ms")
             while not list(self.folder.glob("*/p0000_r00000.state")):

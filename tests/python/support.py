@@ -14,6 +14,8 @@ import jostle
 
 PROGRAM = os.environ["JOSTLE"]
 SOURCE = pathlib.Path(os.environ["SOURCE"])
+# Set where all cases are tried, beside the test of every day that tries some.
+EVERY = bool(os.environ.get("JOSTLE_EVERY"))
 
 # Two strengths in two boxes, three realizations, with everything that is stored of a run.
 TINY = {

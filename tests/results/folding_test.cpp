@@ -177,7 +177,7 @@ TEST_CASE("parts that go on while they are read give what was there") {
   CHECK(early->vectors(60'000, kept_positions).empty());
 }
 
-TEST_CASE("a fold of snapshots takes little memory, however large the run") {
+TEST_CASE("a fold of snapshots takes little memory, however large the run", "[slow]") {
   check_memory_of_fold(false);
 }
 

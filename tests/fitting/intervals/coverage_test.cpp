@@ -82,14 +82,22 @@ void check_coverage(const Study& study, int curves, bool sigma_given) {
   }
 }
 
-}  // namespace
-
-TEST_CASE("intervals hold the truth as often as they say, in 100 curves", "[statistics]") {
-  for (const Study& study : studies()) check_coverage(study, 100, false);
+void check_coverages(int curves) {
+  for (const Study& study : studies()) check_coverage(study, curves, false);
   // Errors given: the power law's are relative, so it is left to the others.
   for (const Study& study : studies()) {
-    if (std::string(study.model) != "power_law") check_coverage(study, 100, true);
+    if (std::string(study.model) != "power_law") check_coverage(study, curves, true);
   }
+}
+
+}  // namespace
+
+TEST_CASE("intervals hold the truth as often as they say, in 40 curves", "[statistics]") {
+  check_coverages(40);
+}
+
+TEST_CASE("intervals hold the truth as often as they say, in 100 curves", "[slow]") {
+  check_coverages(100);
 }
 
 TEST_CASE("intervals hold the truth as often as they say, in 1000 curves", "[nightly]") {

@@ -226,7 +226,7 @@ TEST_CASE("Intervals of chi_4 hold the truth as often as they say", "[statistics
   std::fflush(stdout);
 }
 
-TEST_CASE("Errors of mean squares, overlaps, exponents and ratios hold the truth", "[statistics]") {
+TEST_CASE("Errors of mean squares, overlaps, exponents and ratios hold the truth", "[slow]") {
   RandomStream random = test_stream(42);
   for (const std::size_t realizations : sizes)
     for (const bool mobile : {false, true}) {
