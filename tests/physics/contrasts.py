@@ -1,7 +1,10 @@
 """Contrasts of the reduced tables: means of points less means of others, variances pooled over all points of a
-column (Estimate.pooled), or each point's own (Welch 1947) where they differ."""
+column (Estimate.pooled), or each point's own (Welch 1947) where they differ. contrasts_of_beds.py has those of data
+bed by bed."""
+import re
+
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 from reduce import REDUCED, read_table
 from verdicts import Estimate
@@ -175,72 +178,142 @@ def third_layer_fills():
     return [contrast(last + first, [1, -1], 3, False)]
 
 
-def window(observable, point, tap, other=None):
-    """The mean over realizations of a series of dr6-windows at a tap, less that at another."""
-    header, *rows = read_table(REDUCED / "dr6-windows" / "series.csv")
-    at = header.index(observable)
-
-    def values(when):
-        return np.array([float(row[at]) for row in rows if row[0] == str(point) and row[2] == str(when)])
-    return [Estimate.of(values(tap) - (0 if other is None else values(other)))]
-
-
-def floor_15_at_0():
-    return window("floor_15", 1, 0)
+def stated(run, numbers, dof):
+    """The numbers that a run's statements print, [(statement, which)] -> Estimates with one variance for all of them:
+    the same kind of difference between beds of one size."""
+    rows = {row[0]: row[1] for row in read_table(REDUCED / run / "statements.csv")[1:]}
+    pairs = [re.findall(r"(-?\d+\.?\d*) ± (\d+\.?\d*)", rows[statement])[which] for statement, which in numbers]
+    halves = np.array([float(half) for _, half in pairs])
+    error = np.sqrt(np.mean(halves**2)) / stats.t.ppf(T68, dof)
+    return [Estimate(float(value), float(error), dof * len(pairs)) for value, _ in pairs]
 
 
-def floor_15_at_50():
-    return window("floor_15", 1, 50)
+GOTOH = "P0({}) is near Gotoh's at the packing's own Phi (a tenth), tap {}"
 
 
-def floor_15_at_250():
-    return window("floor_15", 1, 250)
+def gotoh(place):
+    """P0 less Gotoh's, 10^-3, at sigma = 1.2 and 1.4, taps 0 and 400."""
+    return [stated("pb9", [(GOTOH.format(sigma, tap), 0) for tap in (0, 400) for sigma in (1.2, 1.4)], 2)[place]]
 
 
-def floor_15_gain():
-    return window("floor_15", 1, 250, 50)
+def gotoh_at_12_first():
+    return gotoh(0)
 
 
-def floor_18_at_0():
-    return window("floor_18", 1, 0)
+def gotoh_at_14_first():
+    return gotoh(1)
 
 
-def floor_18_at_50():
-    return window("floor_18", 1, 50)
+def gotoh_at_12_last():
+    return gotoh(2)
 
 
-def floor_18_at_250():
-    return window("floor_18", 1, 250)
+def gotoh_at_14_last():
+    return gotoh(3)
 
 
-def short_step_at_50():
-    return window("floor_15", 0, 50)
+SLOPE = "the spectrum falls as f^-s, s from 1 to 1.5, at eps^(1/2) = {:.3f}"
 
 
-def short_step_at_250():
-    return window("floor_15", 0, 250)
+def slope(place):
+    """Slopes of the spectra at four strengths, one variance."""
+    return [stated("pb3", [(SLOPE.format(x), 0) for x in (0.15, 0.2, 0.25, 0.3)], 3)[place]]
 
 
-def floor_stop_at_250():
-    return window("floor_15", 2, 250)
+def slope_15():
+    return slope(0)
 
 
-def floor_stop_later_at_250():
-    return window("floor_15", 3, 250)
+def slope_20():
+    return slope(1)
 
 
-def middle_at_250():
-    return window("bulk_fraction", 1, 250)
+def slope_25():
+    return slope(2)
 
 
-def neighbours_are_normal():
-    """R2 of a normal law with its own mean and width through the shares at a friction of 0.1."""
-    header, *rows = read_table(REDUCED / "dr7-9" / "2.csv")
-    row = next(row for row in rows if row[0].endswith("friction 0.1"))
-    shares = np.array([float(cell.split(" ± ")[0]) for cell in row[1:]])
-    counts = np.array(header[1:], float)
-    mean = shares @ counts / shares.sum()
-    width = np.sqrt(shares @ (counts - mean)**2 / shares.sum())
-    misfit = np.sum((shares - stats.norm.pdf(counts, mean, width))**2)
-    r2 = float(1 - misfit / np.sum((shares - shares.mean())**2))
-    return r2, r2
+def slope_30():
+    return slope(3)
+
+
+BEST, FREEZES = "theta_0 = pi/4 compacts most, d_max = R/5", "a {} d_max freezes the bed"
+FORM = "the width of the law matters, not its form: {} (0.002)"
+
+
+def form(place):
+    """The gain with another law less that with the Gaussian; the variance of all nine paired differences of the run."""
+    return [stated("pb-moves", [(FORM.format("exponential"), 0), (FORM.format("linear"), 0),
+                                *((BEST, k) for k in range(5)), (FREEZES.format("very small"), 0),
+                                (FREEZES.format("large"), 0)], 2)[place]]
+
+
+def exponential_form():
+    return form(0)
+
+
+def linear_form():
+    return form(1)
+
+
+def alpha_hysteresis():
+    """10^3 alpha R at 0.40, up again less up: two visits of one strength."""
+    header, *rows = read_table(REDUCED / "pb4-hysteresis" / "2.csv")
+    found = [(row[0], *map(float, row[3].split(" ± "))) for row in rows if row[0] in ("8000", "22000")]
+    points = [(tap, value, half / stats.t.ppf(T68, 3)) for tap, value, half in found]
+    return [contrast(points, [-1, 1], 3, False)]
+
+
+def grown_by_tap_100():
+    """Phi at Gamma = 2, tap 100 less tap 0."""
+    first, last = (column("dr10-14", 1, tap, 3, lambda row: row[0] == "Gamma = 2") for tap in ("0", "100"))
+    return [contrast(first + last, [-1, 1], 3, False)]
+
+
+def ages(lag):
+    """ln A at a lag, age 3 less age 1000: the sum of five steps, their errors added as if they went together."""
+    steps = ((3, 10), (10, 30), (30, 100), (100, 300), (300, 1000))
+    parts = [stated("pb5", [(f"A falls with age: from t_W = {a} to {b} at lag {lag}", 0)], 47)[0] for a, b in steps]
+    return [Estimate(sum(p.value for p in parts), sum(p.error for p in parts), 47)]
+
+
+def ages_at_10():
+    return ages(10)
+
+
+def ages_at_100():
+    return ages(100)
+
+
+def eq6_is_concave():
+    """ln 9 less ln A(9) / A(1), each age from 3 to 100: eq. 6 is concave in the lag and begins at 0, so that A(9) is at
+    most 9 A(1). The half widths of both are added."""
+    found = []
+    for row in read_table(REDUCED / "pb5" / "1.csv")[1:5]:
+        (first, low, high), (ninth, low_9, high_9) = (
+            map(float, re.fullmatch(r"([\d.e+]+) \(([\d.e+]+) to ([\d.e+]+)\)", cell).groups()) for cell in row[1:3])
+        half = np.log(high / low) / 2 + np.log(high_9 / low_9) / 2
+        found.append(Estimate(float(np.log(9 * first / ninth)), float(half), 47))
+    return found
+
+
+def inverse_log_at_weak_lift():
+    """Phi less the inverse log fitted to the means, lift 0.1, at each kept tap; the variance of all of them."""
+    header, *rows = read_table(REDUCED / "dr4" / "1.csv")
+    taps = np.array([0.0] + [float(name) for name in header[2:8]])
+    pairs = [cell.split(" ± ") for cell in rows[0][1:8]]
+    phi = np.array([float(value) for value, _ in pairs])
+    error = np.sqrt(np.mean([float(half)**2 for _, half in pairs])) / stats.t.ppf(T68, 2)
+    misfits = [misfit_of_inverse_log(taps, phi, log_tau) for log_tau in np.arange(-4, 8, 0.25)]
+    best = min(misfits, key=lambda misfit: np.sum(misfit**2))
+    return [Estimate(float(value), float(error), 2 * len(taps)) for value in best]
+
+
+def misfit_of_inverse_log(taps, phi, log_tau):
+    """Residuals of the least squares in the other three parameters at one tau."""
+    grown = np.log1p(taps / np.exp(log_tau))
+
+    def residuals(b):
+        basis = np.column_stack([np.ones_like(taps), 1 / (1 + np.exp(b) * grown)])
+        return phi - basis @ np.linalg.lstsq(basis, phi, rcond=None)[0]
+    best = optimize.minimize_scalar(lambda b: np.sum(residuals(b)**2), bounds=(-8, 4), method="bounded")
+    return residuals(best.x)

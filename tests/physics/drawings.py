@@ -1,11 +1,14 @@
 """Draws the figures of docs/validation from the reduced data, the papers' printed numbers as black circles."""
+import re
+
 import matplotlib
 import numpy as np
-from scipy import stats
 
 from pictures import COLOURS, Picture, curves_of, value_of
-from distributions import distribution
 from reduce import REDUCED, read_table
+from special_drawings import (draw_ageing, draw_densities, draw_free_volumes, draw_increases,
+                              draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours, draw_snapshots, draw_surface,
+                              draw_tails, draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
 matplotlib.use("svg")
@@ -14,8 +17,6 @@ from matplotlib import pyplot  # noqa: E402
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "jostle", "font.size": 8, "legend.fontsize": 6, "axes.grid": True,
          "grid.alpha": 0.25, "legend.framealpha": 0.7, "lines.linewidth": 1, "font.family": "DejaVu Sans"}
 TAPS, STRENGTH, PHI, MARKS = "taps", "eps^(1/2)", "packing fraction", "osD^v<>p"
-PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
-NORMAL = tuple((n, float(stats.norm.pdf(n, 7.2713, 1.2550))) for n in range(3, 13))
 
 # figure: its panels, each a list of (run, table, picture).
 PANELS = {
@@ -25,27 +26,36 @@ PANELS = {
             [("pb3", 1, Picture(STRENGTH, "slope of the spectrum", columns="^slope"))]],
     "pb4": [[("pb4-bell", 1, Picture(STRENGTH, "Phi_c", columns="3001")),
              ("pb4-hysteresis", 1, Picture(STRENGTH, "Phi_c"))]],
-    "pb5": [[("pb5", 1, Picture("lag, taps", "10^4 A, square diameters", across=True, columns="lag", log="xy"))]],
     "pb6": [[("pb6-8", 1, Picture("height, diameters", PHI, across=True))]],
     "pb7": [[("pb6-8", 2, Picture("distance to a wall, diameters", PHI, across=True))]],
-    "pb9": [[("pb9", 1, Picture("sigma", "P0", columns="P0|Gotoh"))]],
-    "pb10": [[("pb10", 1, Picture(TAPS, "sphere volumes", columns="^(nu|v0)$", log="x"))],
-             [("pb10", 2, Picture("v, sphere volumes", "rho_v", across=True, log="y"))]],
     "pb-moves": [[("pb-moves", 1, Picture("d_max, diameters", "10^4 gain of Phi_c", across=True, log="x"))]],
     "pb-sides": [[("pb-sides", 1, Picture(TAPS, "Phi_c", across=True, log="x"))]],
     "dr2": [[("dr2-wide", 1, Picture(TAPS, PHI, across=True, log="x"))]],
     "dr3": [[("dr3", 1, Picture(PHI, "N_c", columns="N_c of the region", x_column=2))]],
-    "dr4": [[("dr4", 1, Picture(TAPS, PHI, across=True, log="x"))]],
-    "dr5": [[("dr5", 1, Picture(TAPS, PHI, across=True, log="x"))]],
-    "dr7": [[("dr7-9", 1, Picture("friction", PHI, columns="^Phi, the", paper=((0, 0.6366), (0.1, 0.6088))))]],
-    "dr8": [[("dr7-9", 2, Picture("neighbours", "share of the spheres", across=True, rows="0.1$", paper=NORMAL))]],
+    "dr4": [[("dr4", 1, Picture(TAPS, PHI, across=True, log="x"))],
+            [("dr4", 1, Picture("lift, diameters", PHI, columns="^400$"))]],
+    "dr5": [[("dr5", 1, Picture(TAPS, PHI, across=True, log="x"))],
+            [("dr5", 1, Picture("lift, diameters", PHI, columns="^500$"))]],
     "dr10": [[("dr10-14", 1, Picture(TAPS, PHI, across=True, rows="Gamma = 2", log="x",
                                      paper=((0, 0.609), (898, 0.6997))))]],
-    "dr11": [[("dr10-14", 1, Picture(TAPS, PHI, across=True, rows="^Gamma = 0.5", log="x"))]],
+    "dr11": [[("dr10-14", 1, Picture(TAPS, PHI, across=True, rows="^Gamma = [0-9.]*$", log="x"))]],
     "dr13": [[("dr10-14", 3, Picture("height, diameters", PHI, across=True))],
              [("dr10-14", 4, Picture("height, diameters", "n(z)", across=True, rows="2, tap|0.5"))]],
     "both-engines": [[("both-engines", 1, Picture(TAPS, PHI, across=True, log="x"))]],
 }
+
+
+# What legends call a curve of the tables, in this order.
+NAMES = ((r'tap = \{"lift":([0-9.]+)\}', r"lift \1"), (r'tap = \{"dilate_floor_held":0.025\}', "held dilation 1.025"),
+         (r"^3001 to 4000 \(pb4-bell\)", "each from the poured bed"), (r"^Phi_c, (.*) \(pb4-hysteresis\)", r"one bed, \1"),
+         (r"^(400|500)$", r"after \1 taps"), ("^Gamma = 2$", "Gamma = 2, mean"), ("^Gamma = 2, realization", "bed"),
+         (r"^([0-9.]+ pi)$", r"theta_0 = \1"))
+
+
+def legend_of(name):
+    for pattern, word in NAMES:
+        name = re.sub(pattern, word, name)
+    return name
 
 
 def draw_curves(axes, parts):
@@ -56,7 +66,7 @@ def draw_curves(axes, parts):
                 continue
             x, y, low, high = np.array(points, float).T
             hollow = run == "pb4-hysteresis"
-            axes.errorbar(x, y, yerr=[y - low, high - y], label=f"{name} ({run})" if len(parts) > 1 else name,
+            axes.errorbar(x, y, yerr=[y - low, high - y], label=legend_of(f"{name} ({run})" if len(parts) > 1 else name),
                           marker=MARKS[index % 8], color=COLOURS[index % 8], markersize=3, capsize=1, elinewidth=.6,
                           markerfacecolor="white" if hollow else COLOURS[index % 8])
             lowest, index = min(lowest, x.min()), index + 1
@@ -66,7 +76,10 @@ def draw_curves(axes, parts):
         axes.set_xscale("symlog" if lowest <= 0 else "log", **({"linthresh": 1} if lowest <= 0 else {}))
     axes.set_yscale("log" if "y" in picture.log else "linear")
     axes.set(xlabel=picture.x, ylabel=picture.y)
-    axes.legend()
+    axes.margins(y=0.12)
+    if picture.x.startswith("distance to a wall"):
+        axes.axvline(3.5, color="k", linestyle=":", linewidth=.8, label="7 R")
+    axes.legend(**({"ncols": 3, "loc": "lower center", "bbox_to_anchor": (0.5, 1.0)} if index > 5 else {}))
 
 
 def save(figure, target):
@@ -74,70 +87,53 @@ def save(figure, target):
     pyplot.close(figure)
 
 
-def draw_increases(axes):
-    """[PB] 8: lateral and central increase of four strengths."""
-    header, *rows = read_table(REDUCED / "pb6-8" / "3.csv")
-    for panel, name in zip(axes, ("d Phi lateral", "central")):
-        at = header.index(name)
-        for k, point in enumerate(dict.fromkeys(row[0] for row in rows)):
-            taps, values = zip(*((float(row[1]), value_of(row[at])[0]) for row in rows if row[0] == point))
-            panel.plot(taps, values, marker=MARKS[k], color=COLOURS[k], markersize=3, label=point)
-        panel.set_xscale("symlog", linthresh=1)
-        panel.set(xlabel=TAPS, ylabel=name)
-    axes[0].legend()
-
-
-def draw_layers(axes):
-    """[DR] 6: density from the floor, and n(y/d) at three taps with the heights of hcp layers."""
-    header, *rows = read_table(REDUCED / "dr6-windows" / "series.csv")
-    for k, (point, name) in enumerate((("0", "first step 0.1"), ("1", "0.2"), ("2", "0.2, stop 0 to 15 d"),
-                                       ("3", "0.2, so, start off"))):
-        taps = sorted({int(row[2]) for row in rows})
-        values = [np.array([float(row[header.index("floor_15")]) for row in rows
-                            if row[0] == point and row[2] == str(tap)]) for tap in taps]
-        axes[0].errorbar(taps, [v.mean() for v in values], [v.std(ddof=1) / len(v)**.5 for v in values],
-                         color=COLOURS[k], label=name, elinewidth=.6)
-    axes[0].plot(*zip(*PRINTED), "ko", markerfacecolor="none", label="the paper", zorder=5)
-    axes[0].set(xlabel=TAPS, ylabel="packing fraction, 0 to 15 d")
-    axes[0].set_xscale("symlog", linthresh=1)
-    axes[0].legend()
-    shares = distribution("dr6-windows", 1, "n")
-    for panel, tap in zip(axes[1:], (0, 50, 250)):
-        z, n, _ = shares[tap]
-        for layer in range(10):
-            panel.axvline(0.5 + layer * (2 / 3)**.5, color="#bbbbbb", linewidth=.5)
-        panel.plot(z, n, color=COLOURS[0], linewidth=.7)
-        panel.set(xlabel="y/d", ylabel="n", title=f"{tap} taps", xlim=(0, 23))
-
-
-def draw_map(axes):
-    """[DR] 15: improvement over amplitude and frequency."""
-    header, *rows = read_table(REDUCED / "dr15" / "1.csv")
-    values = [[value_of(cell)[0] for cell in row[1:]] for row in rows]
-    image = axes.imshow(values, origin="lower", cmap="viridis", aspect="auto")
-    axes.set_xticks(range(len(header) - 1), header[1:])
-    axes.set_yticks(range(len(rows)), [row[0] for row in rows])
-    axes.grid(False)
-    for i, line in enumerate(values):
-        for j, value in enumerate(line):
-            axes.text(j, i, f"{value:g}", ha="center", va="center", color="white" if value < 1.5 else "black")
-    axes.figure.colorbar(image, label="improvement, %")
+# figure: how many panels, and what draws them.
+SPECIAL = {"pb5": (2, draw_ageing), "pb8": (2, draw_increases),
+           "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
+           "dr9": (1, draw_free_volumes), "dr15": (1, draw_map)}
 
 
 def draw_figure(name, target):
     with pyplot.rc_context(STYLE):
-        panels = {"pb8": 2, "dr6": 4, "dr15": 1}.get(name) or len(PANELS[name])
+        panels = SPECIAL[name][0] if name in SPECIAL else len(PANELS[name])
         rows, columns = (2, 2) if panels == 4 else (1, panels)
-        figure, axes = pyplot.subplots(rows, columns, figsize=(3.6 * columns + .4, 2.7 * rows), squeeze=False,
-                                       layout="constrained")
+        surface = name == "dr13"  # beside its panels
+        size = (5.2, 4.4) if name == "dr1" else (3.6 * (columns + surface) + .4, 2.7 * rows)
+        figure, axes = pyplot.subplots(rows, columns + surface, figsize=size, squeeze=False, layout="constrained")
         axes = axes.ravel()
-        if name in ("pb8", "dr6"):
-            (draw_increases if name == "pb8" else draw_layers)(axes)
-        elif name == "dr15":
-            draw_map(axes[0])
+        if name in SPECIAL:
+            SPECIAL[name][1](axes)
         else:
             for panel, parts in zip(axes, PANELS[name]):
                 draw_curves(panel, parts)
+        if surface:
+            axes[-1].remove()
+            draw_surface(figure.add_subplot(rows, columns + 1, columns + 1, projection="3d"))
+        save(figure, target)
+
+
+def draw_strongest(target):
+    """The six strongest results, one panel each, for the README."""
+    with pyplot.rc_context(STYLE | {"font.size": 7, "axes.titlesize": 7}):
+        figure, axes = pyplot.subplots(2, 3, figsize=(9, 4.6), layout="constrained")
+        axes = axes.ravel()
+        draw_curves(axes[0], PANELS["pb4"][0])
+        draw_curves(axes[1], PANELS["pb7"][0])
+        draw_tails(axes[2])
+        draw_densities(axes[3], (1,))
+        draw_pours([axes[4]])
+        for name, table, word in (("dr4", "400", "poured, 400 taps"), ("dr5", "500", "from a crystal, 500 taps")):
+            ((_, points),) = curves_of(read_table(REDUCED / name / "1.csv"), Picture("", "", columns=f"^{table}$"))
+            x, y, low, high = np.array(points).T
+            axes[5].errorbar(x, y, [y - low, high - y], marker=MARKS[name == "dr5"],
+                             color=COLOURS[name == "dr5"], markersize=3, capsize=1, label=word)
+        axes[5].set(xlabel="lift, diameters", ylabel=PHI)
+        axes[5].legend()
+        for panel, title in zip(axes, (
+                "PB 4: a bell, and denser beds on the way down", "PB 7: three layers at a wall",
+                "PB 10: the tail of large pores shrinks", "DR 6: compatible with 0.567, 0.578, 0.597",
+                "DR 7: poured beds are looser with friction", "DR 4, 5: densest at a lift of 0.25 to 0.3")):
+            panel.set_title(title)
         save(figure, target)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 import contrasts
+import contrasts_of_beds
 from reduce import REDUCED, read_table
 from verdicts import LEVEL, Estimate, detectable, p_beyond, p_text, p_two_sided, p_within
 
@@ -23,7 +24,7 @@ NUMBER = r"-?\d+\.?\d*"
 class Claim:
     """One statement and how it is tested.
 
-    kind: positive (every estimate above 0), within (every estimate within the margin of 0), printed (a number
+    kind: positive (every estimate above 0; with `relevant`, refuted where it is shown to be less), within (every estimate within the margin of 0), printed (a number
     with its error; margin: its rounding; relevant: what a test with power must find), interval (low and high,
     compared with wanted), p (a p-value of the program, in favour or not), refute (a p-value of a test that can
     only refute and had power), shown (by the intervals in note), seen (in single beds), none (not tested),
@@ -32,13 +33,13 @@ class Claim:
     text: str
     kind: str
     run: str = ""
-    source: str = ""          # the statement's row in statements.csv, or the name of a function of contrasts.py
+    source: str = ""          # the statement's row in statements.csv, or "=" and a function of contrasts.py
     pick: tuple = (0,)        # which "a ± b" of that row
     dof: float = 0.0          # 0: as the row says
     margin: float = 0.0
     printed: float = np.nan
     printed_error: float = 0.0
-    relevant: float = np.inf
+    relevant: float = np.inf  # printed: what a test with power must find; positive: the least effect that counts
     bounds: tuple = ()        # of an interval that the program printed
     wanted: tuple = ()
     p: float = np.nan
@@ -66,6 +67,12 @@ def from_half_width(value, half, dof):
     return Estimate(value, half / stats.t.ppf(0.5 + 0.3413447460685429, dof), dof)
 
 
+def of_contrast(claim):
+    """What the contrast gives that a claim names as its source."""
+    name = claim.source[1:]
+    return getattr(contrasts if hasattr(contrasts, name) else contrasts_of_beds, name)()
+
+
 def row_of(claim):
     """The numbers found and the degrees of freedom of a statement of a run."""
     for statement, found, test in read_table(REDUCED / claim.run / "statements.csv")[1:]:
@@ -77,7 +84,7 @@ def row_of(claim):
 
 def estimates_of(claim):
     if claim.source.startswith("="):
-        return getattr(contrasts, claim.source[1:])()
+        return of_contrast(claim)
     found, dof = row_of(claim)
     pairs = re.findall(rf"({NUMBER}) ± ({NUMBER})", found)
     return [from_half_width(float(pairs[k][0]), float(pairs[k][1]), dof) for k in claim.pick]
@@ -92,12 +99,17 @@ def text_of(estimate):
 
 
 def positive(claim, estimates):
-    """Every estimate is above 0: the largest p; refuted where one is below (Bonferroni)."""
+    """Every estimate is above 0: the largest p; refuted where one is below (Bonferroni), or below the least effect that
+    the claim calls relevant."""
     favours = all(estimate.value > 0 for estimate in estimates)
     p = max(map(p_two_sided, estimates)) if favours else min(1.0, len(estimates) * min(
         p_two_sided(estimate) for estimate in estimates if estimate.value <= 0))
-    status = UNDERPOWERED if p >= LEVEL else REPRODUCED if favours else NOT
-    return status, p, "t-test" + "s of all" * (len(estimates) > 1)
+    name = "t-test" + "s of all" * (len(estimates) > 1)
+    if p >= LEVEL and np.isfinite(claim.relevant):
+        less = min(1.0, len(estimates) * min(float(stats.t.sf((claim.relevant - e.value) / e.error, e.dof))
+                                             for e in estimates))
+        return NOT if less < LEVEL else UNDERPOWERED, less, f"above 0, or below {claim.relevant:g}"
+    return UNDERPOWERED if p >= LEVEL else REPRODUCED if favours else NOT, p, name
 
 
 def within(claim, estimates):
@@ -136,7 +148,7 @@ def score(claim):
         found = claim.note or row_of(claim)[0]
         return Score(claim, status, found, "test of the program", claim.p)
     if claim.kind == "interval":
-        low, high = claim.bounds or getattr(contrasts, claim.source[1:])()
+        low, high = claim.bounds or of_contrast(claim)
         return Score(claim, of_interval(claim, low, high), f"{low:.4g} to {high:.4g}" if high > low else f"{low:.4g}",
                      "95 % interval" if high > low else "value")
     if claim.kind in ("shown", "seen"):

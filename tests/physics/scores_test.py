@@ -49,7 +49,7 @@ def each_figure_has_at_most_eight_statements(scores):
     check({s.claim.figure for s in scores} == set(FIGURES), "figures without a page")
     check({s.status for s in scores} <= set(STATUS), "status words")
     found = counts(scores)
-    check(sum(found[word] for word in DECIDED) / sum(found.values()) >= 0.66, "decided", found)
+    check(sum(found[word] for word in DECIDED) / sum(found.values()) >= 0.85, "decided", found)
 
 
 def beds(random, points, realizations, means):
@@ -101,6 +101,41 @@ def margins_keep_their_size(random):
         found = rates([within(claim, [Estimate.of(random.normal(truth, 0.0025, 8))])[0] for _ in range(ENSEMBLES)])
         for word, bound in bounds.items():
             at_most(found[word], bound, f"within, truth {truth}: {word}")
+
+
+def least_effects_keep_their_size(random):
+    """An effect of the least size that counts is refuted in at most 5 %; none at all is found in at most 2.5 %, and
+    refuted with power."""
+    claim = Claim("", "", "positive", relevant=0.005)
+    for truth, bounds in ((0.005, {NOT: LEVEL}), (0.0, {REPRODUCED: LEVEL / 2, UNDERPOWERED: 1 - POWER})):
+        found = rates([positive(claim, [Estimate.of(random.normal(truth, 0.005, 8))])[0] for _ in range(ENSEMBLES)])
+        for word, bound in bounds.items():
+            at_most(found[word], bound, f"relevant 0.005, truth {truth}: {word}")
+
+
+def laws_that_do_not_fit_are_found(random):
+    """Means about an inverse log but for one tap, so far off that the best inverse log misses it by the margin: in at
+    most 5 % it is said to fit. An inverse log itself fits with power."""
+    taps = np.array([0, 1, 10, 50, 100, 250, 400], float)
+    law = 0.61 - 0.035 / (1 + 0.25 * np.log1p(taps / 2))
+    claim = Claim("", "", "within", margin=0.005)
+
+    def best(phi):
+        return min((contrasts.misfit_of_inverse_log(taps, phi, log_tau) for log_tau in range(-4, 8, 2)),
+                   key=lambda misfit: np.sum(misfit**2))
+    bump = np.where(taps == 50, 1.0, 0.0)
+    bump *= 0.005 / np.max(np.abs(best(law + 0.005 * bump))) * 0.005
+    for truth, word, bound in ((law + bump, REPRODUCED, LEVEL), (law, UNDERPOWERED, 1 - POWER)):
+        found = rates([within(claim, [Estimate(float(m), 0.0015, 14) for m in best(
+            truth + random.normal(0, 0.0015, len(taps)))])[0] for _ in range(ENSEMBLES // 3)])
+        at_most(found[word], bound, f"inverse log, {word}")
+
+
+def rows_of_one_statement_share_a_variance():
+    """stated(): the values as printed, the root mean square of their errors, all degrees of freedom."""
+    found = [contrasts.slope(k)[0] for k in range(4)]
+    check(len({e.error for e in found}) == 1 and found[0].dof == 12, found)
+    check([e.value for e in found] == [-1.71, -1.57, -1.42, -1.30], found)
 
 
 def printed_numbers(random):
@@ -163,9 +198,11 @@ def main():
     each_figure_has_at_most_eight_statements(scores)
     pages_are_those_of_the_reduced_data()
     words_of_figures()
+    rows_of_one_statement_share_a_variance()
     random = np.random.default_rng(51304)
     for test in (contrasts_keep_their_size, all_positive_keep_their_size, margins_keep_their_size, printed_numbers,
-                 tops_are_covered, false_decisions):
+                 tops_are_covered, false_decisions, least_effects_keep_their_size,
+                 laws_that_do_not_fit_are_found):
         test(random)
 
 

@@ -8,7 +8,7 @@ import re
 import sys
 import textwrap
 
-from drawings import draw_figure, draw_overview
+from drawings import draw_figure, draw_overview, draw_strongest
 from page_text import table
 from paper_runs import table_of
 from published import FIGURES, NO_DATA
@@ -51,6 +51,16 @@ def origin_of(run):
             f"revision {revisions}")
 
 
+def size_of(run):
+    """What a run of paper_runs.csv computes, in a line."""
+    scene, beds = PAPER_RUNS[run].scene, read_table(REDUCED / run / "beds.csv")[1:]
+    last = max(int(row[2]) for row in read_table(REDUCED / run / "series.csv")[1:])
+    per_point = [sum(row[0] == str(point) for row in beds) for point in range(PAPER_RUNS[run].points)]
+    least, most = min(per_point), max(per_point)
+    return (f"{scene['spheres']} spheres in {scene['container']['width']} x {scene['container']['width']} d, "
+            f"{scene['container']['sides']}, {last} taps, {least}{f' or {most}' * (most > least)} beds per sweep point.")
+
+
 def command_of(run):
     """The command that makes the reduced data of a run."""
     return f"./dev physics --hours 24 --only {run}" if run in PAPER_RUNS else f"./dev physics {run}"
@@ -70,7 +80,7 @@ def page_of(name, figure, scores):
     parts += ["## Runs", f"Scene: [{figure.scene}](../../config/scenes/{figure.scene}.json)"]
     for run in figure.runs:
         notes = notes_of(run)
-        lines = [f"- `{command_of(run)}`: {notes.get('here', '3456 spheres in 12 x 12 d, 250 taps, 20 realizations.')}"]
+        lines = [f"- `{command_of(run)}`: {notes.get('here') or size_of(run)}"]
         lines.append(f"  Reduced data: [{run}](../../tests/physics/reduced/{run}); {origin_of(run)}.")
         parts.append("\n".join("\n".join(textwrap.wrap(line, LONG, subsequent_indent="  ", initial_indent=""))
                                for line in lines))
@@ -126,10 +136,14 @@ def overview_page(scores):
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
              wrapped("The runs of most figures are no longer at hand: their reduced data are the numbers that an "
-                     "earlier page printed (means and errors over realizations). DR 6 has series per realization. " + NO_DATA),
+                     "earlier page printed (means and errors over realizations). DR 1 and 6 to 9 and the "
+                     "number of pores of PB 10 have data of each bed. " + NO_DATA),
              wrapped("Not scored, because the papers do not state them: steadiness by a test of drift, one straight "
-                     "line in DR 3, and KWW exponents of a few hundred taps beside laws fitted to many thousands."),
-             "Not scored: [both engines on the same beds](validation/both-engines.md)."]
+                     "line in DR 3, and KWW exponents of a few hundred taps beside laws fitted to many thousands. Ageing "
+                     "is one statement per lag; its single steps are own questions. sigma_Z is proportional to "
+                     "eps^(1/2), which contains that it rises."),
+             "Not scored: [snapshots of DR 1](validation/dr1.md), [both engines on the same "
+             "beds](validation/both-engines.md)."]
     return "\n\n".join(parts) + "\n"
 
 
@@ -139,6 +153,8 @@ def main(docs):
     folder.mkdir(parents=True, exist_ok=True)
     names = [name for name in FIGURES if any(s.claim.figure == name and not s.claim.own for s in scores)]
     draw_overview(scores, names, folder / "overview.svg")
+    (docs / "pictures").mkdir(exist_ok=True)
+    draw_strongest(docs / "pictures" / "validation.svg")
     for name, figure in FIGURES.items():
         draw_figure(name, folder / f"{name}.svg")
         (folder / f"{name}.md").write_text(page_of(name, figure, [s for s in scores if s.claim.figure == name]))

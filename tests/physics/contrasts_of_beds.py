@@ -1,0 +1,150 @@
+"""Contrasts of what beds.py reduced: numbers of each bed, so that differences are taken within beds."""
+import numpy as np
+from scipy import stats
+
+from distributions import label, numbers, series
+from verdicts import Estimate
+
+SPHERE = np.pi / 6
+FRICTIONS, ROUGH = 7, 2   # sweep points of dr-pours; the point of friction 0.1
+
+
+def window(observable, point, tap, other=None):
+    """The mean over realizations of a series of dr6-windows at a tap, less that at another."""
+    values = series("dr6-windows", point, observable, tap)
+    return [Estimate.of(values - (0 if other is None else series("dr6-windows", point, observable, other)))]
+
+
+def floor_15_at_0():
+    return window("floor_15", 1, 0)
+
+
+def floor_15_at_50():
+    return window("floor_15", 1, 50)
+
+
+def floor_15_at_250():
+    return window("floor_15", 1, 250)
+
+
+def floor_15_by_250():
+    return window("floor_15", 1, 250, 0)
+
+
+def floor_15_gain():
+    return window("floor_15", 1, 250, 50)
+
+
+def floor_18_at_0():
+    return window("floor_18", 1, 0)
+
+
+def floor_18_at_50():
+    return window("floor_18", 1, 50)
+
+
+def floor_18_at_250():
+    return window("floor_18", 1, 250)
+
+
+def short_step_at_50():
+    return window("floor_15", 0, 50)
+
+
+def short_step_at_250():
+    return window("floor_15", 0, 250)
+
+
+def floor_stop_at_250():
+    return window("floor_15", 2, 250)
+
+
+def floor_stop_later_at_250():
+    return window("floor_15", 3, 250)
+
+
+def middle_at_250():
+    return window("bulk_fraction", 1, 250)
+
+
+def layer_offsets(tap, layers=(2, 3)):
+    """Peaks of n(y/d) less the heights of hcp layers, first step 0.2."""
+    return [Estimate.of(numbers("dr6-windows", 1, f"layers/peak_{k}", tap) - (0.5 + (k - 1) * (2 / 3)**0.5))
+            for k in layers]
+
+
+def hcp_peaks():
+    return layer_offsets(250)
+
+
+def whole_bed(point):
+    """The fraction of a poured bed, [bed]: N spheres over the floor times twice the mean height."""
+    return SPHERE * 3456 / (144 * 2 * series("dr-pours", point, "mean_height", 0))
+
+
+def pours_fall():
+    """The fall of the fraction of the whole bed from each friction to the next, the same columns in pairs."""
+    beds = min(len(whole_bed(point)) for point in range(FRICTIONS))
+    return [Estimate.of(whole_bed(point)[:beds] - whole_bed(point + 1)[:beds]) for point in range(FRICTIONS - 1)]
+
+
+def smooth_pours():
+    assert label("dr-pours", 0) == "friction = 0"
+    return [Estimate.of(whole_bed(0))]
+
+
+def rough_pours():
+    assert label("dr-pours", ROUGH) == "friction = 0.1"
+    return [Estimate.of(whole_bed(ROUGH))]
+
+
+def rough_pours_middle():
+    return [Estimate.of(series("dr-pours", ROUGH, "bulk_fraction", 0))]
+
+
+def rough_pours_floor():
+    return [Estimate.of(series("dr-pours", ROUGH, "floor_15", 0))]
+
+
+def smooth_pours_middle():
+    return [Estimate.of(series("dr-pours", 0, "bulk_fraction", 0))]
+
+
+def smooth_pours_floor():
+    return [Estimate.of(series("dr-pours", 0, "floor_15", 0))]
+
+
+def neighbour_mean():
+    """The mean of the normal law fitted to the neighbours of all spheres of a bed."""
+    return [Estimate.of(numbers("dr-pours", ROUGH, "all/normal_mean", 0))]
+
+
+def neighbour_width():
+    return [Estimate.of(numbers("dr-pours", ROUGH, "all/normal_width", 0))]
+
+
+def neighbour_average():
+    return [Estimate.of(numbers("dr-pours", ROUGH, "all/neighbours", 0))]
+
+
+def normal_r2():
+    """The 95 % interval of R2 of those fits."""
+    found = Estimate.of(numbers("dr-pours", ROUGH, "all/normal_R2", 0))
+    half = found.error * stats.t.ppf(0.975, found.dof)
+    return found.value - half, found.value + half
+
+
+def spread_of_free_volumes():
+    """The 95 % interval of the deviation of beds' mean free volumes, as a share of their mean."""
+    values = numbers("dr-pours", ROUGH, "voronoi/mean_free_volume", 0)
+    dof = len(values) - 1
+    share = values.std(ddof=1) / values.mean()
+    return tuple(float(share * np.sqrt(dof / stats.chi2.ppf(p, dof))) for p in (0.975, 0.025))
+
+
+def pores_of_four(tap):
+    return numbers("pb-pores", 0, "pores/four_centres", tap)
+
+
+def pores_first():
+    return [Estimate.of(pores_of_four(0))]
