@@ -4,7 +4,8 @@
 
 namespace jostle::inline engine {
 
-SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, double height)
+SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, double height,
+                         double least_side)
     : open_top_(Boundary(container).has_floor()) {
   const Boundary boundary(container);
   if (!open_top_) height = boundary.height;
@@ -12,7 +13,7 @@ SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, do
     return std::max(1.0, boundary.width_x / side) * std::max(1.0, boundary.width_y / side) *
            std::max(1.0, height / side);
   };
-  double side = 1;
+  double side = least_side;
   while (cells(side) > most_cells(n_spheres)) side *= 1.5;
   const Vec3 periods = boundary.periods();
   x_ = CellAxis::over(0, boundary.width_x, periods.x, side);

@@ -9,14 +9,16 @@
 
 namespace jostle::inline engine {
 
-/// Spheres sorted into cells at least one diameter wide, for building a packing sphere by sphere in
-/// any legal container. Along a periodic direction every image is met, also where the box is so
-/// narrow that one sphere is met twice; upwards an open container grows as spheres arrive.
+/// Spheres sorted into cells at least one diameter wide, or `least_side`, for building a packing
+/// sphere by sphere in any legal container. Along a periodic direction every image is met, also
+/// where the box is so narrow that one sphere is met twice; upwards an open container grows as
+/// spheres arrive.
 class SphereCells {
  public:
   /// For about n_spheres up to about `height`: cells are widened where space is so empty that they
   /// would outnumber the spheres by far.
-  SphereCells(const Container& container, std::uint32_t n_spheres, double height);
+  SphereCells(const Container& container, std::uint32_t n_spheres, double height,
+              double least_side = 1);
 
   /// Adds a centre (wrapped, z >= 0) and returns its index: 0, 1, 2, ...
   std::uint32_t insert(Vec3 centre);

@@ -22,9 +22,12 @@ inline void throw_if_stopped(const StopAsked& stop) {
   if (stop && stop()) throw StartStopped();
 }
 
-std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
-                       const StopAsked& stop = {}, PourTally* tally = nullptr);
-/// Where one more sphere comes to rest on the bed. `sphere` names it where it finds no place.
+/// Pours the spheres in the order of pour_sequence(): placed ones from their places, each other one
+/// from a random place. Throws StartError where a placed sphere does not fit between the sides.
+std::vector<Vec3> pour(const Container& container, const StartSpheres& spheres,
+                       RandomStream& random, const StopAsked& stop = {},
+                       PourTally* tally = nullptr);
+/// Where the next sphere comes to rest on the bed. `sphere` names it where it finds no place.
 Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random,
               PourTally* tally = nullptr);
 /// A pour with periodic sides, fitted between walls: centres that overlap a wall are taken out and

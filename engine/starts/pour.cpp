@@ -18,6 +18,19 @@ Vec3 draw_drop(const PourBed& bed, RandomStream& random) {
   throw StartError("steepest-descent pour: no place to drop a sphere from; widen the container");
 }
 
+Vec3 pour_placed(const PourBed& bed, const PlacedSphere& placed) {
+  const auto refuse = [&](const std::string& why) {
+    throw StartError("steepest-descent pour: sphere " + std::to_string(placed.sphere) +
+                     " has the place (" + std::to_string(placed.x) + ", " +
+                     std::to_string(placed.y) + "), " + why);
+  };
+  const auto from = bed.over(placed.x, placed.y);
+  if (!from) refuse("where it overlaps a side; move it inwards");
+  const auto rest = descend(bed, *from);
+  if (!rest) refuse("from where it finds no place to rest; change it by a little");
+  return *rest;
+}
+
 }  // namespace
 
 Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, PourTally* tally) {
@@ -31,14 +44,20 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, Po
                    " drops; change the seed or the width by a little");
 }
 
-std::vector<Vec3> pour(const Container& container, std::uint32_t n_spheres, RandomStream& random,
-                       const StopAsked& stop, PourTally* tally) {
-  PourBed bed(container, n_spheres);
-  for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
+std::vector<Vec3> pour(const Container& container, const StartSpheres& spheres,
+                       RandomStream& random, const StopAsked& stop, PourTally* tally) {
+  PourBed bed = spheres.sizes ? PourBed(container, spheres.sizes) : PourBed(container, spheres.n);
+  std::vector<Vec3> centres(spheres.n);
+  std::size_t poured = 0;
+  for (const std::uint32_t sphere : pour_sequence(spheres, random)) {
     throw_if_stopped(stop);
-    bed.add(pour_one(bed, sphere, random, tally));
+    bed.next(sphere);
+    const std::size_t turn = poured++;
+    centres[sphere] = turn < spheres.placed.size() ? pour_placed(bed, spheres.placed[turn])
+                                                   : pour_one(bed, sphere, random, tally);
+    bed.add(centres[sphere]);
   }
-  return bed.centres();
+  return centres;
 }
 
 }  // namespace jostle::inline engine

@@ -23,32 +23,45 @@ double sine(double cosine) {
   return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
 }
 
-// Along the arc the (squared) gap to a sphere or flat wall is constant - (sideways s + up h).
+// Along the arc the (squared) gap to a sphere, flat wall or floor is constant - (sideways s + up
+// h).
 struct GapOnArc {
   double constant, sideways, up;
 };
 
 GapOnArc gap_on(const RollingArc& arc, const Obstacle& obstacle) {
-  if (obstacle.kind == Obstacle::Kind::wall) {
+  if (obstacle.kind != Obstacle::Kind::sphere) {
     return {gap(obstacle, arc.centre), -arc.radius * dot(obstacle.at, arc.sideways),
             -arc.radius * dot(obstacle.at, arc.up)};
   }
   const Vec3 away = obstacle.at - arc.centre;
-  return {arc.radius * arc.radius + norm_squared(away) - 1,
+  return {arc.radius * arc.radius + norm_squared(away) - obstacle.reach * obstacle.reach,
           2 * arc.radius * dot(away, arc.sideways), 2 * arc.radius * dot(away, arc.up)};
 }
 
-// The point (s, h) of the whole circle where it enters the obstacle; nothing if it never does.
 struct OnCircle {
   double s, h;
 };
 
-std::optional<OnCircle> entry(const RollingArc& arc, const Obstacle& obstacle) {
+// The points (s, h) of the whole circle where it enters the obstacle, and where it leaves it.
+struct Chord {
+  OnCircle entry, exit;
+  bool most;  // more than half of the circle lies inside
+};
+
+// Nothing if the circle never enters the obstacle.
+std::optional<Chord> chord(const RollingArc& arc, const Obstacle& obstacle) {
   const auto [k, a, b] = gap_on(arc, obstacle);
   const double squared = a * a + b * b;
   if (!(squared > k * k)) return std::nullopt;
   const double half_chord = std::sqrt(squared - k * k);
-  return OnCircle{(k * a - b * half_chord) / squared, (k * b + a * half_chord) / squared};
+  return Chord{{(k * a - b * half_chord) / squared, (k * b + a * half_chord) / squared},
+               {(k * a + b * half_chord) / squared, (k * b - a * half_chord) / squared},
+               k < 0};
+}
+
+bool at_most(double length, Vec3 v) {
+  return norm_squared(v) < length * length;
 }
 
 bool contains(std::span<const Obstacle> set, const Obstacle& obstacle) {
@@ -64,10 +77,11 @@ OnCircle on_quarter(double t) {
 }
 
 // Where the arc leaves the tube before it reaches the height `end` (a cosine).
-std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& tube, double end) {
+std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& tube, double end,
+                                        double unit) {
   if (gap(tube, arc.centre) > arc.radius) return std::nullopt;
   const auto found = first_contact(
-      half_angle(sine(arc.start), arc.start), half_angle(sine(end), end),
+      half_angle(sine(arc.start), arc.start), half_angle(sine(end), end), unit,
       [&](double t) {
         const OnCircle on = on_quarter(t);
         return gap(tube, arc.at(on.s, on.h));
@@ -81,49 +95,63 @@ std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& t
 
 }  // namespace
 
-RollingArc arc_on(Vec3 sphere, Vec3 p) {
-  const Vec3 across = {p.x - sphere.x, p.y - sphere.y, 0};
-  return directed({sphere, unit(across), vertical, 1, 1, 0}, p);
+RollingArc arc_on(const Obstacle& sphere, Vec3 p) {
+  const Vec3 across = {p.x - sphere.at.x, p.y - sphere.at.y, 0};
+  return directed({sphere.at, unit(across), vertical, sphere.reach, 1, 0}, p);
 }
 
-RollingArc arc_on(Vec3 sphere, Vec3 other, Vec3 p) {
-  const Vec3 apart = other - sphere;
+RollingArc arc_on(const Obstacle& sphere, const Obstacle& other, Vec3 p) {
+  const double a = sphere.reach, b = other.reach;
+  const Vec3 apart = other.at - sphere.at;
   const double squared = norm_squared(apart), length = std::sqrt(squared);
   const Vec3 axis = (1 / length) * apart;
   const Vec3 up = unit(vertical - axis.z * axis);
-  const double radius = std::sqrt(1 - 0.25 * squared);
-  // The share of the weight on the upper sphere vanishes where h up.z / radius = 2 |axis.z| /
-  // length.
-  const double end = std::min(1.0, 2 * radius * std::abs(axis.z) / (length * up.z));
-  return directed({0.5 * (sphere + other), unit(cross(axis, vertical)), up, radius, 1, end}, p);
+  // The circle's centre is so far from the sphere's, towards the other; beyond either where the
+  // sizes differ much.
+  const double along = 0.5 * (length + (a - b) * (a + b) / length);
+  const bool alike = a == b;
+  const Vec3 centre = alike ? 0.5 * (sphere.at + other.at) : sphere.at + along * axis;
+  const double radius = std::sqrt(alike ? a * a - 0.25 * squared : (a - along) * (a + along));
+  // The share of the weight on the upper sphere vanishes where h up.z / radius = |axis.z| / lever,
+  // the lever being the distance of the circle's centre from the lower one's.
+  const double lever = axis.z > 0 ? along : length - along;
+  const double end = lever > 0 ? std::min(1.0, radius * std::abs(axis.z) / (lever * up.z)) : 0;
+  return directed({centre, unit(cross(axis, vertical)), up, radius, 1, end}, p);
 }
 
-RollingArc arc_along_wall(Vec3 sphere, const Obstacle& wall, Vec3 p) {
-  const double distance = gap(wall, sphere);
-  const Vec3 centre = sphere - distance * wall.at;
-  const double radius = std::sqrt((1 - distance) * (1 + distance));
+RollingArc arc_along_wall(const Obstacle& sphere, const Obstacle& wall, Vec3 p) {
+  const double distance = gap(wall, sphere.at);
+  const Vec3 centre = sphere.at - distance * wall.at;
+  const double radius = std::sqrt((sphere.reach - distance) * (sphere.reach + distance));
   return directed({centre, cross(wall.at, vertical), vertical, radius, 1, 0}, p);
 }
 
 Vec3 follow(const RollingArc& arc, Vec3 p, std::span<const Obstacle> obstacles,
-            std::span<const Obstacle> supports) {
-  constexpr double rounding = 1e-12, touching = 1e-10, beside = 1e-6;
+            std::span<const Obstacle> supports, double unit) {
+  constexpr double rounding = 1e-12;
+  const double touching = 1e-10 * unit, beside = 1e-6 * unit;
   OnCircle first = {sine(arc.end), arc.end};
   bool met = false;
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind == Obstacle::Kind::tube || contains(supports, obstacle)) continue;
-    const auto on = entry(arc, obstacle);
-    if (!on || on->s < 0 || on->h <= first.h || on->h > arc.start + rounding) continue;
-    // What is touched already and not in the way is being left.
-    const bool left =
-        gap(obstacle, p) < touching && norm_squared(arc.at(on->s, on->h) - p) < beside * beside;
-    if (left) continue;
-    first = *on;
+    const auto cut = chord(arc, obstacle);
+    if (!cut) continue;
+    const OnCircle on = cut->entry;
+    if (on.s < 0 || on.h <= first.h) continue;
+    const bool behind = on.h > arc.start + rounding;
+    const bool touched = obstacle.kind != Obstacle::Kind::floor && gap(obstacle, p) < touching;
+    // What is touched already and not in the way is being left; the floor never is. Where the arc
+    // bends into what it touches, rounding may put the entry behind p.
+    const bool grazed = touched && !cut->most && at_most(beside, arc.at(on.s, on.h) - p);
+    if (grazed ? at_most(beside, arc.at(cut->exit.s, cut->exit.h) - p)
+               : behind && !(touched && cut->most))
+      continue;
+    first = behind ? OnCircle{sine(arc.start), arc.start} : on;
     met = true;
   }
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind != Obstacle::Kind::tube || contains(supports, obstacle)) continue;
-    if (const auto on = entry_into_tube(arc, obstacle, first.h)) {
+    if (const auto on = entry_into_tube(arc, obstacle, first.h, unit)) {
       first = *on;
       met = true;
     }
@@ -139,8 +167,8 @@ namespace {
 // parameter x in [0, 2], a quarter turn for each unit, at most 2 radians a unit.
 class TubePath {
  public:
-  TubePath(Vec3 sphere, const Obstacle& tube, Vec3 p) : sphere_(sphere), tube_(tube) {
-    const double ox = sphere.x - tube.at.x, oy = sphere.y - tube.at.y;
+  TubePath(const Obstacle& sphere, const Obstacle& tube, Vec3 p) : sphere_(sphere), tube_(tube) {
+    const double ox = sphere.at.x - tube.at.x, oy = sphere.at.y - tube.at.y;
     offset_ = std::sqrt(ox * ox + oy * oy);
     toward_ = {ox / offset_, oy / offset_, 0};
     aside_ = {-toward_.y, toward_.x, 0};
@@ -148,7 +176,8 @@ class TubePath {
     if (dot(out, aside_) < 0) aside_ = -1.0 * aside_;
     start_ = parameter(std::clamp(dot(out, toward_), -1.0, 1.0));
     const double level =
-        (tube.reach * tube.reach + offset_ * offset_ - 1) / (2 * tube.reach * offset_);
+        (tube.reach * tube.reach + offset_ * offset_ - sphere.reach * sphere.reach) /
+        (2 * tube.reach * offset_);
     reaches_bottom_ = !(level > -1);
     end_ = reaches_bottom_ ? 2 : parameter(std::min(level, 1.0));
   }
@@ -160,8 +189,9 @@ class TubePath {
   Vec3 at(double x) const {
     const OnCircle on = x <= 1 ? on_quarter(x) : turned(on_quarter(x - 1));
     Vec3 p = tube_.at + tube_.reach * (on.h * toward_ + on.s * aside_);
-    const double dx = p.x - sphere_.x, dy = p.y - sphere_.y;
-    p.z = sphere_.z + std::sqrt(std::max(0.0, 1 - dx * dx - dy * dy));
+    const double dx = p.x - sphere_.at.x, dy = p.y - sphere_.at.y;
+    p.z =
+        sphere_.at.z + std::sqrt(std::max(0.0, sphere_.reach * sphere_.reach - dx * dx - dy * dy));
     return p;
   }
 
@@ -180,8 +210,7 @@ class TubePath {
     return cosine >= 0 ? half_angle(sine(cosine), cosine) : 1 + half_angle(-cosine, sine(cosine));
   }
 
-  Vec3 sphere_;
-  Obstacle tube_;
+  Obstacle sphere_, tube_;
   Vec3 toward_, aside_;
   double offset_ = 0, start_ = 0, end_ = 2;
   bool reaches_bottom_ = false;
@@ -189,25 +218,25 @@ class TubePath {
 
 }  // namespace
 
-TubePathEnd follow_tube(Vec3 sphere, const Obstacle& tube, Vec3 p,
-                        std::span<const Obstacle> obstacles) {
-  constexpr double touching = 1e-10;
+TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
+                        std::span<const Obstacle> obstacles, double unit) {
+  const double touching = 1e-10 * unit;
   const TubePath path(sphere, tube, p);
   const auto free_distance = [&](double x) {
     const Vec3 here = path.at(x);
     double least = std::numeric_limits<double>::infinity();
     for (const Obstacle& obstacle : obstacles) {
-      if (obstacle.kind != Obstacle::Kind::sphere || obstacle.at == sphere) continue;
+      if (obstacle.kind == Obstacle::Kind::tube || obstacle == sphere) continue;
       least = std::min(least, gap(obstacle, here));
     }
     // What is touched at the start is being left: rounding may show it as touched a little more.
     return x == path.start() && least > -touching ? std::max(least, 0.0) : least;
   };
-  const auto met = first_contact(path.start(), path.end(), free_distance,
+  const auto met = first_contact(path.start(), path.end(), unit, free_distance,
                                  [&](double x, double length) { return path.advance(x, length); });
   if (met) return {path.at(*met), false};
   TubePathEnd end = {path.at(path.end()), path.reaches_bottom()};
-  if (!end.at_bottom) end.p.z = sphere.z;
+  if (!end.at_bottom) end.p.z = sphere.at.z;
   return end;
 }
 

@@ -24,16 +24,16 @@ struct RollingArc {
 };
 
 /// The arc on one sphere from p, which touches it from above and not exactly on its top.
-RollingArc arc_on(Vec3 sphere, Vec3 p);
-/// The arc on two spheres.
-RollingArc arc_on(Vec3 sphere, Vec3 other, Vec3 p);
+RollingArc arc_on(const Obstacle& sphere, Vec3 p);
+/// The arc on two spheres, of the same size or not.
+RollingArc arc_on(const Obstacle& sphere, const Obstacle& other, Vec3 p);
 /// The arc on a sphere along a flat wall.
-RollingArc arc_along_wall(Vec3 sphere, const Obstacle& wall, Vec3 p);
+RollingArc arc_along_wall(const Obstacle& sphere, const Obstacle& wall, Vec3 p);
 
 /// Where the arc from p ends: at the first of the obstacles it runs into, or where a support is
-/// lost. Obstacles in `supports` are ignored.
+/// lost. Obstacles in `supports` are ignored. Tolerances are multiples of the length `unit`.
 Vec3 follow(const RollingArc& arc, Vec3 p, std::span<const Obstacle> obstacles,
-            std::span<const Obstacle> supports);
+            std::span<const Obstacle> supports, double unit);
 
 /// The end of a path along a curved side.
 struct TubePathEnd {
@@ -42,15 +42,16 @@ struct TubePathEnd {
 };
 
 /// The same while touching a sphere and the tube: a curve that is no circle.
-TubePathEnd follow_tube(Vec3 sphere, const Obstacle& tube, Vec3 p,
-                        std::span<const Obstacle> obstacles);
+TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
+                        std::span<const Obstacle> obstacles, double unit);
 
 /// First parameter in [from, to] beyond which `gap` is negative; nothing if it never is. `advance`
 /// gives a later parameter (at most `to`) reached by at most the given length of path, so that no
-/// contact is stepped over but for grazes a billionth of a diameter deep.
+/// contact is stepped over but for grazes a billionth of a `unit` deep.
 template <class Gap, class Advance>
-std::optional<double> first_contact(double from, double to, Gap&& gap, Advance&& advance) {
-  constexpr double least_step = 1e-4;
+std::optional<double> first_contact(double from, double to, double unit, Gap&& gap,
+                                    Advance&& advance) {
+  const double least_step = 1e-4 * unit;
   constexpr int bisections = 60;
   double here = from;
   while (here < to) {

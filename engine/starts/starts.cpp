@@ -23,11 +23,11 @@ struct Builder {
   Packing* before_fitting;
 
   std::vector<Vec3> operator()(const SteepestDescentPour&) const {
-    return pour(container, n_spheres, random, stop);
+    return pour(container, spheres, random, stop);
   }
   std::vector<Vec3> operator()(const FittedPour&) const {
     const PeriodicBox sides{width_x(container), width_y(container)};
-    std::vector<Vec3> poured = pour(sides, n_spheres, random, stop);
+    std::vector<Vec3> poured = pour(sides, StartSpheres{n_spheres}, random, stop);
     if (before_fitting != nullptr) *before_fitting = {sides, poured};
     return fit_pour(container, std::move(poured), random, stop);
   }
@@ -49,10 +49,10 @@ struct MixtureFault {
   using Fault = std::optional<std::string>;
   static Fault equal(const char* what) {
     return std::string(what) +
-           " requires equal spheres of diameter 1: start a mixture from a file that holds its "
-           "packing";
+           " requires equal spheres of diameter 1: pour a mixture with \"steepest_descent\", or "
+           "start from a file that holds its packing";
   }
-  Fault operator()(const SteepestDescentPour&) const { return equal("a steepest-descent pour"); }
+  Fault operator()(const SteepestDescentPour&) const { return std::nullopt; }
   Fault operator()(const FittedPour&) const { return equal("a fitted pour"); }
   Fault operator()(const RandomSettle&) const { return equal("random_settle"); }
   Fault operator()(const Crystal&) const { return equal("a crystal"); }

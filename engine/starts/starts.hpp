@@ -19,7 +19,7 @@ namespace jostle::inline engine {
 
 /// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
 /// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the
-/// container, whatever its sides.
+/// container, whatever its sides. Spheres of a mixture roll on one another in the same way.
 struct SteepestDescentPour {
   bool operator==(const SteepestDescentPour&) const = default;
 

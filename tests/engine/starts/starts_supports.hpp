@@ -22,10 +22,11 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
         std::visit([&](const auto& box) { return separation(box, r, packing.centres[other]); },
                    packing.container);
     const double length = std::sqrt(norm_squared(apart));
-    if (length < 1 + touch_tolerance) found.push_back((1 / length) * apart);
+    if (length < packing.radius(sphere) + packing.radius(other) + touch_tolerance)
+      found.push_back((1 / length) * apart);
   }
   if (const auto* box = std::get_if<WalledBox>(&packing.container)) {
-    const double reach = sphere_radius + touch_tolerance;
+    const double reach = packing.radius(sphere) + touch_tolerance;
     if (r.x < reach) found.push_back({1, 0, 0});
     if (r.y < reach) found.push_back({0, 1, 0});
     if (r.x > box->width_x - reach) found.push_back({-1, 0, 0});
@@ -33,7 +34,7 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
   } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
     const double axis = 0.5 * tube->diameter, dx = r.x - axis, dy = r.y - axis;
     const double off_axis = std::sqrt(dx * dx + dy * dy);
-    if (off_axis > axis - sphere_radius - touch_tolerance && off_axis > 0) {
+    if (off_axis > axis - packing.radius(sphere) - touch_tolerance && off_axis > 0) {
       found.push_back({-dx / off_axis, -dy / off_axis, 0});
     }
   }
@@ -42,8 +43,19 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
 
 /// Whether forces along the contacts, none of them pulling, can carry the sphere's weight: some
 /// three of them enclose the vertical, so that the centre's projection lies inside their triangle.
+/// Beside a tube two contacts may do, in one plane with the vertical.
 inline bool carried(const std::vector<Vec3>& contacts) {
   constexpr double rounding = -1e-5;  // a contact within the touch tolerance may be a near miss
+  for (const Vec3& a : contacts) {
+    for (const Vec3& b : contacts) {
+      const double ab = dot(a, b), rest = 1 - ab * ab;
+      if (rest < 1e-9) continue;
+      const double on_a = (a.z - ab * b.z) / rest, on_b = (b.z - ab * a.z) / rest;
+      const Vec3 left = on_a * a + on_b * b - Vec3{0, 0, 1};
+      if (on_a > rounding && on_b > rounding && norm_squared(left) < rounding * rounding)
+        return true;
+    }
+  }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = i + 1; j < contacts.size(); ++j) {
       for (std::size_t k = j + 1; k < contacts.size(); ++k) {
