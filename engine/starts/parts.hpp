@@ -35,10 +35,10 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random,
 std::vector<Vec3> fit_pour(const Container& container, std::vector<Vec3> poured,
                            RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
-                          std::uint32_t n_spheres, RandomStream& random);
+                          const StartSpheres& spheres, RandomStream& random);
 std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
                                 std::uint32_t n_spheres);
-std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, std::uint32_t n_spheres,
+std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, const StartSpheres& wanted,
                        RandomStream& random, const StopAsked& stop = {});
 std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
                               const StartSpheres& spheres);

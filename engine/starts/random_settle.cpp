@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/sphere_cells.hpp"
@@ -7,8 +10,64 @@
 
 namespace jostle::inline engine {
 
+namespace {
+
+/// Spheres that were placed, the largest first, in one set of cells per factor of two in size.
+class PlacedSpheres {
+ public:
+  PlacedSpheres(Packing& packing, double height)
+      : packing_(packing), boundary_(packing.container), height_(height) {}
+
+  bool fits(std::uint32_t sphere, Vec3 r) const {
+    const double radius = packing_.radius(sphere);
+    if (!clear_of_boundaries(boundary_, r, radius)) return false;
+    return std::ranges::none_of(classes_, [&](const SizeClass& c) {
+      const double reach = radius + c.largest_radius + 1e-9;
+      return c.cells.any_near(r, reach, [&](std::uint32_t place, Vec3) {
+        const std::uint32_t other = c.spheres[place];
+        return overlaps(boundary_, r, packing_.centres[other], radius + packing_.radius(other));
+      });
+    });
+  }
+
+  void place(std::uint32_t sphere, Vec3 r) {
+    const double radius = packing_.radius(sphere);
+    if (classes_.empty() || radius <= 0.5 * classes_.back().largest_radius) {
+      const auto n = static_cast<std::uint32_t>(packing_.centres.size());
+      classes_.push_back({radius, SphereCells(packing_.container, n, height_, 2 * radius), {}});
+    }
+    packing_.centres[sphere] = r;
+    classes_.back().cells.insert(r);
+    classes_.back().spheres.push_back(sphere);
+  }
+
+ private:
+  struct SizeClass {
+    double largest_radius;
+    SphereCells cells;
+    std::vector<std::uint32_t> spheres;  // by their place in the cells
+  };
+
+  Packing& packing_;
+  Boundary boundary_;
+  double height_;
+  std::vector<SizeClass> classes_;
+};
+
+std::vector<std::uint32_t> largest_first(const StartSpheres& spheres) {
+  std::vector<std::uint32_t> order(spheres.n);
+  std::iota(order.begin(), order.end(), 0u);
+  if (spheres.sizes)
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::uint32_t i) { return spheres.sizes->radius(i); });
+  return order;
+}
+
+}  // namespace
+
+// The largest spheres are placed first, when there is most room.
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
-                          std::uint32_t n_spheres, RandomStream& random) {
+                          const StartSpheres& spheres, RandomStream& random) {
   constexpr int max_draws = 2'000'000;  // of one sphere; at 0.36 the last take 70 000 each
   const Boundary boundary(container);
   if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= densest_dilution)) {
@@ -21,36 +80,32 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
                      ", but a column's foot is 0 to " + std::to_string(highest_drop) +
                      " diameters above the floor");
   }
+  Packing packing{container, std::vector<Vec3>(spheres.n), spheres.sizes};
   const double height =
-      n_spheres * sphere_volume / (footprint_area(container) * settle.dilute_fraction);
-  const double margin_x = boundary.margin_x(), margin_y = boundary.margin_y();
-  const double room_x = boundary.width_x - 2 * margin_x, room_y = boundary.width_y - 2 * margin_y;
-  SphereCells cells(container, n_spheres, settle.drop_height + height);
-  const auto fits = [&](Vec3 p) {
-    return clear_of_boundaries(boundary, p) &&
-           !cells.any_near(p, 1 + 1e-9, [&](std::uint32_t other, Vec3) {
-             return overlaps(boundary, p, cells.centres()[other]);
-           });
-  };
-  for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
+      solid_volume(packing) / (footprint_area(container) * settle.dilute_fraction);
+  PlacedSpheres placed_spheres(packing, settle.drop_height + height);
+  for (const std::uint32_t sphere : largest_first(spheres)) {
+    const double radius = packing.radius(sphere);
+    const double margin_x = boundary.periodic_x ? 0 : radius;
+    const double margin_y = boundary.periodic_y ? 0 : radius;
     bool placed = false;
     for (int draw = 0; draw < max_draws && !placed; ++draw) {
-      const double x = margin_x + random.uniform() * room_x;
-      const double y = margin_y + random.uniform() * room_y;
-      const double z = sphere_radius + settle.drop_height + random.uniform() * height;
+      const double x = margin_x + random.uniform() * (boundary.width_x - 2 * margin_x);
+      const double y = margin_y + random.uniform() * (boundary.width_y - 2 * margin_y);
+      const double z = radius + settle.drop_height + random.uniform() * height;
       const Vec3 p = wrapped(boundary, {x, y, z});
-      placed = fits(p);
-      if (placed) cells.insert(p);
+      placed = placed_spheres.fits(sphere, p);
+      if (placed) placed_spheres.place(sphere, p);
     }
     if (!placed) {
       throw StartError("random settle: no free place for sphere " + std::to_string(sphere) +
-                       " of " + std::to_string(n_spheres) + " in " + std::to_string(max_draws) +
+                       " of " + std::to_string(spheres.n) + " in " + std::to_string(max_draws) +
                        " draws, the container is too narrow for this solids fraction; lower "
                        "dilute_fraction (now " +
                        std::to_string(settle.dilute_fraction) + ")");
     }
   }
-  return cells.centres();
+  return packing.centres;
 }
 
 }  // namespace jostle::inline engine

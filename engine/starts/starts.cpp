@@ -32,13 +32,13 @@ struct Builder {
     return fit_pour(container, std::move(poured), random, stop);
   }
   std::vector<Vec3> operator()(const RandomSettle& start) const {
-    return scatter(start, container, n_spheres, random);
+    return scatter(start, container, spheres, random);
   }
   std::vector<Vec3> operator()(const Crystal& start) const {
     return build_crystal(start, container, n_spheres);
   }
   std::vector<Vec3> operator()(const Grow& start) const {
-    return grow(start, std::get<FullyPeriodicBox>(container), n_spheres, random, stop);
+    return grow(start, std::get<FullyPeriodicBox>(container), spheres, random, stop);
   }
   std::vector<Vec3> operator()(const GivenPacking& start) const {
     return check_given(start, container, spheres);
@@ -49,16 +49,21 @@ struct MixtureFault {
   using Fault = std::optional<std::string>;
   static Fault equal(const char* what) {
     return std::string(what) +
-           " requires equal spheres of diameter 1: pour a mixture with \"steepest_descent\", or "
-           "start from a file that holds its packing";
+           " requires equal spheres of diameter 1: start a mixture with a steepest-descent pour, "
+           "random_settle or grow, or from a file that holds its packing";
   }
   Fault operator()(const SteepestDescentPour&) const { return std::nullopt; }
   Fault operator()(const FittedPour&) const { return equal("a fitted pour"); }
-  Fault operator()(const RandomSettle&) const { return equal("random_settle"); }
+  Fault operator()(const RandomSettle&) const { return std::nullopt; }
   Fault operator()(const Crystal&) const { return equal("a crystal"); }
-  Fault operator()(const Grow&) const { return equal("grow"); }
+  Fault operator()(const Grow&) const { return std::nullopt; }
   Fault operator()(const GivenPacking&) const { return std::nullopt; }
 };
+
+std::optional<double> solid_volume_of(const std::shared_ptr<const Sizes>& sizes) {
+  if (!sizes) return std::nullopt;
+  return solid_volume({PeriodicBox{}, std::vector<Vec3>(sizes->size()), sizes});
+}
 
 /// Whether spheres may move before tap 0.
 struct MayMove {
@@ -113,14 +118,22 @@ std::optional<std::string> start_fault(const Start& start, const Container& cont
 }
 
 std::optional<std::string> n_spheres_fault(const Start& start, const Container& container,
-                                           std::uint32_t n_spheres) {
+                                           std::uint32_t n_spheres,
+                                           std::optional<double> solid_volume) {
   if (n_spheres == 0) return "no spheres are asked for: ask for at least one";
   const auto* box = std::get_if<FullyPeriodicBox>(&container);
   if (box == nullptr || !std::holds_alternative<Grow>(start)) return std::nullopt;
   const double volume = box->width_x * box->width_y * box->height;
-  const double fraction = n_spheres * sphere_volume / volume;
+  const double fraction = solid_volume.value_or(n_spheres * sphere_volume) / volume;
   if (fraction <= densest_growth) return std::nullopt;
   char text[160];
+  if (solid_volume) {
+    std::snprintf(text, sizeof text,
+                  "the spheres fill %.4f of the box: growing without order ends at %g; take fewer "
+                  "spheres or a larger box",
+                  fraction, densest_growth);
+    return text;
+  }
   std::snprintf(text, sizeof text,
                 "%u spheres fill %.4f of the box: growing without order ends at %g, that is %.0f "
                 "spheres",
@@ -178,16 +191,16 @@ Packing make_start(const Start& start, const Container& container, std::uint32_t
 Packing make_start(const Start& start, const Container& container, const StartSpheres& spheres,
                    RandomStream& random, const StopAsked& stop, Packing* before_fitting) {
   const auto& sizes = spheres.sizes;
-  for (const auto& fault :
-       {sizes ? width_fault(container, 2 * sizes->largest_radius()) : width_fault(container),
-        sizes ? mixture_fault(start) : std::nullopt, start_fault(start, container),
-        n_spheres_fault(start, container, spheres.n)}) {
-    if (fault) throw StartError("start: " + *fault);
-  }
   if (sizes && sizes->size() != spheres.n)
     throw StartError("start: " + std::to_string(spheres.n) +
                      " spheres are asked for, and sizes of " + std::to_string(sizes->size()) +
                      " are given: give one per sphere");
+  for (const auto& fault :
+       {sizes ? width_fault(container, 2 * sizes->largest_radius()) : width_fault(container),
+        sizes ? mixture_fault(start) : std::nullopt, start_fault(start, container),
+        n_spheres_fault(start, container, spheres.n, solid_volume_of(sizes))}) {
+    if (fault) throw StartError("start: " + *fault);
+  }
   const Builder build{container, spheres, spheres.n, random, stop, before_fitting};
   return {container, std::visit(build, start), sizes};
 }

@@ -45,8 +45,8 @@ struct FittedPour {
 inline constexpr double densest_dilution = 0.36;
 inline constexpr double highest_drop = 1000;  // diameters
 
-/// Non-overlapping random positions at the given solids fraction, then a relaxation without a tap
-/// (the scene's own). Rosato et al. 2010, sec. II.
+/// Non-overlapping random positions at the given solids fraction, of a mixture the largest spheres
+/// first, then a relaxation without a tap (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
   double drop_height = 0;        // of the column's foot above the floor, diameters
@@ -98,9 +98,9 @@ struct Crystal {
 /// Sweeps of a growth, at most.
 inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
 
-/// Random points whose diameters grow by Monte Carlo until the spheres of diameter 1 fill the fully
-/// periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly and may leave a residue
-/// after `max_sweeps`, an error.
+/// Random points whose diameters grow by Monte Carlo, those of a mixture by one factor, until the
+/// spheres fill the fully periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly
+/// and may leave a residue after `max_sweeps`, an error.
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;
@@ -167,9 +167,11 @@ std::optional<std::string> mixture_fault(const Start& start);
 /// period only.
 std::optional<std::string> start_fault(const Start& start, const Container& container);
 
-/// Why so many spheres cannot start so in the container; nothing if they may.
+/// Why so many spheres cannot start so in the container; nothing if they may. `solid_volume`, in
+/// diameters cubed, is that of a mixture.
 std::optional<std::string> n_spheres_fault(const Start& start, const Container& container,
-                                           std::uint32_t n_spheres);
+                                           std::uint32_t n_spheres,
+                                           std::optional<double> solid_volume = std::nullopt);
 
 /// Why it makes no sense to relax this start before tap 0: it is at rest. Nothing if it may move.
 std::optional<std::string> settling_fault(const Start& start);

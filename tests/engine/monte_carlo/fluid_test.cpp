@@ -1,20 +1,20 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "engine/bed/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
+#include "tests/engine/monte_carlo/contact_value.hpp"
 
 using namespace jostle;
 
 namespace {
 
 constexpr std::uint32_t n_spheres = 1372;
-constexpr int n_bins = 20;
+constexpr int n_bins = n_contact_bins;
 constexpr double bin_width = 0.005;
 
 // Histogram of pair distances between 1 and 1 + n_bins bin_width.
@@ -34,29 +34,14 @@ void count_pairs(const Packing& packing, std::array<double, n_bins>& counts) {
   }
 }
 
-// Least squares of a cubic through g(r) of the bins, extrapolated to contact: the constant term of
-// the normal equations solved by elimination.
 double contact_value(const std::array<double, n_bins>& counts, double configurations,
                      double density) {
-  std::array<std::array<double, 5>, 4> rows{};
+  std::array<double, n_bins> g{};
   for (int bin = 0; bin < n_bins; ++bin) {
-    const double low = 1 + bin * bin_width, high = low + bin_width;
-    const double shell = 4.0 / 3 * std::numbers::pi * (high * high * high - low * low * low);
-    const double g = 2 * counts[bin] / (configurations * n_spheres * density * shell);
-    const double x = (bin + 0.5) / n_bins;
-    const std::array<double, 4> powers = {1, x, x * x, x * x * x};
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) rows[a][b] += powers[a] * powers[b];
-      rows[a][4] += powers[a] * g;
-    }
+    const double shell = shell_volume(1 + bin * bin_width, 1 + bin * bin_width + bin_width);
+    g[bin] = 2 * counts[bin] / (configurations * n_spheres * density * shell);
   }
-  for (int pivot = 3; pivot > 0; --pivot) {
-    for (int row = 0; row < pivot; ++row) {
-      const double factor = rows[row][pivot] / rows[pivot][pivot];
-      for (int k = 0; k < 5; ++k) rows[row][k] -= factor * rows[pivot][k];
-    }
-  }
-  return rows[0][4] / rows[0][0];
+  return extrapolated_to_contact(g);
 }
 
 struct Estimate {

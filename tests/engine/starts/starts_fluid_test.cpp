@@ -6,6 +6,7 @@
 
 #include "engine/bed/geometry.hpp"
 #include "engine/starts/starts.hpp"
+#include "tests/engine/sample_packings.hpp"
 
 namespace jostle {
 namespace {
@@ -57,6 +58,43 @@ TEST_CASE("Grown spheres fill the box without overlap and without crystalline or
     CHECK(deepest_overlap_brute_force(packing).depth == 0);
     CHECK(strongest_order(packing) < 0.1);
   }
+}
+
+TEST_CASE("Mixtures grow by one factor until every sphere has its diameter") {
+  for (const double ratio : {1.4, 3.0, 10.0}) {
+    for (const double fraction : {0.30, 0.55}) {
+      CAPTURE(ratio, fraction);
+      const std::uint32_t n = ratio > 5 ? 300 : 120;  // boxes are wider than two largest spheres
+      StartSpheres spheres{n};
+      spheres.sizes = std::make_shared<const Sizes>(graded_diameters(n, 0.5, ratio));
+      const double solid = solid_volume({PeriodicBox{}, std::vector<Vec3>(n), spheres.sizes});
+      const double side = std::cbrt(solid / fraction);
+      RandomStream random(stream_key(1, 0, 0, Purpose::start));
+      const Packing packing =
+          make_start(Grow{}, FullyPeriodicBox{side, side, side}, spheres, random);
+      CHECK(packing.sizes == spheres.sizes);
+      CHECK(deepest_overlap_brute_force(packing).depth <= overlap_bound(packing));
+    }
+  }
+}
+
+TEST_CASE("Sizes of diameter 1 grow like equal spheres, bit for bit") {
+  StartSpheres spheres{100};
+  spheres.sizes = std::make_shared<const Sizes>(std::vector<double>(100, 1.0));
+  RandomStream random(stream_key(1, 0, 0, Purpose::start));
+  CHECK(make_start(Grow{}, cube(100, 0.5), spheres, random).centres ==
+        packing_of(Grow{}, cube(100, 0.5), 100).centres);
+}
+
+TEST_CASE("A mixture too full to grow in is refused by its volume") {
+  // 40 spheres of diameter 2 are as much as 320 of diameter 1.
+  StartSpheres spheres{40};
+  spheres.sizes = std::make_shared<const Sizes>(std::vector<double>(40, 2.0));
+  RandomStream random(stream_key(1, 0, 0, Purpose::start));
+  CHECK_THROWS_WITH(make_start(Grow{}, cube(320, 0.65), spheres, random),
+                    Catch::Contains("the spheres fill 0.6500 of the box"));
+  CHECK_THROWS_WITH(make_start(Grow{.max_sweeps = 10}, cube(320, 0.6), spheres, random),
+                    Catch::Contains("did not reach their diameter in 10 sweeps"));
 }
 
 TEST_CASE("A box too full to grow in is refused, and growing never hangs") {

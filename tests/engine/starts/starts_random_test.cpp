@@ -2,6 +2,7 @@
 
 #include "engine/bed/slab.hpp"
 #include "engine/starts/starts.hpp"
+#include "tests/engine/sample_packings.hpp"
 
 namespace jostle {
 namespace {
@@ -45,6 +46,34 @@ TEST_CASE("A column may begin high above the floor, with the same places") {
     CHECK(high.centres[i].x == low.centres[i].x);
     CHECK(high.centres[i].z == Approx(low.centres[i].z + 40).epsilon(1e-14));
   }
+}
+
+TEST_CASE("A mixture settles from random places, whatever its ratio") {
+  for (const Container& container :
+       {Container{PeriodicBox{8, 8}}, Container{WalledBox{3, 5}}, Container{Cylinder{3.5}}}) {
+    for (const double ratio : {1.4, 3.0, 10.0}) {
+      CAPTURE(container.index(), ratio);
+      StartSpheres spheres{200};
+      spheres.sizes = std::make_shared<const Sizes>(graded_diameters(200, 3 / ratio, ratio));
+      RandomStream random(stream_key(1, 0, 0, Purpose::start));
+      const Packing packing = make_start(RandomSettle{0.1, 2}, container, spheres, random);
+      CHECK(packing.sizes == spheres.sizes);
+      CHECK(deepest_overlap_brute_force(packing).depth == 0);
+      const double height = solid_volume(packing) / (0.1 * footprint_area(container));
+      for (std::size_t i = 0; i < 200; ++i) {
+        CHECK(packing.centres[i].z >= 2 + packing.radius(i));
+        CHECK(packing.centres[i].z <= 2 + packing.radius(i) + height);
+      }
+    }
+  }
+}
+
+TEST_CASE("Sizes of diameter 1 settle like equal spheres, bit for bit") {
+  StartSpheres spheres{300};
+  spheres.sizes = std::make_shared<const Sizes>(std::vector<double>(300, 1.0));
+  RandomStream random(stream_key(1, 0, 0, Purpose::start));
+  CHECK(make_start(RandomSettle{0.2}, WalledBox{6, 6}, spheres, random).centres ==
+        scattered({0.2}, WalledBox{6, 6}, 300).centres);
 }
 
 TEST_CASE("A random settle that cannot be is refused") {

@@ -1,0 +1,170 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "engine/bed/geometry.hpp"
+#include "engine/bed/sized_grid.hpp"
+#include "engine/monte_carlo/trial_loop.hpp"
+#include "engine/starts/starts.hpp"
+#include "tests/engine/monte_carlo/contact_value.hpp"
+
+// Hard-sphere fluids of two sizes, as many spheres of diameter 1 as of diameter `ratio`.
+using namespace jostle;
+
+namespace {
+
+constexpr double bin_width = 0.005;  // of the sum of radii
+
+// Pairs of small spheres, of unlike ones, of large ones.
+using Trio = std::array<double, 3>;
+
+// Boublik, J. Chem. Phys. 53, 471 (1970); Grundke & Henderson, Mol. Phys. 24, 269 (1972); Lee &
+// Levesque, Mol. Phys. 26, 1351 (1973): pair distributions at contact.
+Trio contact_values_of_theory(double ratio, double fraction) {
+  const double d2 = 1 + ratio * ratio, d3 = 1 + ratio * ratio * ratio;
+  const double x3 = fraction, x2 = fraction * d2 / d3;
+  const auto g = [&](double a) {
+    const double free = 1 - x3;
+    return 1 / free + 3 * x2 * a / (free * free) + 2 * x2 * x2 * a * a / (free * free * free);
+  };
+  return {g(0.5), g(ratio / (1 + ratio)), g(0.5 * ratio)};
+}
+
+class TwoSizeFluid {
+ public:
+  TwoSizeFluid(double ratio, double fraction, std::uint32_t n_of_each, std::uint64_t seed)
+      : ratio_(ratio), n_(n_of_each) {
+    std::vector<double> diameters(n_of_each, 1.0);
+    diameters.insert(diameters.end(), n_of_each, ratio);
+    StartSpheres spheres{2 * n_of_each, std::make_shared<const Sizes>(diameters)};
+    const double cubes = n_of_each * (1 + ratio * ratio * ratio);
+    const double side = std::cbrt(cubes * sphere_volume / fraction);
+    volume_ = side * side * side;
+    RandomStream random(stream_key(seed, 0, 0, Purpose::start));
+    packing_ = make_start(Grow{}, FullyPeriodicBox{side, side, side}, spheres, random);
+    loop_ = make_trial_loop(packing_.container, MetropolisMove{0.3},
+                            stream_key(seed, 0, 0, Purpose::trials), best_instruction_set(),
+                            Sampler::exhaustive, SphereSizes::several);
+    loop_->load(packing_);
+  }
+
+  void run(std::uint64_t sweeps) { loop_->run(2 * n_ * sweeps); }
+
+  // Of configurations `every` sweeps apart.
+  Trio contact_values(int configurations, std::uint64_t every) {
+    std::array<std::array<double, n_contact_bins>, 3> g{};
+    for (int k = 0; k < configurations; ++k) {
+      run(every);
+      loop_->store(packing_);
+      count_pairs(g);
+    }
+    Trio values;
+    for (int kinds = 0; kinds < 3; ++kinds) {
+      const double touching = kinds == 0 ? 1 : kinds == 1 ? 0.5 * (1 + ratio_) : ratio_;
+      const double pairs = static_cast<double>(n_) * n_ * (kinds == 1 ? 1 : 0.5);
+      for (int bin = 0; bin < n_contact_bins; ++bin) {
+        const double low = 1 + bin * bin_width;
+        const double shell = touching * touching * touching * shell_volume(low, low + bin_width);
+        g[kinds][bin] /= configurations * pairs * shell / volume_;
+      }
+      values[kinds] = extrapolated_to_contact(g[kinds]);
+    }
+    return values;
+  }
+
+ private:
+  void count_pairs(std::array<std::array<double, n_contact_bins>, 3>& counts) const {
+    const auto& box = std::get<FullyPeriodicBox>(packing_.container);
+    SizedGrid grid;
+    grid.build(
+        Boundary(packing_.container), n_contact_bins * bin_width * ratio_, 2 * n_,
+        [&](std::uint32_t i) { return packing_.centres[i]; },
+        [&](std::uint32_t i) { return packing_.radius(i); });
+    for (std::uint32_t i = 0; i < 2 * n_; ++i) {
+      grid.for_each_near(packing_.centres[i], packing_.radius(i), [&](std::uint32_t j) {
+        if (j <= i) return;
+        const double touching = packing_.radius(i) + packing_.radius(j);
+        const double r =
+            std::sqrt(norm_squared(separation(box, packing_.centres[i], packing_.centres[j])));
+        const auto bin = static_cast<int>((r / touching - 1) / bin_width);
+        if (bin < n_contact_bins) ++counts[(i >= n_) + (j >= n_)][bin];
+      });
+    }
+  }
+
+  double ratio_, volume_ = 0;
+  std::uint32_t n_;
+  Packing packing_;
+  std::unique_ptr<TrialLoop> loop_;
+};
+
+struct Estimate {
+  Trio value{}, error{};
+};
+
+Estimate measure(double ratio, double fraction, std::uint32_t n_of_each, int configurations) {
+  TwoSizeFluid fluid(ratio, fraction, n_of_each, 1970);
+  constexpr int blocks = 20;
+  constexpr std::uint64_t every = 3;
+  fluid.run(every * configurations / 4);  // equilibration
+  Trio sum{}, squares{};
+  for (int block = 0; block < blocks; ++block) {
+    const Trio g = fluid.contact_values(configurations / blocks, every);
+    for (int k = 0; k < 3; ++k) {
+      sum[k] += g[k];
+      squares[k] += g[k] * g[k];
+    }
+  }
+  Estimate all;
+  for (int k = 0; k < 3; ++k) {
+    all.value[k] = sum[k] / blocks;
+    all.error[k] = std::sqrt((squares[k] / blocks - all.value[k] * all.value[k]) / (blocks - 1));
+  }
+  return all;
+}
+
+// `most_error`: relative.
+void check_fluid(double ratio, double fraction, std::uint32_t n_of_each, int configurations,
+                 double most_error) {
+  const Estimate own = measure(ratio, fraction, n_of_each, configurations);
+  const Trio theory = contact_values_of_theory(ratio, fraction);
+  for (int k = 0; k < 3; ++k) {
+    CAPTURE(ratio, fraction, k, own.value[k], own.error[k], theory[k]);
+    if (most_error > 0.01) {
+      CHECK(own.error[k] < most_error * theory[k]);
+    } else {
+      WARN("ratio " << ratio << ", fraction " << fraction << ", pairs " << k << ": g(contact) "
+                    << own.value[k] << " +- " << own.error[k] << ", theory " << theory[k]);
+    }
+    if (fraction <= 0.30)
+      CHECK(std::abs(own.value[k] - theory[k]) <= std::max(3 * own.error[k], 0.01 * theory[k]));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the theory of mixtures has its published form") {
+  const Trio near = contact_values_of_theory(1.4, 0.45), far = contact_values_of_theory(3, 0.45);
+  CHECK(near[0] == Approx(3.963).margin(6e-4));
+  CHECK(near[1] == Approx(4.394).margin(6e-4));
+  CHECK(near[2] == Approx(5.034).margin(6e-4));
+  CHECK(far[0] == Approx(2.693).margin(6e-4));
+  CHECK(far[1] == Approx(3.188).margin(6e-4));
+  CHECK(far[2] == Approx(4.908).margin(6e-4));
+  // Of equal spheres: Carnahan & Starling, (1 - x/2) / (1 - x)^3.
+  for (const double value : contact_values_of_theory(1, 0.3))
+    CHECK(value == Approx(0.85 / 0.343).epsilon(1e-12));
+}
+
+TEST_CASE("a fluid of two sizes has the contact values of theory") {
+  check_fluid(1.4, 0.30, 200, 1000, 0.05);
+  check_fluid(3, 0.30, 200, 1000, 0.12);
+}
+
+TEST_CASE("fluids of two sizes have the contact values of theory, to one in a hundred", "[slow]") {
+  for (const double ratio : {1.4, 3.0}) {
+    for (const double fraction : {0.10, 0.20, 0.30, 0.45})
+      check_fluid(ratio, fraction, 500, 40'000, 0.01);
+  }
+}
