@@ -65,6 +65,24 @@ double mean_height(const Packing& packing) {
   return sum / weights;
 }
 
+std::vector<double> kind_heights(const Packing& packing) {
+  if (!packing.sizes || packing.sizes->kinds().size() < 2) return {};
+  struct Sums {
+    double height = 0, weights = 0;
+  };
+  std::vector<Sums> sums(packing.sizes->kinds().size());
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    Sums& own = sums[packing.sizes->kind(i)];
+    const double d = packing.sizes->diameter(i), weight = d * d * d;
+    own.height += weight * packing.centres[i].z;
+    own.weights += weight;
+  }
+  std::vector<double> heights;
+  for (const Sums& kind : sums)
+    if (kind.weights > 0) heights.push_back(kind.height / kind.weights);
+  return heights.size() < 2 ? std::vector<double>{} : heights;
+}
+
 double bed_height(const Packing& packing) {
   return 2 * mean_height(packing);
 }

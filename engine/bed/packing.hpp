@@ -33,6 +33,11 @@ double mean_height(const Packing& packing);
 /// 2 <Z>, diameters: the height of the bed if its packing fraction is the same at all heights.
 double bed_height(const Packing& packing);
 
+/// Mean heights of the centres of the kinds of a mixture that have spheres, in their order,
+/// diameters; each centre weighted by the volume of its sphere. Empty where there are fewer than
+/// two such kinds.
+std::vector<double> kind_heights(const Packing& packing);
+
 /// The volume of all spheres, diameters cubed.
 double solid_volume(const Packing& packing);
 

@@ -27,9 +27,11 @@ struct Measure {
   RelaxationProgress& progress;
 
   bool operator()(const MeanHeightStop& rule) const {
-    return changes_less_than(rule.eta * progress.last_value);
+    return changes_less_than([&](double height) { return rule.eta * height; });
   }
-  bool operator()(const HeightChangeStop& rule) const { return changes_less_than(rule.change); }
+  bool operator()(const HeightChangeStop& rule) const {
+    return changes_less_than([&](double) { return rule.change; });
+  }
   bool operator()(const BulkFractionStop& rule) const {
     if (progress.trials == 0 && !rule.measure_start) return false;
     const double before = progress.last_value;
@@ -43,12 +45,19 @@ struct Measure {
   }
 
  private:
-  // Whether <Z> has changed by less than so many diameters; not at the first test.
-  bool changes_less_than(double diameters) const {
+  // Whether <Z> has changed by less than bound(<Z> before), diameters, and in a mixture the mean
+  // height of every kind likewise: the rise of one intruder among many is invisible in the mean.
+  // Not at the first test.
+  template <class Bound>
+  bool changes_less_than(const Bound& bound) const {
     const double before = progress.last_value;
     const double now = progress.last_value = loop.mean_height();
+    const auto kinds_before = std::exchange(progress.kind_heights, loop.kind_heights());
     if (!std::exchange(progress.measured, true)) return false;
-    return std::abs(now - before) < diameters;
+    if (!(std::abs(now - before) < bound(before))) return false;
+    return std::ranges::equal(kinds_before, progress.kind_heights, [&](double was, double is) {
+      return std::abs(is - was) < bound(was);
+    });
   }
 };
 

@@ -1,5 +1,6 @@
 #include "engine/monte_carlo/state.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/state_bytes.hpp"
@@ -8,8 +9,9 @@ namespace jostle::inline engine {
 
 namespace {
 
-// "MC" and a number that counts up when the bytes change.
-constexpr std::uint32_t version = 0x4d430001;
+// "MC" and a number that counts up when the bytes change. Those of a mixture have the heights of
+// its kinds at the end.
+constexpr std::uint32_t version = 0x4d430001, version_of_mixtures = 0x4d430002;
 
 bool is_length(double x) {
   return std::isfinite(x) && x >= 0;
@@ -18,11 +20,14 @@ bool is_length(double x) {
 /// Whether trials can be made from here.
 bool is_possible(const MonteCarloState& state) {
   return is_length(state.move.step) && is_length(state.sampler.reference_step) &&
-         is_window(state.stop_window);
+         is_window(state.stop_window) &&
+         std::ranges::all_of(state.progress.kind_heights,
+                             [](double height) { return std::isfinite(height); });
 }
 
 MonteCarloState read(ByteReader& reader) {
-  if (reader.get<std::uint32_t>() != version) throw std::out_of_range("another version");
+  const auto found = reader.get<std::uint32_t>();
+  if (found != version && found != version_of_mixtures) throw std::out_of_range("another version");
   MonteCarloState state;
   state.tapping = reader.get_flag();
   state.progress.status = reader.get_enum(DynamicsStatus::capped);
@@ -45,6 +50,12 @@ MonteCarloState read(ByteReader& reader) {
   state.dropped_offsets = reader.get<std::uint64_t>();
   state.stop_window.low = reader.get<double>();
   state.stop_window.high = reader.get<double>();
+  if (found == version_of_mixtures) {
+    const auto kinds = reader.get<std::uint32_t>();
+    if (kinds == 0) throw std::out_of_range("no state of a mixture");
+    for (std::uint32_t k = 0; k < kinds; ++k)
+      state.progress.kind_heights.push_back(reader.get<double>());
+  }
   if (!is_possible(state)) throw std::out_of_range("no state of ours");
   return state;
 }
@@ -53,7 +64,8 @@ MonteCarloState read(ByteReader& reader) {
 
 std::vector<std::byte> bytes_of(const MonteCarloState& state) {
   ByteWriter writer;
-  writer.put(version);
+  const std::vector<double>& kind_heights = state.progress.kind_heights;
+  writer.put(kind_heights.empty() ? version : version_of_mixtures);
   writer.put(state.tapping);
   writer.put(state.progress.status);
   writer.put(state.progress.trials);
@@ -75,6 +87,10 @@ std::vector<std::byte> bytes_of(const MonteCarloState& state) {
   writer.put(state.dropped_offsets);
   writer.put(state.stop_window.low);
   writer.put(state.stop_window.high);
+  if (!kind_heights.empty()) {
+    writer.put(static_cast<std::uint32_t>(kind_heights.size()));
+    for (const double height : kind_heights) writer.put(height);
+  }
   return std::move(writer.bytes());
 }
 

@@ -16,9 +16,9 @@ namespace jostle::inline engine {
 /// Sweeps that a rule or a cap may name, at most.
 inline constexpr std::uint64_t most_sweeps = 1'000'000'000;
 
-/// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height.
-/// The first value is taken right after the tap. Philippe & Bideau 2001, sec. II, which publishes
-/// neither eta nor the interval.
+/// Stop when |Z' - Z| / Z < eta between two tests, `every_sweeps` apart; Z is the mean height, and
+/// in a mixture that of every kind as well. The first value is taken right after the tap. Philippe
+/// & Bideau 2001, sec. II, which publishes neither eta nor the interval.
 struct MeanHeightStop {
   double eta = 1e-5;
   std::uint64_t every_sweeps = 100;
@@ -37,7 +37,8 @@ struct MeanHeightStop {
 };
 
 /// Stop when |Z' - Z| < `change` diameters between two tests: MeanHeightStop with eta <Z> fixed for
-/// beds of every depth. The first value is taken right after the tap. Ours.
+/// beds of every depth, and in a mixture for every kind. The first value is taken right after the
+/// tap. Ours.
 struct HeightChangeStop {
   double change = 1e-4;  // diameters
   std::uint64_t every_sweeps = 100;

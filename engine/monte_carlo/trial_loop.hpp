@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
@@ -74,6 +75,8 @@ class TrialLoop {
 
   /// <Z> of the spheres as they stand, as mean_height() of their packing gives it.
   virtual double mean_height() const = 0;
+  /// Those of the kinds of a mixture, as kind_heights() of the packing gives them.
+  virtual std::vector<double> kind_heights() const { return {}; }
   /// Solids fraction between two heights (engine/bed/slab.hpp).
   virtual double solids_fraction(HeightWindow window) const = 0;
   virtual std::uint32_t n_spheres() const = 0;

@@ -62,6 +62,11 @@ class TypedTrialLoop final : public TrialLoop {
     return sum / static_cast<double>(n_spheres());
   }
 
+  std::vector<double> kind_heights() const override {
+    if constexpr (Spheres::several) return jostle::kind_heights(stored());
+    return {};
+  }
+
   double solids_fraction(HeightWindow window) const override {
     return jostle::solids_fraction(stored(), window);
   }

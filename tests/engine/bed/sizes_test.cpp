@@ -150,6 +150,14 @@ TEST_CASE("heights of a mixture are weighted by volume") {
   CHECK(bed_height(packing) == 2 * mean_height(packing));
   CHECK(surface_height(packing) == 3.5);
   CHECK(solid_volume(packing) == Approx(9 * sphere_volume));
+  CHECK(kind_heights(packing).empty());
+  packing.centres.push_back({7, 7, 1});
+  packing.sizes = std::make_shared<const Sizes>(
+      std::vector<double>{2, 1, 1}, std::vector<std::uint32_t>{2, 0, 2},
+      std::vector<SphereKind>{{"a", 1}, {"none", 1}, {"c", 3}});
+  CHECK(kind_heights(packing) == std::vector<double>{3, (8 * 1 + 1) / 9.0});
+  packing.centres.pop_back();
+  packing.sizes = sizes_of({2, 1});
   // A column of equal cuts, half of which are made of many small spheres.
   Packing column{PeriodicBox{4.5, 4.5}, {}};
   std::vector<double> diameters;

@@ -4,6 +4,7 @@
 #include "engine/bed/slab.hpp"
 #include "engine/monte_carlo/monte_carlo.hpp"
 #include "engine/monte_carlo/plain_loop.hpp"
+#include "engine/monte_carlo/relaxation.hpp"
 #include "tests/engine/sample_packings.hpp"
 
 // Monte Carlo of spheres of several sizes.
@@ -227,7 +228,34 @@ TEST_CASE("the mean height of a mixture is weighted by volume while it relaxes")
   const auto loop = loop_for_sizes(start.container, PolarMove{});
   const Packing end = after(*loop, start, 20'000);
   CHECK(loop->mean_height() == mean_height(end));
+  CHECK(loop->kind_heights().empty());
   CHECK(loop->solids_fraction({0, 3}) == solids_fraction(end, {0, 3}));
+}
+
+TEST_CASE("a relaxation of a mixture goes on while any kind still moves") {
+  // One light sphere falls through a dilute box onto a floor of heavy ones at rest: its mean height
+  // counts for one in a hundred thousand of the volume.
+  Packing packing{PeriodicBox{20.5, 20.5}, {{1, 1, 60}}};
+  std::vector<double> diameters{1};
+  std::vector<std::uint32_t> kinds{0};
+  for (int k = 0; k < 4; ++k) {
+    packing.centres.push_back({5 + 10.2 * (k % 2), 5 + 10.2 * (k / 2), 5});
+    diameters.push_back(10);
+    kinds.push_back(1);
+  }
+  const auto sweeps_to_rest = [&](const std::vector<std::uint32_t>& kind_of) {
+    packing.sizes = std::make_shared<const Sizes>(
+        diameters, kind_of, std::vector<SphereKind>{{"one", 1}, {"other", 1}});
+    const auto loop = loop_for_sizes(packing.container, PolarMove{});
+    loop->load(packing);
+    RelaxationProgress progress;
+    relax(*loop, {MeanHeightStop{1e-3, 100}, 100'000}, {0, 0}, progress, 10'000'000);
+    CHECK(progress.status == DynamicsStatus::settled);
+    return progress.trials / 5;
+  };
+  const std::uint64_t by_kind = sweeps_to_rest(kinds);
+  CHECK(by_kind > 1000);
+  CHECK(sweeps_to_rest({1, 1, 1, 1, 1}) == 100);  // of one kind only the mean counts
 }
 
 TEST_CASE("a mixture that is tapped goes on bit for bit from what it saved") {

@@ -24,6 +24,20 @@ TEST_CASE("A state of Monte Carlo comes back from its bytes") {
   CHECK(monte_carlo_state(bytes_of({})) == MonteCarloState{});
 }
 
+TEST_CASE("A state of a mixture keeps the heights of its kinds") {
+  MonteCarloState state = some_state;
+  state.progress.kind_heights = {1.25, 7.5};
+  const std::vector<std::byte> whole = bytes_of(state);
+  CHECK(monte_carlo_state(whole) == state);
+  for (std::size_t n = 0; n < whole.size(); ++n)
+    CHECK_THROWS_AS(monte_carlo_state(std::span(whole).first(n)), StateError);
+  auto longer = whole;
+  longer.push_back(std::byte{0});
+  CHECK_THROWS_AS(monte_carlo_state(longer), StateError);
+  state.progress.kind_heights[1] = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_AS(monte_carlo_state(bytes_of(state)), StateError);
+}
+
 TEST_CASE("Bytes of another version, of another length or of no state are refused") {
   const std::vector<std::byte> whole = bytes_of(some_state);
   for (std::size_t n = 0; n < whole.size(); ++n) {
