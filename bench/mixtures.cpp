@@ -1,0 +1,120 @@
+// Rates of the exhaustive loop in mixtures against equal spheres, in turns, polar move.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/rates.hpp"
+#include "engine/bed/mixture.hpp"
+#include "engine/starts/starts.hpp"
+#include "engine/taps.hpp"
+
+namespace jostle::bench {
+namespace {
+
+constexpr std::uint64_t seed = 20010222;
+constexpr std::uint32_t n_spheres = 4096;
+
+struct Mixture {
+  const char* name;
+  std::vector<MixtureKind> kinds;  // empty: equal spheres, by the loop that is made for them
+  double target = 0;               // least ratio of rates; 0: reported without a target
+};
+
+MixtureKind kind(const char* name, std::uint32_t count, DiameterLaw diameter) {
+  return {.name = name, .count = count, .diameter = std::move(diameter)};
+}
+
+std::vector<Mixture> mixtures() {
+  constexpr std::uint32_t half = n_spheres / 2;
+  const FixedDiameter small{1};
+  return {
+      {"equal spheres", {}},
+      {"diameter 1, as sizes", {kind("all", n_spheres, small)}},
+      {"lognormal, 10 %", {kind("all", n_spheres, LognormalDiameter{1, 0.1})}, 0.85},
+      {"1 and 1.4, half each", {kind("s", half, small), kind("l", half, FixedDiameter{1.4})}, 0.8},
+      {"one intruder of 5", {kind("s", n_spheres - 1, small), kind("l", 1, FixedDiameter{5})}, 0.7},
+      {"eight of 7", {kind("s", n_spheres - 8, small), kind("l", 8, FixedDiameter{7})}},
+  };
+}
+
+std::unique_ptr<TrialLoop> loop_for(const Packing& bed, std::uint64_t realization) {
+  auto loop =
+      make_trial_loop(bed.container, PolarMove{}, stream_key(seed, 0, realization, Purpose::trials),
+                      best_instruction_set(), Sampler::exhaustive,
+                      bed.sizes ? SphereSizes::several : SphereSizes::equal);
+  loop->load(bed);
+  return loop;
+}
+
+// A bed that settled from random places, tapped once and relaxed.
+Packing bed_of(const Mixture& mixture) {
+  StartSpheres spheres{n_spheres};
+  RandomStream diameters(stream_key(seed, 0, 0, Purpose::sizes));
+  if (!mixture.kinds.empty()) spheres.sizes = draw_sizes(mixture.kinds, diameters);
+  RandomStream places(stream_key(seed, 0, 0, Purpose::start));
+  Packing bed = make_start(RandomSettle{0.2}, PeriodicBox{16, 16}, spheres, places);
+  RandomStream taps(stream_key(seed, 0, 0, Purpose::tap));
+  for (std::uint64_t tap = 0; tap < 2; ++tap) {
+    if (tap > 0) excite(bed, Dilate{0.02}, taps);
+    const auto loop = loop_for(bed, tap);
+    loop->run(3000 * n_spheres);
+    loop->store(bed);
+  }
+  return bed;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void compare(int turns) {
+  struct Side {
+    Mixture mixture;
+    std::unique_ptr<TrialLoop> loop;
+    std::vector<double> rates;
+    Rate last;
+  };
+  std::vector<Side> sides;
+  for (Mixture& mixture : mixtures()) {
+    auto loop = loop_for(bed_of(mixture), 2);
+    loop->run(10 * n_spheres);  // lists made, caches warm
+    sides.push_back({std::move(mixture), std::move(loop), {}, {}});
+  }
+  for (int turn = 0; turn < turns; ++turn) {
+    for (Side& side : sides) {
+      side.last = measure_rate(*side.loop, 1'000'000);
+      side.rates.push_back(side.last.trials_per_second());
+    }
+  }
+  const double equal = median(sides.front().rates);
+  for (const Side& side : sides) {
+    const double rate = median(side.rates), ratio = rate / equal;
+    const char* const verdict = side.mixture.target == 0       ? ""
+                                : ratio >= side.mixture.target ? "pass"
+                                                               : "missed";
+    fmt::print(
+        "{:<22} {:6.1f} million trials/s, ratio {:.2f} {:<6} acceptance {:.4f}, {:.2f} "
+        "distance tests per trial, {:.0f} bytes per sphere\n",
+        side.mixture.name, 1e-6 * rate, ratio, verdict, side.last.acceptance,
+        side.last.distance_tests_per_trial, side.last.bytes_per_sphere);
+  }
+}
+
+}  // namespace
+}  // namespace jostle::bench
+
+int main(int argc, char** argv) {
+  const int turns = argc > 1 ? std::atoi(argv[1]) : 7;
+  if (turns < 1) {
+    fmt::print(stderr, "bench_mixtures [TURNS]: medians over so many turns, by default 7\n");
+    return 2;
+  }
+  jostle::bench::compare(turns);
+}
