@@ -13,14 +13,6 @@ double into_period(double x, double width) {
   return wrap_coordinate(x - std::floor(x / width) * width, width);
 }
 
-double along(Vec3 r, int direction) {
-  return direction == 0 ? r.x : direction == 1 ? r.y : r.z;
-}
-
-Vec3 unit(int direction, double sign) {
-  return {direction == 0 ? sign : 0, direction == 1 ? sign : 0, direction == 2 ? sign : 0};
-}
-
 }  // namespace
 
 Boundary::Boundary(const Container& container) {
@@ -32,42 +24,24 @@ Boundary::Boundary(const Container& container) {
   if (periodic_z) height = extent.z;
 }
 
-double Face::distance(Vec3 r) const {
-  if (kind == Kind::lower_plane) return along(r, direction) - place;
-  if (kind == Kind::upper_plane) return place - along(r, direction);
-  const double x = r.x - place, y = r.y - place;
-  return place - std::sqrt(x * x + y * y);
-}
-
-Vec3 Face::normal(Vec3 r) const {
-  if (kind == Kind::lower_plane) return unit(direction, 1);
-  if (kind == Kind::upper_plane) return unit(direction, -1);
-  const double x = r.x - place, y = r.y - place;
-  const double from_axis = std::sqrt(x * x + y * y);
-  const double inverse = from_axis > 0 ? 1 / from_axis : 0;
-  return {-x * inverse, -y * inverse, 0};
-}
-
 double Face::recession(Vec3 r, Vec3 v) const {
-  if (kind == Kind::lower_plane) return along(v, direction);
-  if (kind == Kind::upper_plane) return -along(v, direction);
+  if (!is_tube) return dot(inward, v);
   const double x = r.x - place, y = r.y - place;
   const double from_axis = std::sqrt(x * x + y * y);
   return from_axis > 0 ? -((x * v.x + y * v.y) / from_axis) : 0;
 }
 
 Faces::Faces(const Boundary& boundary) {
-  using enum Face::Kind;
-  if (boundary.has_floor()) add({"floor", lower_plane});
+  if (boundary.has_floor()) add({"floor", {0, 0, 1}});
   if (boundary.planes_x()) {
-    add({"x_min", lower_plane, 0, 0});
-    add({"x_max", upper_plane, 0, boundary.width_x});
+    add({"x_min", {1, 0, 0}});
+    add({"x_max", {-1, 0, 0}, boundary.width_x});
   }
   if (boundary.planes_y()) {
-    add({"y_min", lower_plane, 1, 0});
-    add({"y_max", upper_plane, 1, boundary.width_y});
+    add({"y_min", {0, 1, 0}});
+    add({"y_max", {0, -1, 0}, boundary.width_y});
   }
-  if (boundary.tube) add({"tube", tube, 2, boundary.axis()});
+  if (boundary.tube) add({"tube", {}, boundary.axis(), true});
 }
 
 double footprint_area(const Boundary& boundary, double from_sides) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -33,18 +34,30 @@ struct Boundary : ContainerShape {
   double axis() const { return 0.5 * width_x; }
 };
 
-/// The floor or a side: a plane across one direction, or the inside of a vertical tube.
+/// The floor or a side: a plane, or the inside of a vertical tube.
 struct Face {
-  enum class Kind { lower_plane, upper_plane, tube };
   const char* name;  // "floor", "x_min", "x_max", "y_min", "y_max" or "tube"
-  Kind kind;
-  int direction = 2;  // of a plane: 0, 1, 2 across x, y, z
-  double place = 0;  // of a plane: its coordinate. Of a tube: its radius, and where its axis stands
+  Vec3 inward;       // of a plane: its unit normal into the container. Of a tube: zero
+  double place = 0;  // of a plane: the origin's distance from it. Of a tube: its radius, and where
+                     // its axis stands
+  bool is_tube = false;
 
-  /// How far r is from the face; negative outside.
-  double distance(Vec3 r) const;
-  /// The unit normal into the container where the face is nearest to r; zero on a tube's axis.
-  Vec3 normal(Vec3 r) const;
+  /// How far a point is from a face (negative outside), and the unit normal into the container
+  /// where the face is nearest; the normal is zero on a tube's axis.
+  struct Nearest {
+    double distance;
+    Vec3 normal;
+  };
+
+  Nearest nearest(Vec3 r) const {
+    if (!is_tube) return {dot(inward, r) + place, inward};
+    const double x = r.x - place, y = r.y - place;
+    const double from_axis = std::sqrt(x * x + y * y);
+    const double inverse = from_axis > 0 ? 1 / from_axis : 0;
+    return {place - from_axis, {-x * inverse, -y * inverse, 0}};
+  }
+  double distance(Vec3 r) const { return nearest(r).distance; }
+  Vec3 normal(Vec3 r) const { return nearest(r).normal; }
   /// How fast a point at r with velocity v goes away from the face.
   double recession(Vec3 r, Vec3 v) const;
 };

@@ -76,9 +76,9 @@ void ContactLists::measure_sides(std::span<const Row> rows, double floor_height)
   for (std::size_t at = 0; at < floor_.n; ++at)
     set(floor_, at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
   for (std::size_t at = 0; at < sides_.n; ++at) {
-    const Vec3 r = centre_of(rows[sides_.first[at]]);
-    const Face& face = faces_[sides_.source[at]];
-    set(sides_, at, face.normal(r), face.distance(r));
+    const auto [distance, normal] =
+        faces_[sides_.source[at]].nearest(centre_of(rows[sides_.first[at]]));
+    set(sides_, at, normal, distance);
   }
 }
 

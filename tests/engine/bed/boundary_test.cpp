@@ -1,5 +1,6 @@
 #include "engine/bed/boundary.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -83,5 +84,31 @@ TEST_CASE("A boundary wraps, compares and clears as the container's own function
         container);
     CHECK(clear > 100);
     if (boundary.has_floor()) CHECK(blocked > 100);
+  }
+}
+
+TEST_CASE("The nearest face of a container is as deep as its boundary, and normals point inwards") {
+  RandomStream random(stream_key(82, 0, 0, Purpose::start));
+  for (const Container& container : containers()) {
+    CAPTURE(container.index());
+    const Boundary boundary(container);
+    const Faces faces(boundary);
+    for (int draw = 0; draw < 2000 && faces.size() > 0; ++draw) {
+      const auto within = [&](double width) { return width * (1.2 * random.uniform() - 0.1); };
+      const double x = within(boundary.width_x), y = within(boundary.width_y), z = within(5);
+      const Vec3 r{x, y, z};
+      double least = 100;
+      for (const Face& face : faces) {
+        CAPTURE(face.name, r.x, r.y, r.z);
+        const auto [distance, normal] = face.nearest(r);
+        least = std::min(least, distance);
+        REQUIRE(norm_squared(normal) == Approx(1));
+        // A step along the normal leads away from the face by its length; so does a velocity.
+        REQUIRE(face.distance(r + 1e-3 * normal) - distance == Approx(1e-3).epsilon(1e-9));
+        REQUIRE(face.recession(r, 2.0 * normal) == Approx(2));
+        REQUIRE(face.distance(r - distance * normal) == Approx(0).margin(1e-12));
+      }
+      REQUIRE(sphere_radius - least == Approx(boundary_depth(boundary, r)).margin(1e-12));
+    }
   }
 }
