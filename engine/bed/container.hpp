@@ -127,7 +127,28 @@ struct FullyPeriodicBox {
   }
 };
 
-using Container = std::variant<PeriodicBox, WalledBox, Cylinder, FullyPeriodicBox>;
+/// A Hele-Shaw cell: periodic along x, between two vertical plates across y. Centres in [0, width)
+/// and [1/2, gap - 1/2].
+struct Plates {
+  double width = 16, gap = 4;
+
+  static constexpr ContainerShape shape() { return {.periodic_x = true}; }
+  Vec3 extent() const { return {width, gap, 0}; }
+  static Plates of(Vec3 extent) { return {extent.x, extent.y}; }
+  bool operator==(const Plates&) const = default;
+
+  static constexpr About about{
+      .name = "plates", .text = "periodic along x, two plates across y", .title = "Two plates"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("width", &Plates::width, Number{periodic_width_range},
+              "Diameters: the period along x", {.required = "a number, diameters"}),
+        field("gap", &Plates::gap, Number{walled_width_range},
+              "Diameters between the plates; plates only", {.required = "a number, diameters"})};
+  }
+};
+
+using Container = std::variant<PeriodicBox, WalledBox, Cylinder, FullyPeriodicBox, Plates>;
 
 /// "walls": what scenes and files call it.
 std::string name_of(const Container& container);

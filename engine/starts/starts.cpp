@@ -90,8 +90,8 @@ struct StartFault {
     if (const auto fault = needs_gravity()) return fault;
     const Boundary boundary(container);
     if (!boundary.planes_x() && !boundary.planes_y()) {
-      return "a fitted pour is fitted between walls: it needs the sides \"walls\" (elsewhere take "
-             "\"steepest_descent\")";
+      return "a fitted pour is fitted between walls, and the sides \"" + name_of(container) +
+             "\" have no plane walls: take \"steepest_descent\"";
     }
     const auto fault = width_fault(PeriodicBox{width_x(container), width_y(container)});
     if (!fault) return std::nullopt;

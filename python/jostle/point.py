@@ -23,6 +23,9 @@ STATUS = ("missing", "unfinished", "done", "failed")
 FOLDS = ("mean", "sigma", "error", "count")
 
 
+PERIODIC_DIRECTIONS = {"periodic": "xy", "walls": "", "cylinder": "", "fully_periodic": "xyz", "plates": "x"}
+
+
 @dataclasses.dataclass(frozen=True)
 class Box:
     """What holds the spheres. boundary: "periodic" or "none" along x, y, z; edges: [3], diameters. An open
@@ -297,11 +300,9 @@ class Point:
         attributes = self._file[f"sweep/{self._name}"].attrs
         x, y, z = attributes["widths"]
         kind = text(attributes["container"])
-        if kind not in ("periodic", "walls", "cylinder", "fully_periodic"):
+        if kind not in PERIODIC_DIRECTIONS:
             raise ResultsError(f"a container of a kind that this version does not know: {kind}")
-        sides = "periodic" if "periodic" in kind else "none"
-        open_top = kind != "fully_periodic"
+        x_ends, y_ends, z_ends = ("periodic" if axis in PERIODIC_DIRECTIONS[kind] else "none" for axis in "xyz")
         if kind == "cylinder":
             y = x
-        return Box((sides, sides, "none" if open_top else "periodic"),
-                   np.array([x, y, np.inf if open_top else z]))
+        return Box((x_ends, y_ends, z_ends), np.array([x, y, z if z_ends == "periodic" else np.inf]))

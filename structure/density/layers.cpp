@@ -58,6 +58,14 @@ double places_in_disc(double radius) {
   return most;
 }
 
+// Places of a close-packed layer between two planes, per period: rows lie along the planes or
+// across them.
+double places_between_planes(double period, double across) {
+  const double along_planes = (std::floor(across / row + rounding) + 1) * period;
+  const double row_across = 0.5 * (places_on(across, 0) + places_on(across, 0.5));
+  return std::max(along_planes, row_across * period / row);
+}
+
 // Spheres of a full layer. Between walls whole rows fit, and the area of a footprint counts too
 // few, as places at its edge have half of their cells outside.
 double full_layer(const Container& container) {
@@ -66,6 +74,8 @@ double full_layer(const Container& container) {
   if (!boundary.has_walls()) return boundary.width_x * boundary.width_y / row;
   const double along_x = boundary.width_x - 2 * boundary.margin_x();
   const double along_y = boundary.width_y - 2 * boundary.margin_y();
+  if (boundary.periodic_x) return places_between_planes(along_x, along_y);
+  if (boundary.periodic_y) return places_between_planes(along_y, along_x);
   return std::max(places_in_rectangle(along_x, along_y), places_in_rectangle(along_y, along_x));
 }
 

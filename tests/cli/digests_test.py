@@ -72,6 +72,10 @@ SCENES = {
         relax={"metropolis": {"adapt": {}}, "sampler": "skipping", "max_sweeps": 1500,
                "stop": {"bulk_fraction": {"window": {"heights": [1, 3]}, "measure_start": False,
                                           "every_trials": 20000}}}),
+    "between_plates": scene(
+        container={"sides": "plates", "width": 4, "gap": 3.5}, protocol=[taps({"dilate": 0.05}, 3)],
+        relax={"polar": {}, "sampler": "skipping", "stop": {"sweeps": 100}},
+        snapshots={"taps": [0, 3]}),
     "crystals": scene(
         realizations=1, container={"sides": "periodic", "width": 4}, spheres=64,
         start={"crystal": {"lattice": "hcp", "stretch": True}},

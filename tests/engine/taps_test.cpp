@@ -40,8 +40,8 @@ TEST_CASE("a dilation of 1.025 about the floor spheres lifts a 0.567 bed like ga
 }
 
 TEST_CASE("no tap creates an overlap beyond rounding") {
-  for (const Container& container :
-       {Container{PeriodicBox{5, 5}}, Container{WalledBox{5, 5}}, Container{Cylinder{5.5}}}) {
+  for (const Container& container : {Container{PeriodicBox{5, 5}}, Container{WalledBox{5, 5}},
+                                     Container{Cylinder{5.5}}, Container{Plates{5, 5}}}) {
     const Packing packing = random_packing(container, 60, 8, 4);
     for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
                            Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{0}}, Tap{Dilate{1e-16}}}) {

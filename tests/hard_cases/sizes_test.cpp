@@ -25,8 +25,8 @@ double deepest_pair_by_height(const Packing& packing) {
 
 std::vector<Container> least_containers() {
   const double least = std::nextafter(least_periodic_width, 3.0);
-  return {PeriodicBox{least, least}, PeriodicBox{least, 7}, WalledBox{1, 1}, WalledBox{1, 5},
-          Cylinder{1}};
+  return {PeriodicBox{least, least}, PeriodicBox{least, 7}, WalledBox{1, 1},
+          WalledBox{1, 5},           Cylinder{1},           Plates{least, 1}};
 }
 
 }  // namespace

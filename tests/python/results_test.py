@@ -183,6 +183,20 @@ class OtherFiles(Case):
         self.assertEqual(point.fitting["spheres_moved"].shape, (3,))
         self.assertEqual(point.box().boundary, ("none",) * 3)
 
+    def test_boxes_of_every_container(self):
+        # With and without snapshots: from the file's boxes, and from its plan.
+        for sides, widths, boundary, edges in (
+                ("periodic", {"width": [4, 5]}, ("periodic", "periodic", "none"), (4, 5)),
+                ("walls", {"width": [4, 5]}, ("none", "none", "none"), (4, 5)),
+                ("cylinder", {"diameter": 4}, ("none", "none", "none"), (4, 4)),
+                ("plates", {"width": 4, "gap": 3}, ("periodic", "none", "none"), (4, 3))):
+            scene = changed(TINY, sweep=None, container={"sides": sides} | widths, protocol=[])
+            for keeps in ({"snapshots": {"taps": [0]}}, {"snapshots": None}):
+                with self.subTest(sides=sides, **keeps):
+                    box = self.open(made(changed(scene, **keeps))).points[0].box()
+                    self.assertEqual(box.boundary, boundary)
+                    np.testing.assert_array_equal(box.edges[:2], edges)
+
 
 class BadFiles(Case):
     def refused(self, pattern, path="bad.h5", **keywords):

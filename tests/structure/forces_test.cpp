@@ -42,6 +42,7 @@ TEST_CASE("the walls press and rub with the sums of their contacts") {
           std::vector<std::string>{"floor", "x_min", "x_max", "y_min", "y_max"});
   CHECK(forces.walls ==
         std::vector<WallForce>{{5, {0.5, -0.25, 0}}, {3, {0, 0.5, 1}}, {0, {}}, {0, {}}, {0, {}}});
+  CHECK(wall_names(Plates{}) == std::vector<std::string>{"floor", "y_min", "y_max"});
   CHECK(wall_names(Cylinder{}) == std::vector<std::string>{"floor", "tube"});
   CHECK(wall_names(PeriodicBox{}) == std::vector<std::string>{"floor"});
   CHECK(wall_names(FullyPeriodicBox{}).empty());

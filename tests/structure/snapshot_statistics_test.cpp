@@ -15,7 +15,8 @@ namespace {
 std::vector<unsigned> by_brute_force(const Packing& packing, double cut) {
   const bool periodic = std::holds_alternative<PeriodicBox>(packing.container);
   const auto* full = std::get_if<FullyPeriodicBox>(&packing.container);
-  const int lateral = periodic || full != nullptr ? 3 : 0, vertical = full != nullptr ? 3 : 0;
+  const int along_y = periodic || full != nullptr ? 3 : 0, vertical = full != nullptr ? 3 : 0;
+  const int along_x = std::holds_alternative<Plates>(packing.container) ? 3 : along_y;
   const double a = width_x(packing.container), b = width_y(packing.container);
   const double c = full != nullptr ? full->height : 0;
   std::vector<unsigned> numbers;
@@ -23,8 +24,8 @@ std::vector<unsigned> by_brute_force(const Packing& packing, double cut) {
     unsigned number = 0;
     for (std::size_t j = 0; j < packing.centres.size(); ++j) {
       const Vec3 way = packing.centres[j] - packing.centres[i];
-      for (int u = -lateral; u <= lateral; ++u) {
-        for (int v = -lateral; v <= lateral; ++v) {
+      for (int u = -along_x; u <= along_x; ++u) {
+        for (int v = -along_y; v <= along_y; ++v) {
           for (int w = -vertical; w <= vertical; ++w) {
             if (i == j && u == 0 && v == 0 && w == 0) continue;
             number += norm_squared(way + Vec3{u * a, v * b, w * c}) <= cut * cut;
@@ -47,6 +48,7 @@ TEST_CASE("Coordination by cells is coordination over all pairs and images") {
       {WalledBox{5, 7}, 5},
       {WalledBox{1.05, 4}, 9},
       {Cylinder{6}, 5},
+      {Plates{6, 3}, 6},
       {Cylinder{1.2}, 20},
       {FullyPeriodicBox{6, 5, 4}, 4},
       {FullyPeriodicBox{2.02, 2.3, 3.3}, 3.3},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "engine/bed/random.hpp"
@@ -12,7 +13,8 @@ using namespace jostle;
 namespace {
 
 std::vector<Container> containers() {
-  return {PeriodicBox{4, 5.1}, WalledBox{4, 3.3}, Cylinder{4.7}, FullyPeriodicBox{4, 5.1, 6.3}};
+  return {PeriodicBox{4, 5.1}, WalledBox{4, 3.3}, Cylinder{4.7}, FullyPeriodicBox{4, 5.1, 6.3},
+          Plates{4, 3.3}};
 }
 
 }  // namespace
@@ -43,6 +45,22 @@ TEST_CASE("A boundary says of each container where it ends") {
   CHECK(tube.periods() == Vec3{});
   CHECK(tube.axis() == 3.5);
   CHECK(tube.width_y == 7);
+
+  const Boundary plates(Plates{5, 4});
+  CHECK(plates.periodic_x);
+  CHECK(plates.planes_y());
+  CHECK_FALSE(plates.periodic_sides());
+  CHECK(plates.has_walls());
+  CHECK(plates.has_floor());
+  CHECK(plates.periods() == Vec3{5, 0, 0});
+  CHECK(plates.margin_x() == 0);
+  CHECK(plates.margin_y() == sphere_radius);
+  std::vector<std::string> faces;
+  for (const Face& face : Faces(plates)) faces.emplace_back(face.name);
+  CHECK(faces == std::vector<std::string>{"floor", "y_min", "y_max"});
+  CHECK(footprint_area(plates, 1) == 10);
+  CHECK(in_footprint(plates, {0.1, 1, 3}, 1));
+  CHECK_FALSE(in_footprint(plates, {2, 0.9, 3}, 1));
 
   const Boundary bulk(FullyPeriodicBox{4, 5, 6});
   CHECK_FALSE(bulk.has_floor());

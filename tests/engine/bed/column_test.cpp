@@ -66,8 +66,8 @@ TEST_CASE("hard spheres under gravity settle to the heights of an independent Mo
 TEST_CASE("one sphere obeys the barometric law in every container", "[statistics]") {
   // <z> = 1/2 + 1/alpha exactly.
   const double alpha = GENERATE(1.0, 10.0);
-  for (const Container& container :
-       {Container{PeriodicBox{3, 3}}, Container{WalledBox{2, 2}}, Container{Cylinder{2}}}) {
+  for (const Container& container : {Container{PeriodicBox{3, 3}}, Container{WalledBox{2, 2}},
+                                     Container{Cylinder{2}}, Container{Plates{3, 2}}}) {
     const Estimate own = mean_height_at_rest(container, 1, alpha, 2 / alpha, 200'000, 7);
     CAPTURE(container.index(), alpha, own.value, own.error);
     CHECK(own.error < 0.01 / alpha);

@@ -13,10 +13,11 @@ namespace {
 std::size_t by_all_images(const Container& container, const std::vector<Vec3>& centres, Vec3 p) {
   const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
   const bool sides = bulk != nullptr || std::holds_alternative<PeriodicBox>(container);
+  const int most_y = sides ? 2 : 0, most_x = std::holds_alternative<Plates>(container) ? 2 : most_y;
   std::size_t count = 0;
   for (const Vec3& r : centres) {
-    for (int i = sides ? -2 : 0; i <= (sides ? 2 : 0); ++i) {
-      for (int j = sides ? -2 : 0; j <= (sides ? 2 : 0); ++j) {
+    for (int i = -most_x; i <= most_x; ++i) {
+      for (int j = -most_y; j <= most_y; ++j) {
         for (int k = bulk != nullptr ? -2 : 0; k <= (bulk != nullptr ? 2 : 0); ++k) {
           const Vec3 image = {r.x + i * width_x(container), r.y + j * width_y(container),
                               r.z + (bulk != nullptr ? k * bulk->height : 0)};
@@ -35,7 +36,7 @@ TEST_CASE("Cells meet every image of every sphere near a point, also after moves
   for (const Container& container :
        {Container{PeriodicBox{2.01, 3}}, Container{PeriodicBox{6.5, 9}},
         Container{WalledBox{1, 4.4}}, Container{Cylinder{5}},
-        Container{FullyPeriodicBox{2.01, 4, 2.5}}}) {
+        Container{FullyPeriodicBox{2.01, 4, 2.5}}, Container{Plates{2.01, 1.3}}}) {
     const auto* bulk = std::get_if<FullyPeriodicBox>(&container);
     const double height = bulk != nullptr ? bulk->height : 7;
     const auto draw = [&] {

@@ -148,8 +148,9 @@ TEST_CASE("a bed falls between walls as by brute force, to the bit, on every ins
 }
 
 TEST_CASE("a bed goes on from any step of a tap as if it had not been stopped") {
-  for (const Container& container : {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}},
-                                     Container{Cylinder{4.5}}, Container{PeriodicBox{2.05, 6}}}) {
+  for (const Container& container :
+       {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}}, Container{Cylinder{4.5}},
+        Container{PeriodicBox{2.05, 6}}, Container{Plates{4, 3.5}}}) {
     for (const ContactLaw& law :
          {ContactLaw{WaltonBraun{}}, ContactLaw{WaltonBraun{.friction = 0}},
           ContactLaw{LinearSpringDashpot{}}, ContactLaw{LinearSpringDashpot{.friction = 0}}}) {

@@ -71,8 +71,9 @@ WallSums wall_sums(const BedMechanics& bed, std::uint32_t n) {
 }  // namespace
 
 TEST_CASE("contacts have the forces that the next step moves spheres by") {
-  const Container container = GENERATE(Container{PeriodicBox{4, 4}}, Container{WalledBox{3.3, 4}},
-                                       Container{Cylinder{4}}, Container{PeriodicBox{2.05, 3}});
+  const Container container =
+      GENERATE(Container{PeriodicBox{4, 4}}, Container{WalledBox{3.3, 4}}, Container{Cylinder{4}},
+               Container{PeriodicBox{2.05, 3}}, Container{Plates{4, 3.3}});
   const ContactLaw law = GENERATE(ContactLaw{WaltonBraun{.stiffness = 1e4}},
                                   ContactLaw{LinearSpringDashpot{.stiffness = 1e4}},
                                   ContactLaw{WaltonBraun{.stiffness = 1e4, .friction = 0}},

@@ -49,8 +49,9 @@ std::uint64_t compare_with_plain_loop(const Packing& start, const Move& move,
 std::uint64_t compare_with_plain_loop(std::uint32_t n_spheres,
                                       const std::vector<std::uint64_t>& pieces) {
   const std::vector<Container> containers = {
-      PeriodicBox{2.2, 2.05}, PeriodicBox{4.3, 5}, WalledBox{1.2, 6},          WalledBox{4, 4},
-      Cylinder{1.4},          Cylinder{4.5},       FullyPeriodicBox{4, 4.5, 5}};
+      PeriodicBox{2.2, 2.05}, PeriodicBox{4.3, 5}, WalledBox{1.2, 6},           WalledBox{4, 4},
+      Cylinder{1.4},          Cylinder{4.5},       FullyPeriodicBox{4, 4.5, 5}, Plates{4.3, 3},
+      Plates{2.05, 1.2}};
   std::uint64_t compared = 0;
   for (const Container& container : containers) {
     for (const Move& move : moves()) {
@@ -79,8 +80,8 @@ TEST_CASE("the trial loop keeps to the plain loop where hardly any trial is acce
 TEST_CASE("the trial loop keeps to the plain loop where spheres wander behind their caches") {
   // Accepted often enough that lists are renewed, rarely enough that trials are held against
   // blocker caches first.
-  for (const Container& container : std::vector<Container>{FullyPeriodicBox{4.1, 4.1, 4.1},
-                                                           WalledBox{4.2, 4.3}, Cylinder{4.6}}) {
+  for (const Container& container : std::vector<Container>{
+           FullyPeriodicBox{4.1, 4.1, 4.1}, WalledBox{4.2, 4.3}, Cylinder{4.6}, Plates{4.2, 4.3}}) {
     CAPTURE(container.index());
     const Packing start = random_packing(container, 45, 6, 14);
     const MetropolisMove move{0.5, has_gravity(container) ? infinity : 0.0};

@@ -87,8 +87,8 @@ TEST_CASE("Stretched rows never overlap, and 12 half-shifted rows on 12 x 12 fil
 }
 
 TEST_CASE("A crystal between walls leaves out the sites that do not fit") {
-  for (const Container& container :
-       {Container{WalledBox{6, 6}}, Container{WalledBox{5.3, 7.7}}, Container{Cylinder{7}}}) {
+  for (const Container& container : {Container{WalledBox{6, 6}}, Container{WalledBox{5.3, 7.7}},
+                                     Container{Cylinder{7}}, Container{Plates{6, 5.3}}}) {
     for (const Lattice lattice : {Lattice::hcp, Lattice::fcc}) {
       const Packing packing = crystal({lattice}, container, 250);
       CHECK(packing.centres.size() == 250);

@@ -15,8 +15,9 @@ Packing fitted(const Container& container, std::uint32_t n, Packing* before = nu
 }  // namespace
 
 TEST_CASE("A fitted pour lies between its walls and is the same from the same stream") {
-  for (const Container& box : {Container{WalledBox{6, 7}}, Container{WalledBox{2.001, 2.6}},
-                               Container{WalledBox{2.01, 9}}, Container{WalledBox{3, 3}}}) {
+  for (const Container& box :
+       {Container{WalledBox{6, 7}}, Container{WalledBox{2.001, 2.6}}, Container{WalledBox{2.01, 9}},
+        Container{WalledBox{3, 3}}, Container{Plates{6, 5}}}) {
     const Packing packing = fitted(box, 300);
     CHECK(packing.centres.size() == 300);
     CHECK(deepest_overlap_brute_force(packing).depth <= 1e-12);

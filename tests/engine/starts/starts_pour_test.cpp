@@ -105,8 +105,8 @@ TEST_CASE("Steepest-descent pours have the fractions and contacts of an independ
 
 TEST_CASE("Between walls and in tubes every poured sphere is carried, and the bed is looser") {
   const double periodic = solids_fraction(poured(PeriodicBox{12, 12}, 2000, 0), HeightWindow{3, 8});
-  for (const Container& container :
-       {Container{WalledBox{12, 12}}, Container{WalledBox{8, 15}}, Container{Cylinder{13.5}}}) {
+  for (const Container& container : {Container{WalledBox{12, 12}}, Container{WalledBox{8, 15}},
+                                     Container{Cylinder{13.5}}, Container{Plates{14, 9}}}) {
     const Packing packing = poured(container, 2000, 1);
     CHECK(deepest_overlap_brute_force(packing).depth <= 1e-12);
     CHECK(unsupported(packing) == 0);

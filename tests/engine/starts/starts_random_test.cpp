@@ -15,8 +15,8 @@ Packing scattered(RandomSettle start, const Container& container, std::uint32_t 
 }  // namespace
 
 TEST_CASE("A random settle starts from random places without overlap at the asked fraction") {
-  for (const Container& container :
-       {Container{PeriodicBox{8, 8}}, Container{WalledBox{8, 8}}, Container{Cylinder{8}}}) {
+  for (const Container& container : {Container{PeriodicBox{8, 8}}, Container{WalledBox{8, 8}},
+                                     Container{Cylinder{8}}, Container{Plates{9, 7}}}) {
     for (const double fraction : {0.02, 0.1, 0.25}) {
       const Packing packing = scattered({fraction}, container, 1500);
       CHECK(packing.centres.size() == 1500);

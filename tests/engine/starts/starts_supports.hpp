@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/packing.hpp"
 
@@ -25,13 +26,13 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
     if (length < packing.radius(sphere) + packing.radius(other) + touch_tolerance)
       found.push_back((1 / length) * apart);
   }
-  if (const auto* box = std::get_if<WalledBox>(&packing.container)) {
-    const double reach = packing.radius(sphere) + touch_tolerance;
-    if (r.x < reach) found.push_back({1, 0, 0});
-    if (r.y < reach) found.push_back({0, 1, 0});
-    if (r.x > box->width_x - reach) found.push_back({-1, 0, 0});
-    if (r.y > box->width_y - reach) found.push_back({0, -1, 0});
-  } else if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
+  const Boundary boundary(packing.container);
+  const double reach = packing.radius(sphere) + touch_tolerance;
+  if (boundary.planes_x() && r.x < reach) found.push_back({1, 0, 0});
+  if (boundary.planes_y() && r.y < reach) found.push_back({0, 1, 0});
+  if (boundary.planes_x() && r.x > boundary.width_x - reach) found.push_back({-1, 0, 0});
+  if (boundary.planes_y() && r.y > boundary.width_y - reach) found.push_back({0, -1, 0});
+  if (const auto* tube = std::get_if<Cylinder>(&packing.container)) {
     const double axis = 0.5 * tube->diameter, dx = r.x - axis, dy = r.y - axis;
     const double off_axis = std::sqrt(dx * dx + dy * dy);
     if (off_axis > axis - packing.radius(sphere) - touch_tolerance && off_axis > 0) {

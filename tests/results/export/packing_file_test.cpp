@@ -34,7 +34,7 @@ Packing read_text(const std::string& text, const PackingSelector& selector = {})
 
 TEST_CASE("extended XYZ reads back to the same bits in every container") {
   const Container container = GENERATE(as<Container>{}, PeriodicBox{16, 7.0 / 3}, WalledBox{4, 5},
-                                       Cylinder{19.3}, FullyPeriodicBox{3, 4, 5.1});
+                                       Cylinder{19.3}, FullyPeriodicBox{3, 4, 5.1}, Plates{5, 4});
   const TemporaryFolder folder;
   const Packing packing = some_packing(container);
   write_extended_xyz(folder / "a.xyz", packing);

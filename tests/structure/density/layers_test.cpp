@@ -125,6 +125,14 @@ TEST_CASE("A full layer between walls and in a tube has the filling 1") {
     CHECK(1 / one == Approx(std::max(most_places(container, false), most_places(container, true)))
                          .epsilon(1e-9));
   }
+  // Between plates a row along them closes over the period: one row, three of them, and five rows
+  // of 6 after which rows across the gap hold 5 and 4 by turns.
+  const auto places = [](double gap) {
+    return 1 / static_cast<double>(layers({Plates{6, gap}, {{0.5, 0.5, 0.5}}})[0].filling);
+  };
+  CHECK(places(1) == Approx(6));
+  CHECK(places(1 + std::sqrt(3.0) + 0.001) == Approx(18));
+  CHECK(places(5) == Approx(4.5 * 6 * 2 / std::sqrt(3.0)));
   // The layers of crystals: of a lattice with a row along x, and the next, which lies in its holes.
   for (const double width : {5.0, 7.0, 9.3, 16.0}) {
     const Packing between_walls = crystal(WalledBox{width, width}, 2000);

@@ -129,6 +129,24 @@ TEST_CASE("Profiles are what random points find") {
     const auto distance = [](Vec3 r) { return std::min({r.x, 5 - r.x, r.y, 6 - r.y}); };
     check_misfit(misfit_by_sampling(packing, profile, window, distance, points), profile.size());
   }
+  SECTION("between plates, also near them") {
+    const Packing packing = poured(Plates{6, 4}, 180, 8);
+    const HeightWindow window{0.8, 4.1};
+    const Profile along_x = transverse_profile(packing, Axis::x, even_edges(0, 6, 0.3), window);
+    check_misfit(misfit_by_sampling(
+                     packing, along_x, window, [](Vec3 r) { return r.x; }, points),
+                 along_x.size());
+    const Profile along_y = transverse_profile(packing, Axis::y, even_edges(0, 4, 0.25), window);
+    check_misfit(misfit_by_sampling(
+                     packing, along_y, window, [](Vec3 r) { return r.y; }, points),
+                 along_y.size());
+    // Their distance is that of both halves of y.
+    const Profile near = wall_profile(packing, even_edges(0, 2, 0.25), window);
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const double halves = along_y.values[k] + along_y.values[along_y.size() - 1 - k];
+      CHECK(near.values[k] == Approx(0.5 * halves).epsilon(1e-12));
+    }
+  }
   SECTION("from the axis of a cylinder") {
     const Packing packing = poured(Cylinder{6}, 200, 7);
     const HeightWindow window{0.8, 4.1};
@@ -261,6 +279,14 @@ TEST_CASE("Lateral and central parts make up the whole") {
     CHECK(parts.lateral ==
           Approx((x.values[0] + x.values[2] + y.values[0] + y.values[2]) / 4).epsilon(1e-12));
     CHECK(parts.central == Approx((x.values[1] + y.values[1]) / 2).epsilon(1e-12));
+    CHECK_THROWS_AS(lateral_and_central(packing, window, 4), std::invalid_argument);
+  }
+  SECTION("between plates y alone has walls") {
+    const Packing packing = poured(Plates{7, 8}, 400, 14);
+    const HeightWindow window{1, 5};
+    const LateralCentral parts = lateral_and_central(packing, window);
+    CHECK((7 * parts.lateral + parts.central) / 8 ==
+          Approx(solids_fraction(packing, window)).epsilon(1e-12));
     CHECK_THROWS_AS(lateral_and_central(packing, window, 4), std::invalid_argument);
   }
   SECTION("in a cylinder") {

@@ -9,8 +9,8 @@
 using namespace jostle;
 
 TEST_CASE("The overlap of a footprint is that of random points", "[statistics]") {
-  const auto container =
-      GENERATE(values<Container>({WalledBox{5, 7}, WalledBox{1.6, 3}, Cylinder{6}, Cylinder{2}}));
+  const auto container = GENERATE(values<Container>(
+      {WalledBox{5, 7}, WalledBox{1.6, 3}, Cylinder{6}, Cylinder{2}, Plates{7, 3}}));
   constexpr unsigned n = 40'000;
   const AccessibleFootprint footprint({container, {}});
   const Packing points = random_points(container, 2, n);
@@ -20,6 +20,7 @@ TEST_CASE("The overlap of a footprint is that of random points", "[statistics]")
     for (Vec3 r : points.centres) {
       r.x += dx;
       r.y += dy;
+      r = into_periods(boundary, r);
       const bool within = r.x >= 0 && r.y >= 0 && r.x <= boundary.width_x &&
                           r.y <= boundary.width_y && clear_of_boundaries(boundary, r);
       inside += within ? 1 : 0;

@@ -188,7 +188,7 @@ TEST_CASE("Gaps of an ideal gas have no exponent, also where sides cut the shell
           "[statistics]") {
   // Shells between gaps of 0.01 and 0.5 around the centres nearest to floor and sides.
   const auto container =
-      GENERATE(values<Container>({WalledBox{5, 5}, Cylinder{5}, WalledBox{9, 4}}));
+      GENERATE(values<Container>({WalledBox{5, 5}, Cylinder{5}, WalledBox{9, 4}, Plates{6, 4}}));
   constexpr int n_gases = 30;
   const ShellPart part(container);
   std::vector<double> exponents, unweighted;

@@ -13,15 +13,16 @@ namespace {
 // The ways from sphere i to all centres and images within the cut, spelt out.
 std::vector<Neighbour> by_brute_force(const Packing& packing, std::uint32_t i, double cut) {
   const auto* full = std::get_if<FullyPeriodicBox>(&packing.container);
-  const int lateral =
+  const int along_y =
       full != nullptr || std::holds_alternative<PeriodicBox>(packing.container) ? 3 : 0;
+  const int along_x = std::holds_alternative<Plates>(packing.container) ? 3 : along_y;
   const int vertical = full != nullptr ? 3 : 0;
   const double a = width_x(packing.container), b = width_y(packing.container);
   const double c = full != nullptr ? full->height : 0;
   std::vector<Neighbour> found;
   for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
-    for (int u = -lateral; u <= lateral; ++u) {
-      for (int v = -lateral; v <= lateral; ++v) {
+    for (int u = -along_x; u <= along_x; ++u) {
+      for (int v = -along_y; v <= along_y; ++v) {
         for (int w = -vertical; w <= vertical; ++w) {
           if (i == j && u == 0 && v == 0 && w == 0) continue;
           const Vec3 way = packing.centres[j] - packing.centres[i] + Vec3{u * a, v * b, w * c};
@@ -80,6 +81,7 @@ const std::vector<Room> rooms = {
     {WalledBox{1.05, 4}, 9},
     {Cylinder{6}, 5},
     {Cylinder{1.2}, 20},
+    {Plates{6, 3}, 6},
     {FullyPeriodicBox{6, 5, 4}, 4},
     {FullyPeriodicBox{2.02, 2.3, 3.3}, 3.3},
 };

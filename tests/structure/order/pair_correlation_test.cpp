@@ -92,6 +92,8 @@ TEST_CASE("g(r) of an ideal gas is 1 in every container, also where shells are c
       {"thin window on the floor", WalledBox{9, 8}, 12, HeightWindow{0.5, 1}, 3},
       {"tube", Cylinder{12}, 10, HeightWindow{0, 4}, 3},
       {"narrow tube", Cylinder{3}, 30, std::nullopt, 4},
+      {"between plates", Plates{10, 5}, 14, std::nullopt, 4},
+      {"between near plates", Plates{9, 2}, 20, std::nullopt, 4},
   }));
   CAPTURE(gas.name);
   constexpr std::uint64_t n_gases = 40;
@@ -115,7 +117,7 @@ TEST_CASE("g(r) of an ideal gas is 1 in every container, also where shells are c
 
 TEST_CASE("Gases of 40 spheres, pooled, have g = 1 in every container", "[statistics]") {
   const auto container = GENERATE(values<Container>(
-      {WalledBox{7, 7}, Cylinder{7}, PeriodicBox{7, 7}, FullyPeriodicBox{7, 7, 10}}));
+      {WalledBox{7, 7}, Cylinder{7}, PeriodicBox{7, 7}, FullyPeriodicBox{7, 7, 10}, Plates{7, 6}}));
   constexpr std::uint64_t n_gases = 60;
   std::vector<PairCorrelation> gases;
   for (std::uint64_t seed = 0; seed < n_gases; ++seed) {
@@ -158,6 +160,8 @@ TEST_CASE("Lattices have the neighbours of their shells in every container") {
       {PeriodicBox{6, 6}, 1.2, 0.6, 5, 10, 3},
       {PeriodicBox{4.8, 4.8}, 1.2, 0.6, 4, 10, 3},  // half a period is 2 a
       {FullyPeriodicBox{6, 6, 12}, 1.2, 0.6, 5, 10, 3},
+      {Plates{6, 7}, 1.2, 1.1, 5, 10, 3},
+      {Plates{7.2, 7}, 1.2, 0.5, 6, 10, 3},  // at the plates themselves
       {FullyPeriodicBox{4.8, 4.8, 4.8}, 1.2, 0.6, 4, 4, 2.6},
   }));
   const Packing lattice = cubic_lattice(container, spacing, first, n, n_layers);

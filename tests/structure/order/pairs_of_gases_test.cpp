@@ -99,6 +99,7 @@ TEST_CASE("Points that do not see each other have g = 1 in low and crowded beds"
   const auto gas = GENERATE(values<KnownGas>({
       {"layered, tube", Cylinder{9.3}, layered_gases(400), 24, 4},
       {"layered, walls", WalledBox{9, 8}, layered_gases(400), 24, 4},
+      {"layered, plates", Plates{9, 8}, layered_gases(400), 24, 4},
       {"layered, periodic", PeriodicBox{8, 8}, layered_gases(400), 24, 4},
   }));
   std::vector<PairCorrelation> all;

@@ -204,8 +204,8 @@ TEST_CASE("Regions keep away from walls") {
 TEST_CASE("The chance of a void is exact for small spheres in every container") {
   // Against 20 000 random points of the region, by brute force: within 3 standard errors.
   for (const Container& container :
-       {Container{WalledBox{4.5, 5}}, Container{Cylinder{5}}, Container{PeriodicBox{4.5, 5}},
-        Container{FullyPeriodicBox{4.5, 5, 6.5}}}) {
+       {Container{WalledBox{4.5, 5}}, Container{Cylinder{5}}, Container{Plates{4.5, 5}},
+        Container{PeriodicBox{4.5, 5}}, Container{FullyPeriodicBox{4.5, 5, 6.5}}}) {
     Packing packing{container, {}};
     for (int i = 0; i < 4 * 4 * 5; ++i) {
       const Vec3 r{0.55 + 1.03 * (i % 4), 0.6 + 1.1 * (i / 4 % 4), 0.5 + 1.2 * (i / 16)};

@@ -76,6 +76,8 @@ TEST_CASE("Voronoi cells fill their container") {
     if (std::hypot(r.x - 3, r.y - 3) < 2.5) tube.centres.push_back(r);
   }
   CHECK(sum(voronoi_cells(walled, 10).volumes) == Approx(9 * 7 * 10).epsilon(1e-10));
+  walled.container = Plates{9, 7};
+  CHECK(sum(voronoi_cells(walled, 10).volumes) == Approx(9 * 7 * 10).epsilon(1e-10));
   // Planes touch the tube from outside: the cells reach beyond it, a little.
   const double excess = sum(voronoi_cells(tube, 10).volumes) / (9 * 3.14159265358979 * 10);
   CHECK(excess > 1);

@@ -29,7 +29,7 @@ double depth(const CutBed& bed) {
 TEST_CASE("A large bed is cut to a smaller footprint and keeps its depth") {
   for (const Container& container :
        {Container(PeriodicBox{200, 200}), Container(PeriodicBox{400, 100}),
-        Container(WalledBox{200, 200}), Container(Cylinder{220})}) {
+        Container(WalledBox{200, 200}), Container(Cylinder{220}), Container(Plates{400, 100})}) {
     for (const std::uint32_t n : {20'001u, 40'000u, 1'000'000u, 10'000'000u}) {
       const Plan plan = plan_of(container, n);
       const CutBed bed = cut_down(plan, 20'000);

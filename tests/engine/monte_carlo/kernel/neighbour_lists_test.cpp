@@ -13,7 +13,8 @@ namespace {
 std::vector<Container> containers() {
   return {PeriodicBox{16, 16}, PeriodicBox{2.1, 2.1},     PeriodicBox{4.1, 9},
           WalledBox{1, 1},     WalledBox{8, 3},           Cylinder{1},
-          Cylinder{7},         FullyPeriodicBox{7, 7, 7}, FullyPeriodicBox{2.1, 5, 11}};
+          Cylinder{7},         FullyPeriodicBox{7, 7, 7}, FullyPeriodicBox{2.1, 5, 11},
+          Plates{2.1, 3}};
 }
 
 // Random points (they may overlap), with some on the seams and the upper edges.

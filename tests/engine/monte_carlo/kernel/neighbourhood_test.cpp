@@ -11,7 +11,8 @@ using namespace jostle;
 namespace {
 
 std::vector<Container> containers() {
-  return {PeriodicBox{4.2, 3.1}, WalledBox{4, 3.5}, Cylinder{4.4}, FullyPeriodicBox{4, 3.4, 4.6}};
+  return {PeriodicBox{4.2, 3.1}, WalledBox{4, 3.5}, Cylinder{4.4}, FullyPeriodicBox{4, 3.4, 4.6},
+          Plates{4, 3.5}};
 }
 
 // Every lane of every cache is as a new one would be.

@@ -234,6 +234,7 @@ TEST_CASE("every step beyond its bound overlaps, between walls") {
 
 TEST_CASE("every step beyond its bound overlaps, in a tube") {
   check_bounds(Cylinder{5}, 90);
+  check_bounds(Plates{4, 4.2}, 90);
   check_bounds(Cylinder{1.2}, 12);
 }
 
@@ -248,6 +249,7 @@ TEST_CASE("single precision tells only what double precision would") {
   check_blocked(PeriodicBox{4, 5}, 100);
   check_blocked(WalledBox{40, 3}, 70);
   check_blocked(Cylinder{5}, 90);
+  check_blocked(Plates{4, 4.2}, 90);
 }
 
 TEST_CASE("bounds are a function of the centres, whatever moves led there") {

@@ -150,6 +150,14 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: taps i
                200);
 }
 
+TEST_CASE("rejection-free sampling has the law of looking at every trial: taps between plates",
+          "[statistics]") {
+  const Plates plates{4.5, 4};
+  compare_taps(settled(plates, 100, PolarMove{}),
+               {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
+               200);
+}
+
 TEST_CASE("rejection-free sampling has the law of looking at every trial: accepted steps",
           "[statistics]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {

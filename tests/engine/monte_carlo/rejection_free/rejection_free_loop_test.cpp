@@ -33,8 +33,8 @@ Packing stored(const TrialLoop& loop, Packing packing) {
 }  // namespace
 
 TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
-  for (const Container& container :
-       {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}}, Container{Cylinder{5}}}) {
+  for (const Container& container : {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}},
+                                     Container{Cylinder{5}}, Container{Plates{4, 4}}}) {
     for (const Move& move : moves()) {
       const Packing start = random_packing(container, 60, 12, 5);
       const auto loop = rejection_free_loop(start, move);

@@ -17,6 +17,8 @@ TEST_CASE("A caption's words say bed and realizations, of every container") {
   CHECK(bed_words(point) == "1 sphere in four walls, 12.5 x 8 diameters");
   point.container = Cylinder{19};
   CHECK(bed_words(point) == "1 sphere in a cylinder, 19 diameters wide");
+  point.container = Plates{16, 3};
+  CHECK(bed_words(point) == "1 sphere in two plates, 16 x 3 diameters");
   point.container = FullyPeriodicBox{5, 6, 7};
   CHECK(bed_words(point) == "1 sphere in a fully periodic box, 5 x 6 x 7 diameters");
 }
