@@ -65,20 +65,19 @@ std::string limits_text(double low, double high, int digits) {
 }
 
 std::string value_with_error(double value, double error, double scale) {
-  constexpr int most_digits = 6, most_digits_plain = 10, most_digits_of_a_power = 15;
+  constexpr int most_digits = 6, most_digits_plain = 10;
   constexpr double smallest_plain = 1e-3, largest_plain = 1e7;
-  constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
-  const bool has_error = error > 0;
-  const double larger = std::max(std::abs(value), has_error ? error : 0.0);
+  constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), rounding = 1e-11;
   if (!std::isfinite(value)) return number_text(value, most_digits);
+  const double larger = std::max(std::abs(value), error > 0 ? error : 0.0);
   if (larger < noise * scale) return "0";
+  const bool has_error = error >= std::max(noise * scale, rounding * larger);
   if (!has_error) return number_text(value, most_digits);
   if (std::isinf(error)) return "no limit";
   const int decimals = 1 - exponent_of(error);
   const bool short_enough = decimals <= (larger < smallest_plain ? most_digits : most_digits_plain);
   if (short_enough && larger < largest_plain) return in_last_digits(value, error, decimals);
   const int power = exponent_of(larger);
-  if (decimals + power > most_digits_of_a_power) return number_text(value, most_digits_of_a_power);
   const double unit = std::pow(10.0, power);
   return in_last_digits(value / unit, error / unit, decimals + power) + power_text(power);
 }

@@ -8,8 +8,9 @@ namespace jostle::inline fitting {
 /// A value with its error in the last digits, "0.5913(12)" for 0.5913 +- 0.0012: both end at the
 /// second digit of the error. An error of 1 or more has its point, "12.3(4.5)"; where both are
 /// small or long they have one power of ten, "2.05(74)e-06". Rounding noise of numbers of the size
-/// of `scale` is "0". An error that is 0 or NaN is not known: the value alone, with six digits. An
-/// infinite error is "no limit", a value that is NaN "-".
+/// of `scale` is "0". An error that is 0, NaN or rounding noise beside the value or `scale` is not
+/// known: the value alone, with six digits. An infinite error is "no limit", a value that is NaN
+/// "-".
 std::string value_with_error(double value, double error, double scale = 1);
 
 /// Where a value lies: "0.57 to 0.61" with so many digits, "> 0.57", "< 0.61", or "no limit" where

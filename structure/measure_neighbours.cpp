@@ -1,4 +1,6 @@
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
@@ -151,6 +153,13 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
        .values = {centres > 0 ? 1.0 : 0.0},
        .long_name = "packings that have a central sphere",
        .pooling = Pooling::sum}};
+  if (pairs.widest_shell + pairs.bin_width < r_max) {
+    std::ostringstream text;
+    text << "no value beyond r_end = " << std::setprecision(4)
+         << pairs.widest_shell + pairs.bin_width
+         << ": no shell that begins farther out has room between the sides";
+    out.notes.emplace_back("neighbours", text.str());
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "engine/bed/boundary.hpp"
@@ -74,10 +75,11 @@ CrystalPlan plan_layers(Lattice lattice, Rows across, Rows rows) {
   return {across, rows, 0, 0.5 * a, 0.5 * b, close_packed ? fcc_layer : sunk};
 }
 
+// The shortest text that reads back as x.
 std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), x);
+  return {text.data(), end.ptr};
 }
 
 std::string footprint(double x, double y) {

@@ -1,6 +1,7 @@
 // Numbers as a physicist writes them.
 
 const minus = "\u2212";
+const rounding = 1e-11; // errors below it, relative to their value, are rounding noise
 
 function signed(text) {
   return text.replace(/^-/, minus);
@@ -27,7 +28,7 @@ export function superscript(n) {
 
 /// 0.5913(12): the error's first two digits, in units of the last digit of the value.
 export function withError(value, error) {
-  if (!Number.isFinite(value) || !Number.isFinite(error) || error <= 0) return number(value, 5);
+  if (!Number.isFinite(value) || !Number.isFinite(error) || error <= rounding * Math.abs(value)) return number(value, 5);
   if (error > 1e3 * Math.max(Math.abs(value), 1e-300)) return `${number(value, 2)} \u00b1 ${number(error, 2)}`;
   const scale = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
   if (scale >= 6 || scale < -4) {

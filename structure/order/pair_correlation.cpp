@@ -235,7 +235,7 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
       if (share <= 0) return;
       ++pairs.counts[bin];
       const double low = static_cast<double>(bin) * pairs.bin_width;
-      if (whole.is_too_wide(low, low + pairs.bin_width)) {
+      if (whole.exceeds_half_period(low + pairs.bin_width)) {
         pairs.neighbours[bin] += 1 / std::max(share, least_share);
       } else if (distance <= room) {
         pairs.neighbours[bin] +=
@@ -300,7 +300,10 @@ std::vector<double> PairCorrelation::g() const {
 std::vector<double> PairCorrelation::running_neighbours() const {
   std::vector<double> values(counts.size());
   double sum = 0;
-  for (std::size_t k = 0; k < counts.size(); ++k) values[k] = sum += neighbours[k] / shells[k];
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    sum += shells[k] > 0 ? neighbours[k] / shells[k] : not_a_number;
+    values[k] = sum;
+  }
   return values;
 }
 
@@ -336,13 +339,16 @@ PairCorrelation pair_correlation(const Packing& packing, const PairCorrelationSe
     pairs.r.push_back((static_cast<double>(k) + 0.5) * settings.bin_width);
   }
   const WholeShells whole(packing, displacements.footprint(), heights.centres, heights.all);
+  pairs.widest_shell = whole.widest();
   count_pairs(packing, heights, displacements, whole, pairs);
   const std::vector<Vec3> all_directions = even_directions(2000);
   for (std::size_t k = 0; k < n_bins; ++k) {
     const double low = static_cast<double>(k) * settings.bin_width, high = low + settings.bin_width;
     const Shell cut =
         pairs.n_centres > 0 ? shell_of(displacements, all_directions, low, high) : Shell{};
-    if (!whole.is_too_wide(low, high)) {
+    if (whole.exceeds_sides(low)) {
+      pairs.shells.push_back(0);
+    } else if (!whole.exceeds_half_period(high)) {
       pairs.shells.push_back(static_cast<double>(whole.count(low)));
     } else {
       const double centres =

@@ -36,7 +36,8 @@ struct PairCorrelation {
   std::vector<double> expected;       // what an uncorrelated packing would have, [n_bins]
   std::vector<double> shells;  // central spheres that `neighbours` are counted around, [n_bins]
   double bin_width = 0;
-  double density = 0;           // centres a cubic diameter, of the heights that the shells sample
+  double widest_shell = 0;  // radius up to which shells have room between the sides, or infinite
+  double density = 0;       // centres a cubic diameter, of the heights that the shells sample
   std::uint64_t n_centres = 0;  // central spheres
 
   /// g of each bin, found / expected: 1 for an uncorrelated packing. NaN where nothing is expected.
@@ -55,10 +56,10 @@ struct PairCorrelation {
 /// region: the accessible footprint (accessible.hpp) between the lowest centres and the surface,
 /// 2<Z> - 1/2 or the highest centre below it, and within r_max of `heights`.
 ///
-/// Neighbours are counted around central spheres whose shell lies in that region. Shells that no
-/// place between the sides has room for, or that exceed half a period, count all pairs with the
-/// edge correction below: exact for lattices, too large where spheres crowd at the sides. No
-/// neighbours are given where floor or surface cuts every shell.
+/// Neighbours are counted around central spheres whose shell lies in that region. Shells that
+/// exceed half a period count all pairs with the edge correction below. No neighbours are given
+/// where sides, floor or surface cut every shell: the correction would be too large where spheres
+/// crowd at them.
 ///
 /// Edges of g: n(d) of the n central spheres have the place at a displacement d inside that region,
 /// and a pair at d counts n / n(d) times (translation correction: Ohser 1983, Math.

@@ -57,8 +57,12 @@ std::size_t WholeShells::count_upright(double r) const {
   return count_from(upright_rooms_, r);
 }
 
-bool WholeShells::is_too_wide(double low, double high) const {
-  return low > widest_ + rounding || high > half_period_ + rounding;
+bool WholeShells::exceeds_sides(double low) const {
+  return low > widest_ + rounding;
+}
+
+bool WholeShells::exceeds_half_period(double high) const {
+  return high > half_period_ + rounding;
 }
 
 }  // namespace jostle::inline structure

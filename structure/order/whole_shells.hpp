@@ -29,8 +29,12 @@ class WholeShells {
   std::size_t count(double r) const;
   /// Number of central spheres whose shells neither floor nor surface cuts up to r.
   std::size_t count_upright(double r) const;
-  /// True if a shell between the radii is whole nowhere beside the sides, or exceeds half a period.
-  bool is_too_wide(double low, double high) const;
+  /// Radius up to which shells have room between the sides; infinite without sides.
+  double widest() const { return widest_; }
+  /// True if a shell from this radius on is whole nowhere between the sides.
+  bool exceeds_sides(double low) const;
+  /// True if a shell up to this radius exceeds half a period.
+  bool exceeds_half_period(double high) const;
 
  private:
   double upright_room(double z) const;

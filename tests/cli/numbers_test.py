@@ -1,4 +1,4 @@
-"""No text has a number that is not finite: neither the sources let one through, nor do reports, tables,
+"""No text has a number that is not finite or one with the digits of rounding noise: neither the sources let one through, nor do reports, tables,
 verdicts, pages and figures of series that do not vary, of single spheres, realizations and taps, and of
 runs that failed have one."""
 
@@ -16,6 +16,8 @@ from support import SOURCE, UNFOLDED, Case
 # "nan", "-inf" and Python's "Infinity" as words; not X_inf, a beta of "infinity" or "--info".
 NOT_FINITE = re.compile(r"(?<![\w.])[-+]?(?:(?i:nan|inf)|Infinity)(?!\w)")
 FOR_PROGRAMS_TO_READ = ("nan", "inf", "-inf")
+# A number with a decimal point; one for people has fewer than 15 significant digits.
+WITH_POINT = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])|(?<![\w.])\d+\.\d+(?=e[-+]?\d)")
 # The phrase for a sentence that was about to print one.
 NOT_STATED = "a number of it is not finite"
 
@@ -26,6 +28,26 @@ LIBRARIES = ("ensemble", "config", "results", "study", "cli")
 # A format of a floating number within a literal: {:.2g}, {:+.1f}, {:>8.3e}.
 FLOATING = re.compile(r"\{\w*:[^{}]*(?:\.\d+|[efgEG])[^{}]*\}")
 CALL = re.compile(r'fmt::(?:format|print|format_to)\(\s*((?:"(?:[^"\\]|\\.)*"\s*)+)')
+
+
+# Scenes' numbers are printed so that they read back: the default theta0, and a footprint to be typed.
+EXACT = re.compile(r"theta0\W+0\.7853981633974483|that they fill are [^:]*")
+
+
+def long_number(line):
+    """The place of the first number with 15 significant digits or more; None without one."""
+    for number in WITH_POINT.finditer(EXACT.sub("", line)):
+        if len(number.group().replace(".", "").lstrip("0")) >= 15:
+            return number.start()
+    return None
+
+
+class LongNumbers(unittest.TestCase):
+    def test_long_numbers_are_found(self):
+        for line in ("slope -0.0500000000000001", "0.123456789012345e-05(12)", "x=1234567890.12345, y"):
+            self.assertIsNotNone(long_number(line), line)
+        for line in ("0.59389024(28)", "seed 12345678901234567890", "0.000000000000000012", "6aca6d83.0123456789012345"):
+            self.assertIsNone(long_number(line), line)
 
 
 class Sources(unittest.TestCase):
@@ -128,9 +150,11 @@ class Texts(Case):
         self.n_commands = self.n_texts = 0
         self.found = []
 
-    def look_at(self, text, where):
+    def look_at(self, text, where, for_people=True):
         self.n_texts += 1
         for line in text.splitlines():
+            if for_people and (at := long_number(line)) is not None:
+                self.found.append(f"{where}: {line[max(0, at - 60):at + 60]}")
             if NOT_FINITE.search(line) or NOT_STATED in line:
                 at = (NOT_FINITE.search(line) or re.search(NOT_STATED, line)).start()
                 self.found.append(f"{where}: {line[max(0, at - 100):at + 60]}")
@@ -139,7 +163,7 @@ class Texts(Case):
         self.n_commands += 1
         done = self.jostle(*arguments, expect=None, environment=UNFOLDED)
         self.assertIn(done.returncode, (0, 2, 3, 4), done.stderr)
-        self.look_at(done.stdout, (self.scene_name, *arguments))
+        self.look_at(done.stdout, (self.scene_name, *arguments), for_people="--json" not in arguments)
         self.look_at(done.stderr, (self.scene_name, *arguments))
         return done
 
@@ -149,7 +173,8 @@ class Texts(Case):
         if path.exists():
             with path.open(newline="") as file:
                 rows = [row for row in csv.reader(file) if not row or not row[0].startswith("#")]
-            self.look_at("\n".join(cell for row in rows for cell in row), (self.scene_name, name))
+            self.look_at("\n".join(cell for row in rows for cell in row), (self.scene_name, name),
+                         for_people=False)
             for before, row in zip(rows, rows[1:], strict=False):
                 if before and row:
                     self.assertEqual(len(before), len(row), (self.scene_name, name, row))

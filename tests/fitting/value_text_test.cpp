@@ -65,6 +65,13 @@ TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
   CHECK(value_with_error(3e-15, 2e-15, 100) == "0");
   CHECK(value_with_error(3e-15, 2e-12) == "0.0(2.0)e-12");
   CHECK(value_with_error(2.5e-16, 1e-17, 1e-10) == "2.50(10)e-16");
+  // Differences of equal numbers have errors of rounding alone.
+  CHECK(value_with_error(-0.05000000000000012, 1.3e-17) == "-0.05");
+  CHECK(value_with_error(0.6 - 0.65, 3e-15) == "-0.05");
+  CHECK(value_with_error(12345.678901234567, 1e-12) == "12345.7");
+  CHECK(value_with_error(0.600857966880045, 2.2e-14) == "0.600858");
+  CHECK(value_with_error(0.600857966880045, 2.2e-11) == "6.00857966880(22)e-01");
+  CHECK(value_with_error(1e-9 / 3, 1e-27, 1e-9) == "3.33333e-10");
 }
 
 TEST_CASE("over all decades and signs a text says the value and its error to two digits") {

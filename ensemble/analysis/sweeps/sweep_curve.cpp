@@ -131,9 +131,8 @@ void SweepCurve::pool_matched() {
     }
   }
   if (common_.size() < 2) return;
-  const double own_dof = (m - 1) * (n - 1) / n;
-  if (own_dof > 0) {
-    for (const double own : of_points) scatter_.push_back({std::sqrt(own / own_dof), own_dof});
+  for (const double own : of_points) {
+    if (n > 2) scatter_.push_back({std::sqrt(own * n / ((n - 1) * (m - 1))), m - 1});
   }
   level_ = {levels.standard_error() * std::sqrt(m), m - 1};
   if (n_points() > 1) pooled_ = {std::sqrt(squares / ((m - 1) * (n - 1))), (m - 1) * (n - 1)};
@@ -165,7 +164,12 @@ double SweepCurve::p_of_equal_scatter() const {
     inverse += 1 / one.dof;
   }
   if (points < 2) return std::numeric_limits<double>::quiet_NaN();
-  const double correction = 1 + (inverse - 1 / dof) / (3 * (points - 1));
+  double correction = 1 + (inverse - 1 / dof) / (3 * (points - 1));
+  if (streams_ == Streams::matched) {
+    // Residuals of two points correlate by -1/(n - 1), and the logarithms of their squares by the
+    // square of this, so variances differ less than independent ones.
+    correction *= 1 - 1 / square(static_cast<double>(n_points()) - 1);
+  }
   return chi_squared_tail((dof * std::log(squares / dof) - logarithms) / correction, points - 1);
 }
 

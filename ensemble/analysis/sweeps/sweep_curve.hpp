@@ -60,8 +60,11 @@ class SweepCurve {
   /// Of one realization (of one value where they are not known), pooled over points: about the mean
   /// of its point, and with matched streams about its own level too. None where no point has two.
   ErrorOf pooled() const { return pooled_; }
-  /// Of realizations scattering alike at all points, as pooling presumes: Bartlett 1937,
-  /// doi:10.1098/rspa.1937.0109. NaN where fewer than two points have a scatter.
+  /// The p-value of realizations scattering alike at all points, as pooling presumes: Bartlett
+  /// 1937, doi:10.1098/rspa.1937.0109. Matched streams: of the residuals of the two-way layout,
+  /// with M - 1 degrees of freedom at each of n points, and the statistic divided by 1 - 1/(n -
+  /// 1)^2 because they sum to zero over points. NaN where fewer than two points (matched: three)
+  /// have a scatter.
   double p_of_equal_scatter() const;
 
  private:

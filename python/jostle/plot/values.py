@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 MINUS = "\u2212"
+ROUNDING = 1e-11  # errors below it, relative to their value, are rounding noise
 _SUPERSCRIPTS = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 
 
@@ -46,8 +47,8 @@ def fixed(value: float, decimals: int) -> str:
 
 def with_error(value: float, error: float) -> str:
     """"0.5913(12)": the error's first two digits, in units of the value's last digit; the value alone where the error is
-    not finite or not above zero."""
-    if not math.isfinite(value) or not math.isfinite(error) or error <= 0:
+    not finite, not above zero, or rounding noise."""
+    if not math.isfinite(value) or not math.isfinite(error) or error <= ROUNDING * abs(value):
         return number(value, 5)
     if error > 1e3 * max(abs(value), 1e-300):
         return f"{number(value, 2)} \u00b1 {number(error, 2)}"

@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* minus = "−";
 constexpr double largest_plain = 1e6, smallest_plain = 1e-4;
+constexpr double rounding = 1e-11;  // errors below it, relative to their value, are rounding noise
 
 std::string with_minus(const std::string& text) {
   return text.starts_with('-') ? minus + text.substr(1) : text;
@@ -67,7 +68,8 @@ std::string typeset_number(double value, int digits) {
 }
 
 std::string typeset_with_error(double value, double error) {
-  if (!std::isfinite(value) || !std::isfinite(error) || error <= 0) return typeset_number(value, 5);
+  const bool has_error = std::isfinite(error) && error > rounding * std::abs(value);
+  if (!std::isfinite(value) || !has_error) return typeset_number(value, 5);
   if (error > 1e3 * std::max(std::abs(value), 1e-300)) {
     return typeset_number(value, 2) + " ± " + typeset_number(error, 2);
   }

@@ -1,5 +1,6 @@
 #include "structure/order/pair_correlation.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -174,6 +175,10 @@ TEST_CASE("Lattices have the neighbours of their shells in every container") {
   CHECK(neighbours_up_to(pairs, std::floor((spacing - 0.01) / 0.02) * 0.02) == 0);
   CHECK(up_to(1) == Approx(6).epsilon(0.002));
   CHECK(up_to(std::numbers::sqrt2) == Approx(18).epsilon(0.002));
+  if (spacing * std::numbers::sqrt3 > pairs.widest_shell + 0.02) {
+    CHECK(std::isnan(up_to(std::numbers::sqrt3)));
+    return;
+  }
   CHECK(up_to(std::numbers::sqrt3) == Approx(26).epsilon(0.002));
   CHECK(up_to(2) == Approx(32).epsilon(0.005));  // the corners of narrow containers end there
 }
@@ -255,6 +260,30 @@ TEST_CASE("Neighbours of beds in tubes are those of spheres away from the wall")
   }
   CAPTURE(of_tubes, of_periodic);
   CHECK(std::abs(of_tubes - of_periodic) < 0.2);
+}
+
+TEST_CASE("Shells that have no room between the sides count no neighbours") {
+  // At least 1/2 from walls, so that a centre in the middle has room for shells up to (width -
+  // 1)/2.
+  const auto [container, widest] = GENERATE(values<std::pair<Container, double>>({
+      {Cylinder{3}, 1},
+      {Cylinder{4.6}, 1.8},
+      {WalledBox{3, 8}, 1},
+      {WalledBox{4.4, 4.4}, 1.7},
+  }));
+  RandomStream random(stream_key(2001, 0, 0, Purpose::start));
+  const Packing bed = make_start(SteepestDescentPour{}, container, 200, random);
+  const PairCorrelation pairs = pair_correlation(bed, {.r_max = 2.5});
+  CHECK(pairs.widest_shell == Approx(widest));
+  const std::vector<double> neighbours = pairs.running_neighbours();
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const double begin = static_cast<double>(k) * pairs.bin_width;
+    CAPTURE(begin, neighbours[k]);
+    if (begin > widest + 1e-6) CHECK((std::isnan(neighbours[k]) && pairs.shells[k] == 0));
+    CHECK(!std::isinf(neighbours[k]));
+  }
+  CHECK(neighbours.at(20) == 0);
+  CHECK(std::ranges::any_of(pairs.counts, [](std::uint64_t count) { return count > 0; }));
 }
 
 TEST_CASE("A bed of two layers has no neighbours where no shell is whole") {

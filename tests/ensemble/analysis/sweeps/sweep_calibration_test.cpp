@@ -158,6 +158,25 @@ TEST_CASE("Realizations that scatter the more the farther on are not pooled in s
   CHECK(found >= 50);
 }
 
+TEST_CASE("Unequal scatter is found as often as its level says where scatters are alike",
+          "[statistics]") {
+  constexpr std::size_t ensembles = 600;
+  for (const Streams streams : {Streams::independent, Streams::matched}) {
+    for (const std::size_t points : {3, 5, 7}) {
+      for (const std::size_t realizations : {4, 6, 9}) {
+        const Setting setting{points, realizations, streams};
+        std::size_t found = 0;
+        for (std::size_t e = 0; e < ensembles; ++e) {
+          found += curve_of(setting, e, [](double) { return 0; }).p_of_equal_scatter() < 0.05;
+        }
+        CAPTURE(points, realizations, streams == Streams::matched);
+        const double share = static_cast<double>(found) / ensembles;
+        CHECK(std::abs(share - 0.05) <= 3 * std::sqrt(0.05 * 0.95 / ensembles));
+      }
+    }
+  }
+}
+
 TEST_CASE("A maximum is found where there is one, and lines hold the truth, as often as they say",
           "[statistics]") {
   check({5, 7}, {2, 3, 10}, 200);

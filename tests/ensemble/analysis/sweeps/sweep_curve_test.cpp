@@ -185,6 +185,23 @@ TEST_CASE("Differences of matched streams are taken realization by realization")
   CHECK(of_last[1].error.dof < 5);
 }
 
+TEST_CASE("Equal scatter is tested as scipy's bartlett does, matched streams by their residuals") {
+  const std::vector<double> x = {1, 2, 3, 4};
+  const std::vector<std::vector<double>> values = {{0.601, 0.605, 0.598, 0.603},
+                                                   {0.611, 0.607, 0.614, 0.609},
+                                                   {0.620, 0.627, 0.611, 0.631},
+                                                   {0.618, 0.613, 0.619, 0.625}};
+  // scipy.stats.bartlett(*values)
+  CHECK(SweepCurve(x, values, Streams::independent).p_of_equal_scatter() ==
+        Approx(0.22286454278597298).epsilon(1e-10));
+  // r = values - their means over realizations and over points + the mean of all:
+  // scipy.stats.chi2.sf(scipy.stats.bartlett(*r).statistic / (1 - 1 / 3**2), 3)
+  CHECK(SweepCurve(x, values, Streams::matched).p_of_equal_scatter() ==
+        Approx(0.47549572907886883).epsilon(1e-10));
+  const SweepCurve two({1, 2}, {values[0], values[1]}, Streams::matched);
+  CHECK(std::isnan(two.p_of_equal_scatter()));  // two points always have equal residuals
+}
+
 TEST_CASE("A straight line is that of least squares, with the textbook's errors") {
   const std::vector<double> x = {1, 2, 4, 5};
   const StraightLine exact =
