@@ -124,8 +124,16 @@ class Check {
 
   void snapshots_are_reached() {
     if (!all_sound({"/snapshots", "/protocol"})) return;
-    const std::vector<std::uint64_t> taps = chosen_taps(scene_.snapshots.taps);
     const std::uint64_t last = total_taps(scene_.protocol);
+    if (const auto every = scene_.snapshots.every;
+        every && last / *every >= most_snapshots_by_rule) {
+      note("/snapshots/every",
+           fmt::format("every {} of {} taps are {} snapshots per realization, and at most {} are "
+                       "possible: give {} or more",
+                       *every, last, last / *every + 1, most_snapshots_by_rule,
+                       last / most_snapshots_by_rule + 1));
+    }
+    const std::vector<std::uint64_t> taps = chosen_taps(scene_.snapshots.taps);
     if (taps.empty() || taps.back() <= last) return;
     note("/snapshots/taps",
          fmt::format("tap {} is beyond the last tap of the protocol, {}", taps.back(), last));

@@ -109,4 +109,15 @@ std::vector<std::uint64_t> chosen_taps(const TapChoice& choice) {
   return taps;
 }
 
+std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& choice, std::uint64_t taps) {
+  std::vector<std::uint64_t> chosen = chosen_taps(choice.taps);
+  if (!choice.every) return chosen;
+  std::uint64_t n = 0;
+  for (std::uint64_t tap = 0; tap <= taps && n <= most_snapshots_by_rule; ++n, tap += *choice.every)
+    chosen.push_back(tap);
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  return chosen;
+}
+
 }  // namespace jostle::inline config

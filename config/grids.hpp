@@ -20,6 +20,13 @@ std::uint64_t total_taps(const std::vector<ProtocolLine>& protocol);
 /// The taps that are chosen, ascending, none twice.
 std::vector<std::uint64_t> chosen_taps(const TapChoice& choice);
 
+/// The most snapshots that a rule can choose in one realization.
+inline constexpr std::uint64_t most_snapshots_by_rule = 100'000;
+
+/// The taps of a protocol of so many taps after which packings are kept, ascending, none twice:
+/// those that are named, and those of `every`, of which at most most_snapshots_by_rule + 1.
+std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& choice, std::uint64_t taps);
+
 /// What is followed over so many taps. Grids that are not chosen begin alike for any number of
 /// them: a run that is resumed with more taps has missed nothing.
 MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps);

@@ -38,8 +38,8 @@ class StartMaker {
   std::map<PackingFile, std::shared_ptr<const std::vector<Vec3>>> loaded_;
 };
 
-Snapshots snapshots(const SnapshotChoice& choice) {
-  return {.taps = chosen_taps(choice.taps),
+Snapshots snapshots(const SnapshotChoice& choice, std::uint64_t taps) {
+  return {.taps = snapshot_taps(choice, taps),
           .positions = choice.positions,
           .coordination = choice.coordination,
           .contact_cut = choice.contact_cut,
@@ -90,7 +90,7 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
     plan.protocol = stages(here.protocol);
     plan.engine = engine_of(here);
     plan.observables = here.observables;
-    plan.snapshots = snapshots(here.snapshots);
+    plan.snapshots = snapshots(here.snapshots, total_taps(here.protocol));
     if (here.motion) plan.motion = motion_settings(*here.motion, total_taps(plan));
     plans.push_back(std::move(plan));
   }

@@ -109,7 +109,8 @@ std::optional<std::string> changed_choice(const char* what, std::uint64_t last,
 
 std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
   return changed_choice("snapshot of tap", total_taps(was.protocol),
-                        chosen_taps(was.snapshots.taps), chosen_taps(is.snapshots.taps));
+                        snapshot_taps(was.snapshots, total_taps(was.protocol)),
+                        snapshot_taps(is.snapshots, total_taps(is.protocol)));
 }
 
 /// Where both follow the motion.
@@ -183,6 +184,7 @@ std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
       one->erase(free);
     }
     (*one)["snapshots"].erase("taps");
+    (*one)["snapshots"].erase("every");
     if (!one->contains("motion")) continue;
     for (const char* grid : {"origins", "lags"}) (*one)["motion"].erase(grid);
   }

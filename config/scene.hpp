@@ -94,6 +94,7 @@ using TapChoice = std::variant<std::vector<std::uint64_t>, LogarithmicTaps>;
 
 struct SnapshotChoice {
   TapChoice taps;
+  std::optional<std::uint64_t> every;  // also tap 0 and each tap that is a multiple of it
   bool positions = true, coordination = true, height_histogram = true;
   double contact_cut = 1.05, bin_width = 0.1;  // diameters
   // Of discrete elements, which keep them by default:
@@ -141,11 +142,11 @@ std::vector<std::string> relaxation_laws();
 /// Those of the model "all", which compete for one curve: no two draw the same curves.
 std::vector<std::string> competing_laws();
 
-/// A law fitted to the mean of an observable against taps, at every sweep point, when a run ends.
+/// Laws fitted to the mean of an observable against taps, at every sweep point, when a run ends.
 struct FitRequest {
-  std::string observable;   // as the scene calls it
-  std::string model;        // of docs/reference/laws.md, or "all": every law of relaxation
-  std::uint64_t first = 1;  // tap
+  std::string observable;           // as the scene calls it
+  std::vector<std::string> models;  // of docs/reference/laws.md; or {"all"}: those that compete
+  std::uint64_t first = 1;          // tap
   std::optional<std::uint64_t> last = std::nullopt;  // tap; absent: the last one
   bool operator==(const FitRequest&) const = default;
 };

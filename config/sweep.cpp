@@ -161,7 +161,8 @@ class SweepCheck {
     std::size_t pointers = 0;
     for (const SweepAxis& axis : scene_.sweep) pointers += axis.columns.size();
     check("/sweep", "values", pointers, most_swept_values_in_all);
-    check("/snapshots/taps", "taps with snapshots", chosen_taps(scene_.snapshots.taps).size(),
+    const std::uint64_t taps = sound(faults_, "/protocol") ? total_taps(scene_.protocol) : 0;
+    check("/snapshots/taps", "taps with snapshots", snapshot_taps(scene_.snapshots, taps).size(),
           most_snapshots_in_all);
     if (!scene_.motion || !sound(faults_, "/protocol")) return;
     const MotionSettings motion = motion_settings(*scene_.motion, total_taps(scene_.protocol));

@@ -81,22 +81,53 @@ std::uint64_t megabytes_to_ask_for(double bytes) {
   return static_cast<std::uint64_t>(std::ceil(wanted / piece) * piece);
 }
 
-std::string estimate_line(const JobPlan& plan, const SlurmArguments& arguments, bool settled) {
-  const char* const about = settled ? "about" : "at least";
-  return finite_text("{}, {} on {} each: {} {:.3g} core-hours; the longest task {} {} of {}",
-                     counted(plan.tasks, "task"), counted(plan.shards, "shard"),
-                     counted(arguments.cpus, "CPU"), about, plan.core_time.count() / 3600, about,
-                     format_duration(plan.longest_task), format_duration(time_limit(arguments)));
+/// "about 3.2 core-hours (2.9 to 3.5)": pilots of one scene differ by a tenth on an idle machine.
+std::string core_hours(const JobPlan& plan, const ScenePilot& pilot) {
+  constexpr double least_scatter = 0.1;
+  const double hours = plan.core_time.count() / 3600;
+  if (!pilot.settled()) return finite_text("at least {:.3g} core-hours", hours);
+  const double part = std::min(0.9, std::max(least_scatter, pilot.scatter()));
+  return finite_text("about {:.3g} core-hours ({:.2g} to {:.2g})", hours, hours * (1 - part),
+                     hours * (1 + part));
+}
+
+/// "the longest task needs about 49 min, limit 30 min: 2 submissions".
+std::string estimate_line(const JobPlan& plan, const SlurmArguments& arguments,
+                          const ScenePilot& pilot) {
+  return finite_text(
+      "{}, {} on {} each: {}, efficiency {:.0f} %; the longest task needs {} {}, limit {}: {}",
+      counted(plan.tasks, "task"), counted(plan.shards, "shard"), counted(arguments.cpus, "CPU"),
+      core_hours(plan, pilot), 100 * plan.efficiency, pilot.settled() ? "about" : "at least",
+      format_duration(plan.longest_task), format_duration(time_limit(arguments)),
+      counted(plan.starts, "submission"));
+}
+
+/// "efficiency 58 %: --cpus 3 --jobs 4 take 40 min with 92 %".
+std::string layout_hint(const SceneCost& cost, const JobRequest& request, const JobPlan& plan) {
+  const std::optional<JobRequest> better = better_layout(cost, request);
+  if (!better) return "";
+  const JobPlan other = plan_jobs(cost, *better);
+  return finite_text(
+      "CPUs have nothing to do for {:.0f} % of the time that is reserved. --cpus {} --jobs {} "
+      "reserve them with efficiency {:.0f} %, and the longest task needs {}",
+      100 * (1 - plan.efficiency), better->cpus, better->shards, 100 * other.efficiency,
+      format_duration(other.longest_task));
 }
 
 std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& arguments,
-                                     const SceneCost& cost) {
+                                     const SceneCost& cost, const ScenePilot& pilot) {
   std::vector<std::string> warnings;
+  if (pilot.scatter() > ScenePilot::busy) {
+    warnings.push_back(
+        finite_text("the machine is busy: two pilots of the same work differ by {:.0f} % of their "
+                    "time. Repeat the estimate on an idle machine",
+                    100 * pilot.scatter()));
+  }
   if (plan.starts > 1) {
     warnings.push_back(fmt::format(
-        "the longest task is not done in {}: it takes about {} more submissions, for which the "
-        "script puts itself back into the queue. More --jobs or --hours make it fewer",
-        format_duration(time_limit(arguments)), plan.starts - 1));
+        "the longest task needs about {}, limit {}: {} submissions. The script puts itself back "
+        "into the queue; more --jobs or --hours make it fewer",
+        format_duration(plan.longest_task), format_duration(time_limit(arguments)), plan.starts));
   }
   if (plan.most_realizations < arguments.cpus) {
     warnings.push_back(fmt::format(
@@ -131,7 +162,7 @@ BatchScript script_for(const SlurmArguments& arguments, const LoadedScene& loade
           .time_limit = time_limit(arguments),
           .megabytes = megabytes_to_ask_for(
               pilot.bytes(std::min<std::uint64_t>(arguments.cpus, plan.most_realizations))),
-          .estimate = estimate_line(plan, arguments, pilot.settled())};
+          .estimate = estimate_line(plan, arguments, pilot)};
 }
 
 void say(const std::string& text) {
@@ -151,14 +182,14 @@ void write_script(const SlurmArguments& arguments) {
   const std::uint64_t largest = arguments.most_tasks > 0
                                     ? arguments.most_tasks
                                     : slurm_max_array_size().value_or(usual_array) - 1;
-  const ScenePilot pilot(loaded);
+  const ScenePilot pilot(loaded, {}, ScenePilot::Repeat::first_point);
   const SceneCost cost = cost_of(loaded, pilot);
-  const JobPlan plan = plan_jobs(
-      cost,
-      {.time_limit = time_limit(arguments),
-       .cpus = arguments.cpus,
-       .shards = arguments.jobs,
-       .most_tasks = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(largest, 1, 1u << 20))});
+  const JobRequest request{
+      .time_limit = time_limit(arguments),
+      .cpus = arguments.cpus,
+      .shards = arguments.jobs,
+      .most_tasks = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(largest, 1, 1u << 20))};
+  const JobPlan plan = plan_jobs(cost, request);
   const BatchScript script = script_for(arguments, loaded, plan, pilot);
   output_path(script.results + "/1.h5");  // refuses links of others
   const std::string text = slurm_script(script, plan);
@@ -168,7 +199,9 @@ void write_script(const SlurmArguments& arguments) {
     write_text(arguments.output, text);
   }
   say(script.estimate);
-  for (const std::string& warning : warnings_of(plan, arguments, cost)) say("warning: " + warning);
+  for (const std::string& warning : warnings_of(plan, arguments, cost, pilot))
+    say("warning: " + warning);
+  if (const std::string hint = layout_hint(cost, request, plan); !hint.empty()) say(hint);
   const std::string file = arguments.output.empty() ? script.name + ".sbatch" : arguments.output;
   say(fmt::format("next{}:\n  {}\n  {}\n  {}",
                   arguments.output.empty() ? ", with the script in " + file : "",
@@ -211,8 +244,9 @@ void add_slurm(Command& app, int& code) {
       "  jostle slurm scene.json --hours 12 --cpus 4 --jobs 2 > scene.sbatch\n"
       "  jostle slurm scene.json --hours 0.5 --cpus 1 --jobs 4 -o quick.sbatch\n"
       "\n"
-      "Time and memory come from the pilot of jostle check, up to about ten seconds, of grains\n"
-      "up to a minute. A job is told to stop before its time is up, goes back into the queue and\n"
+      "Time and memory come from the pilot of jostle check, up to about twenty seconds, of\n"
+      "grains up to two minutes. A job is told to stop before its time is up, goes back into the "
+      "queue and\n"
       "goes on there.");
   command.run([arguments, &code] {
     write_script(*arguments);

@@ -169,12 +169,14 @@ std::vector<std::string> made_of(const Scene& scene, const std::string& observab
   for (const FitRequest& fit : scene.fits) {
     if (fit.observable != observable) continue;
     const std::vector<std::string> all = relaxation_laws();
-    if (fit.model == "all") {
-      kinds.insert(kinds.end(), all.begin(), all.end());
-    } else if (fit.model.starts_with("inverse_log")) {  // one law, kept in both sets of names
-      kinds.insert(kinds.end(), {"inverse_log", "inverse_log_height"});
-    } else {
-      kinds.push_back(fit.model);
+    for (const std::string& model : fit.models) {
+      if (model == "all") {
+        kinds.insert(kinds.end(), all.begin(), all.end());
+      } else if (model.starts_with("inverse_log")) {  // one law, kept in both sets of names
+        kinds.insert(kinds.end(), {"inverse_log", "inverse_log_height"});
+      } else {
+        kinds.push_back(model);
+      }
     }
   }
   return kinds;

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/parts/parts.hpp"
 
 namespace jostle::inline config {
@@ -10,6 +12,39 @@ std::vector<std::string> fitted_models() {
   std::vector<std::string> models = relaxation_laws();
   models.emplace_back("all");
   return models;
+}
+
+/// One law, "all", or a list of laws that compete.
+void read_models(const Reader& object, FitRequest& fit) {
+  const auto model = object.find("model");
+  if (!model) return object.missing("model", "one of the strings " + listed(fitted_models()));
+  if (!model->value().is_array()) {
+    if (const auto name = model->one_of(fitted_models())) fit.models = {*name};
+    return;
+  }
+  const std::vector<std::string> laws = relaxation_laws();
+  if (!model->is_list(1, laws.size(), "of the strings " + listed(laws))) return;
+  for (std::size_t i = 0; i < model->value().size(); ++i) {
+    const Reader element = model->element(i);
+    const auto name = element.one_of(laws);
+    if (!name) continue;
+    if (std::ranges::find(fit.models, *name) != fit.models.end())
+      element.fault(*name + " is listed twice");
+    fit.models.push_back(*name);
+  }
+}
+
+Json written_models(const FitRequest& fit) {
+  return fit.models.size() == 1 ? Json(fit.models.front()) : Json(fit.models);
+}
+
+Json models_schema() {
+  const std::vector<std::string> laws = relaxation_laws();
+  return either(words_schema(fitted_models()), {{"type", "array"},
+                                                {"minItems", 1},
+                                                {"maxItems", laws.size()},
+                                                {"uniqueItems", true},
+                                                {"items", words_schema(laws)}});
 }
 
 void read_range(const Reader& object, FitRequest& fit) {
@@ -33,21 +68,14 @@ constexpr std::tuple fit_fields{
     field("observable", &FitRequest::observable, Text{}, "One that the scene observes",
           {.required = "the name of an observable of this scene"}),
     irregular(
-        "model",
-        [](const Reader& object, FitRequest& fit) {
-          const auto model = object.find("model");
-          if (!model) {
-            object.missing("model", "one of the strings " + listed(fitted_models()));
-          } else {
-            fit.model = model->one_of(fitted_models()).value_or("");
-          }
-        },
-        [](const FitRequest& fit, Json& out) { out["model"] = fit.model; },
+        "model", read_models,
+        [](const FitRequest& fit, Json& out) { out["model"] = written_models(fit); },
         [](ObjectSchema& out, Definitions&) {
           out.properties["model"] = described_as(
-              words_schema(fitted_models()), "",
-              "A law of docs/reference/laws.md; all: those that compete, eqs. 3 and 4 as one.",
-              std::nullopt, "");
+              models_schema(), "",
+              "A law of docs/reference/laws.md, or a list of laws that compete; all: all that do, "
+              "eqs. 3 and 4 as one.",
+              std::nullopt, R"(["kww", ["inverse_log", "kww"]])");
           out.required.emplace_back("model");
         }),
     irregular(

@@ -119,10 +119,35 @@ void describe_keep(ObjectSchema& out, Definitions&) {
       by_default.at("keep"), "");
 }
 
+/// A number of taps, or "all": every tap.
+void read_every(const Reader& object, SnapshotChoice& snapshots) {
+  const auto in = object.find("every");
+  if (!in) return;
+  if (in->value().is_string()) {
+    if (in->one_of({"all"})) snapshots.every = 1;
+  } else {
+    read_value(Whole{1, most_taps}, *in, snapshots.every.emplace(1));
+  }
+}
+
+void write_every(const SnapshotChoice& snapshots, Json& out) {
+  if (snapshots.every) out["every"] = *snapshots.every;
+}
+
+void describe_every(ObjectSchema& out, Definitions& definitions) {
+  out.properties["every"] = described_as(
+      either(value_schema(Whole{1, most_taps}, definitions), words_schema({"all"})),
+      "Step of regular snapshots",
+      "Packings are kept after taps 0, every, 2 every, ..., beside those of taps; all: after every "
+      "tap. At most 100000 per realization.",
+      std::nullopt, R"([10, "all"])");
+}
+
 constexpr std::tuple snapshot_fields{
     field("taps", &SnapshotChoice::taps, TapNumbers{}, "A list, or a logarithmic grid and others",
           {.title = "Taps of the snapshots",
            .examples = R"([[0, 100, 4000], {"log": {"to": 4000, "per_decade": 3}, "also": [0]}])"}),
+    irregular("every", read_every, write_every, describe_every),
     irregular("keep", read_keep, write_keep, describe_keep),
     field("contact_cut", &SnapshotChoice::contact_cut, Number{between(1, 3), "diameters"},
           "Centres within this distance count as neighbours"),

@@ -121,7 +121,8 @@ void check_structure(const Scene& scene, std::vector<Fault>& faults) {
     faults.push_back({"/structure", fmt::format("a region and no part to measure in it: add {}",
                                                 listed(parts_of(all_structure())))});
   }
-  if (!scene.snapshots.positions || chosen_taps(scene.snapshots.taps).empty()) {
+  const bool has_snapshots = scene.snapshots.every || !chosen_taps(scene.snapshots.taps).empty();
+  if (!scene.snapshots.positions || !has_snapshots) {
     faults.push_back({"/structure",
                       "structure is measured in kept packings: give /snapshots taps, and "
                       "\"positions\" among what they keep"});

@@ -54,6 +54,7 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
   plan.most_realizations = (all + request.shards - 1) / request.shards;
   for (const Seconds one : cost.realization)
     plan.core_time += one * static_cast<double>(cost.realizations);
+  Seconds reserved{0};
   for (std::uint32_t task = 0; task < plan.tasks; ++task) {
     Seconds time{0};
     const std::uint32_t first = task * plan.shards_a_task;
@@ -62,7 +63,9 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
       time += shard_time(cost, request, shard + 1);
     }
     plan.longest_task = std::max(plan.longest_task, time);
+    reserved += time * static_cast<double>(request.cpus);
   }
+  if (reserved > Seconds{0}) plan.efficiency = plan.core_time / reserved;
   plan.notice = notice_before_end(request);
   const Seconds usable = request.time_limit - plan.notice;
   if (cost.start > usable) {
@@ -75,6 +78,30 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
   plan.starts =
       std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(plan.longest_task / usable)));
   return plan;
+}
+
+std::optional<JobRequest> better_layout(const SceneCost& cost, const JobRequest& request) {
+  constexpr double least_gain = 0.05, most_longer = 1.1;
+  constexpr std::uint64_t most_tried = 64, most_realizations = 100'000;
+  const std::uint64_t all = cost.realization.size() * std::uint64_t{cost.realizations};
+  if (all > most_realizations) return std::nullopt;
+  const std::uint64_t in_all = std::uint64_t{request.cpus} * request.shards;
+  const JobPlan asked = plan_jobs(cost, request);
+  double best = asked.efficiency + least_gain;
+  std::optional<JobRequest> found;
+  for (std::uint32_t cpus = 1; cpus <= std::min<std::uint64_t>(request.cpus, most_tried); ++cpus) {
+    const std::uint64_t most_shards = std::min(all, in_all / cpus);
+    // As few shards as take as many turns as the most shards do.
+    const std::uint64_t turns = (all + most_shards * cpus - 1) / (most_shards * cpus);
+    JobRequest other = request;
+    other.cpus = cpus;
+    other.shards = static_cast<std::uint32_t>((all + turns * cpus - 1) / (turns * cpus));
+    const JobPlan plan = plan_jobs(cost, other);
+    if (plan.longest_task > most_longer * asked.longest_task || plan.efficiency <= best) continue;
+    best = plan.efficiency;
+    found = other;
+  }
+  return found;
 }
 
 }  // namespace jostle::inline study

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "study/seconds.hpp"
@@ -32,6 +33,7 @@ struct JobPlan {
   std::uint64_t most_realizations = 0;  // of a shard
   Seconds core_time{0};                 // of everything
   Seconds longest_task{0};              // with its CPUs
+  double efficiency = 1;                // core_time over the time for which CPUs are reserved
   Seconds notice{0};                    // before the end of the time limit it is told to stop
   std::uint64_t starts = 1;             // of the longest task until it is done, the first included
 };
@@ -39,5 +41,9 @@ struct JobPlan {
 /// Every CPU takes the next realization of its shard when it has ended one. Throws BadInput where
 /// there are more shards than realizations, and where a job ends before a start can be made.
 JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request);
+
+/// The request with other numbers of CPUs and shards, no more CPUs in all, that wastes least of
+/// what it reserves and takes at most a tenth longer; nothing where none wastes less by 5 % of it.
+std::optional<JobRequest> better_layout(const SceneCost& cost, const JobRequest& request);
 
 }  // namespace jostle::inline study

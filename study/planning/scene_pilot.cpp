@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <variant>
@@ -49,7 +50,7 @@ PilotEstimate tried(const LoadedScene& loaded, std::size_t point, std::size_t n_
 
 }  // namespace
 
-ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell)
+ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell, Repeat repeat)
     : points_(pilot_points(loaded.plans.size())) {
   for (const std::size_t point : points_) {
     const PilotEstimate estimate = tried(loaded, point, points_.size());
@@ -58,6 +59,12 @@ ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell)
     start_ = std::max(start_, estimate.start);
     bytes_ = std::max(bytes_, estimate.bytes);
     settled_ = settled_ && estimate.settled;
+  }
+  if (repeat == Repeat::first_point) {
+    const Seconds again = tried(loaded, points_.front(), points_.size()).realization;
+    const Seconds sum = times_.front() + again;
+    if (sum > Seconds{0}) scatter_ = 2 * std::abs((times_.front() - again) / sum);
+    times_.front() = sum / 2;
   }
   for (const Plan& plan : loaded.plans) {
     if (!plan.motion) continue;

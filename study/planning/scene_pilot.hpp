@@ -14,9 +14,18 @@ class ScenePilot {
  public:
   using Tell = std::function<void(const Plan&, const PilotEstimate&)>;
 
+  enum class Repeat { none, first_point };
+
   /// About ten seconds on one core, of grains up to a minute. `tell` hears of each pilot as it
-  /// ends. Throws BadInput where one fails.
-  explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {});
+  /// ends. `repeat`: the first point is tried again at the end, to see how times scatter. Throws
+  /// BadInput where one fails.
+  explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {},
+                      Repeat repeat = Repeat::none);
+
+  /// By what part of their mean the times of two pilots that do the same work differ; 0 where none
+  /// was repeated. Above `busy` other work takes the processor's time.
+  double scatter() const { return scatter_; }
+  static constexpr double busy = 0.2;
 
   /// Whether all met their stop rules: else times are lower bounds.
   bool settled() const { return settled_; }
@@ -36,6 +45,7 @@ class ScenePilot {
   std::size_t bytes_ = 0;         // of a realization
   std::size_t motion_bytes_ = 0;  // of all realizations of a point, when a run has ended
   bool settled_ = true;
+  double scatter_ = 0;
 };
 
 }  // namespace jostle::inline study

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "tests/config/scene_files.hpp"
@@ -39,6 +41,70 @@ TEST_CASE("By default snapshots keep everything that the engine has at the end o
   const Snapshots plan = make_plans(chosen, {}).at(0).snapshots;
   CHECK(plan.contacts);
   CHECK_FALSE(plan.forces);
+}
+
+namespace {
+
+std::string scene_of_taps(int count, const std::string& more) {
+  return R"({"seed": 1, "container": {"sides": "periodic", "width": 4}, "spheres": 10,
+             "start": {"random_settle": {}}, "relax": {"polar": {}, "stop": {"sweeps": 3}},
+             "observe": ["mean_height"], "protocol": [{"tap": {"dilate": 0.05}, "count": )" +
+         std::to_string(count) + "}], " + more + "}";
+}
+
+std::vector<std::uint64_t> kept_taps(const std::string& text) {
+  return make_plans(scene_of(text), {}).at(0).snapshots.taps;
+}
+
+}  // namespace
+
+TEST_CASE("Snapshots at regular taps, beside those that are named") {
+  using Taps = std::vector<std::uint64_t>;
+  CHECK(kept_taps(scene_of_taps(25, R"("snapshots": {"every": 10})")) == Taps{0, 10, 20});
+  CHECK(kept_taps(scene_of_taps(20, R"("snapshots": {"every": 10, "taps": [3, 10]})")) ==
+        Taps{0, 3, 10, 20});
+  CHECK(kept_taps(scene_of_taps(3, R"("snapshots": {"every": "all"})")) == Taps{0, 1, 2, 3});
+  const Scene scene = scene_of(scene_of_taps(25, R"("snapshots": {"every": "all"})"));
+  CHECK(scene_of(resolved(scene).dump()) == scene);
+  CHECK_FALSE(resolved(scene_of(scene_of_taps(25, R"("snapshots": {"taps": [0]})")))
+                  .at("snapshots")
+                  .contains("every"));
+  const auto faults = [](int count, const char* every) {
+    return lines(
+        parse_scene(scene_of_taps(count, fmt::format(R"("snapshots": {{"every": {}}})", every)))
+            .faults);
+  };
+  CHECK(faults(1'000'000'000, "\"all\"").find("give 10001 or more") != std::string::npos);
+  for (const char* every : {"0", "-1", "2.5", "\"none\"", "[10]"}) {
+    CAPTURE(every);
+    CHECK(faults(25, every).find("/snapshots/every") != std::string::npos);
+  }
+}
+
+TEST_CASE("A fit has one law, a list of laws that compete, or all of them") {
+  const auto models = [](const char* model) {
+    return scene_of(scene_of_taps(
+                        9, fmt::format(R"("fits": [{{"observable": "mean_height", "model": {}}}])",
+                                       model)))
+        .fits.at(0)
+        .models;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(models("\"kww\"") == Names{"kww"});
+  CHECK(models("\"all\"") == Names{"all"});
+  CHECK(models("[\"kww\", \"inverse_log\"]") == Names{"kww", "inverse_log"});
+  const Scene scene = scene_of(scene_of_taps(
+      9, R"("fits": [{"observable": "mean_height", "model": ["kww", "inverse_log"]}])"));
+  CHECK(scene_of(resolved(scene).dump()) == scene);
+  for (const char* model : {"[]", "[\"kww\", \"kww\"]", "[\"all\"]", "[1]", "\"none\""}) {
+    CAPTURE(model);
+    CHECK(lines(parse_scene(
+                    scene_of_taps(
+                        9, fmt::format(R"("fits": [{{"observable": "mean_height", "model": {}}}])",
+                                       model)))
+                    .faults)
+              .find("/fits/0/model") != std::string::npos);
+  }
 }
 
 TEST_CASE("Points of both engines keep by default what each has") {

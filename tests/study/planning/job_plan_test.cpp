@@ -43,6 +43,23 @@ TEST_CASE("a shard takes as long as its realizations, as many at once as it has 
   CHECK(plan.starts == 1);
 }
 
+TEST_CASE(
+    "Efficiency is the share of reserved time in which CPUs work, and a layout can waste less") {
+  // Ten realizations of an hour, 5 a shard, 4 at once: two turns of 4 CPUs, in both shards.
+  const SceneCost ten = cost({1}, 10);
+  const JobPlan plan = plan_jobs(ten, request(12, 4, 2));
+  CHECK(plan.efficiency == Approx(10.0 / 16));
+  const auto better = better_layout(ten, request(12, 4, 2));
+  REQUIRE(better);
+  CHECK(better->cpus * better->shards <= 8);
+  const JobPlan other = plan_jobs(ten, *better);
+  CHECK(other.efficiency == Approx(1));
+  CHECK(hours(other.longest_task) == Approx(2));
+  // One that wastes nothing has no better one.
+  CHECK(!better_layout(ten, request(12, 5, 2)));
+  CHECK(!better_layout(ten, request(12, 1, 10)));
+}
+
 TEST_CASE("CPUs beyond a shard's realizations take neither memory nor time") {
   const JobPlan all = plan_jobs(cost({1, 2}, 8), request(100, 4'000'000'000, 2));
   const JobPlan busy = plan_jobs(cost({1, 2}, 8), request(100, 8, 2));
