@@ -87,6 +87,12 @@ struct Estimate {
   double half_width() const;
 };
 
+/// Half the width of the interval that holds the truth with probability `level`, of an estimate
+/// with this standard error and Student's t of dof degrees of freedom (the normal distribution
+/// where dof is infinite). Every a(b), bar and band that a person reads is this, at 68 %. NaN
+/// without degrees of freedom.
+double half_width(double error, double dof, double level = interval_levels[0]);
+
 /// The law that another becomes where some of its parameters are 0 or infinite, as it was fitted.
 struct LimitingFit {
   std::string name, formula;

@@ -150,11 +150,10 @@ std::vector<const Fit*> distinct(const std::vector<Fit>& fits) {
   return found;
 }
 
-// How a law compares with the leading one: "two_exponentials (difference 0.021(4), p = 0.0013)".
-std::string difference_text(const HeldOutLaw& law) {
+// How a law compares with the leading one: "two_exponentials (difference 0.021(6), p = 0.0013)".
+std::string compared_text(const HeldOutLaw& law) {
   if (law.same_curve) return law.model + " (same curve)";
-  return law.model + " (difference " + value_with_error(law.difference, law.error) + ", " +
-         p_text(law.p) + ")";
+  return law.model + " (difference " + difference_text(law) + ", " + p_text(law.p) + ")";
 }
 
 std::string listed(const std::vector<std::string>& texts) {
@@ -167,6 +166,10 @@ std::string listed(const std::vector<std::string>& texts) {
 }
 
 }  // namespace
+
+std::string difference_text(const HeldOutLaw& law) {
+  return value_with_error(law.difference, half_width(law.error, law.dof));
+}
 
 std::string estimate_text(const Estimate& estimate) {
   if (estimate.identifiability == Identifiability::fixed) {
@@ -230,7 +233,7 @@ std::string compare(const std::vector<Fit>& fits, const LawComparison& compariso
                     number(fit->reduced_chi2, 4), is_compared ? number(law->squared_error, 5) : "-",
                     is_leading                       ? "least"
                     : is_compared && law->same_curve ? "same curve"
-                    : is_compared                    ? value_with_error(law->difference, law->error)
+                    : is_compared                    ? difference_text(*law)
                                                      : "-",
                     is_compared && !is_leading ? number(law->p, 2) : "-", number(fit->runs.p, 2)});
   }
@@ -250,7 +253,7 @@ std::string choice_text(const LawComparison& comparison) {
   std::vector<std::string> worse, open;
   for (const HeldOutLaw& law : comparison.laws) {
     if (law.model == comparison.laws[comparison.leading].model) continue;
-    (law.worse ? worse : open).push_back(difference_text(law));
+    (law.worse ? worse : open).push_back(compared_text(law));
   }
   const std::string& leading = comparison.laws[comparison.leading].model;
   const std::string others = listed(worse);

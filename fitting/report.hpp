@@ -27,6 +27,9 @@ std::vector<ParameterTable> parameter_tables(const Fit& fit);
 /// "0.5735(17)", value and half of the 68 % interval; "-" where that is open; "0.5 fixed".
 std::string estimate_text(const Estimate& estimate);
 
+/// "0.021(6)", the difference from the leading law and half of its 68 % interval.
+std::string difference_text(const HeldOutLaw& law);
+
 /// The interval of level 0 (68 %) or 1 (95 %): "0.571 to 0.576", "> 0.571", "no limit".
 std::string interval_text(const Estimate& estimate, std::size_t level);
 

@@ -11,6 +11,7 @@
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/value_text.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -165,7 +166,7 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
     curves.push_back(curve_of(series));
     for (const double value : curves.back()) range.add(value);
     const std::size_t n = curves.back().size();
-    ends.push_back(n == 0 ? "-" : value_with_error(series.mean[n - 1], series.error[n - 1]));
+    ends.push_back(n == 0 ? "-" : mean_text(series, n - 1));
     labels.push_back(file.study().points[point].label);
     longest = std::max(longest, width_of(labels.back()));
   }

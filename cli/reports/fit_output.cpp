@@ -17,8 +17,7 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; -: that interval is open; not "
-    "identifiable: the data set no limit. In a difference a(b), b is the standard error. "
-    "docs/reference/laws.md describes the rest.\n";
+    "identifiable: the data set no limit. docs/reference/laws.md describes the rest.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -174,6 +173,8 @@ Json comparison_json(const LawComparison& comparison) {
     laws[law.model] = {{"held_out_error", number(law.squared_error)},
                        {"difference", number(law.difference)},
                        {"difference_error", number(law.error)},
+                       {"difference_dof", number(law.dof)},
+                       {"difference_half_width_68", number(half_width(law.error, law.dof))},
                        {"t", number(law.t)},
                        {"p", number(law.p)},
                        {"worse", law.worse}};
@@ -232,8 +233,7 @@ std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
         row.difference = "least";
       } else {
         row.verdict = law->worse ? "rejected" : "not rejected";
-        row.difference =
-            law->same_curve ? "same curve" : value_with_error(law->difference, law->error);
+        row.difference = law->same_curve ? "same curve" : difference_text(*law);
       }
     }
     rows.push_back(std::move(row));
@@ -246,20 +246,27 @@ std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layo
   const std::string& observable = rows.front().observable;
   const bool is_shared = std::ranges::all_of(
       rows, [&](const FitSummary& row) { return row.observable == observable; });
-  TextTable table({"curve", "law", "verdict", "difference", "asymptote"}, 2);
+  const bool is_compared =
+      std::ranges::any_of(rows, [](const FitSummary& row) { return row.difference != "-"; });
+  std::vector<std::string> head{"curve", "law", "verdict", "asymptote"};
+  if (is_compared) head.insert(head.begin() + 3, "difference");
+  TextTable table(head, 2);
   for (const FitSummary& row : rows) {
     const bool has_point = !row.point.empty();
     const std::string curve = is_shared && has_point ? row.point
                               : has_point            ? row.observable + ", " + row.point
                                                      : row.observable;
-    table.add({curve, row.law, row.verdict, row.difference, row.asymptote});
+    std::vector<std::string> cells{curve, row.law, row.verdict, row.asymptote};
+    if (is_compared) cells.insert(cells.begin() + 3, row.difference);
+    table.add(std::move(cells));
   }
   return (is_shared ? fmt::format("fits of {}\n", observable) : "") +
          table.text(layout.table_width()) +
          wrapped(
-             "asymptote a(b): b is half the 68 % interval, in the last digits of a; "
-             "difference a(b) of the held-out errors: b is the standard error. --verbose prints "
-             "every fit.\n",
+             fmt::format(
+                 "a(b): b, in the last digits of a, is half the 68 % interval.{} --verbose "
+                 "prints every fit.\n",
+                 is_compared ? " difference: of the held-out errors, from the leading law." : ""),
              layout.width);
 }
 

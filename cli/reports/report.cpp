@@ -16,6 +16,7 @@
 #include "fitting/value_text.hpp"
 #include "study/amounts.hpp"
 #include "study/drawing/drawn/thinning.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -186,7 +187,7 @@ std::string change_of(const PointSeries& series) {
   const std::size_t last = series.reached.size() - 1;
   const bool as_many = shown->count[0] == shown->count[last];
   const auto at = [&](std::size_t tap) {
-    return fmt::format("{} at tap {}{}", value_with_error(shown->mean[tap], shown->error[tap]), tap,
+    return fmt::format("{} at tap {}{}", mean_text(*shown, tap), tap,
                        as_many ? "" : fmt::format(" (M = {})", shown->count[tap]));
   };
   std::string text = fmt::format("; {} {}", shown->label.name, at(0));
@@ -223,7 +224,8 @@ std::vector<std::size_t> shown_points(std::span<const RealizationSummary> realiz
 
 /// How numbers are written, and what is not shown.
 std::string legend(const Layout& layout) {
-  std::string text = "a(b): mean over realizations, b its standard error in the last digits of a";
+  std::string text =
+      "a(b): mean over realizations; b, in the last digits of a, is half the 68 % interval";
   return text + (layout.columns == Columns::all ? "; sigma: deviation of realizations, 1/M\n"
                                                 : "; --wide: sigma and all columns\n");
 }

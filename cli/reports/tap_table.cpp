@@ -9,6 +9,7 @@
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "fitting/value_text.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -43,9 +44,8 @@ std::vector<ShownColumn> shown_columns(const EnsembleSeries& series,
     return {mean};
   }
   if (label.shown != Shown::spread) return {};
-  std::vector<ShownColumn> columns{shown_column(label.name, taps, [&](std::uint64_t tap) {
-    return value_with_error(series.mean[tap], series.error[tap]);
-  })};
+  std::vector<ShownColumn> columns{
+      shown_column(label.name, taps, [&](std::uint64_t tap) { return mean_text(series, tap); })};
   if (wanted == Columns::all) {
     columns.push_back(shown_column("sigma", taps, [&](std::uint64_t tap) {
       return series.count[tap] > 1 ? number_text(series.sigma[tap], 3) : "-";

@@ -21,7 +21,7 @@ constexpr std::size_t most_rows = 24, most_rows_of_many_axes = 12;
 constexpr std::size_t most_words = 1500;  // characters of a column of sentences
 constexpr std::size_t longest_cell = 24;
 
-constexpr const char* interval_endings[] = {"_low_68", "_high_68", "_low_95", "_high_95"};
+constexpr const char* interval_endings[] = {"_error", "_low_68", "_high_68", "_low_95", "_high_95"};
 
 bool is_probability(const std::string& name) {
   return name.ends_with("_p") || name.ends_with("_p_corrected");
@@ -71,7 +71,7 @@ bool has_interval(const Quantity& quantity, const Block& block) {
 
 bool is_shown_beside(const Quantity& quantity, const Block& block) {
   return std::ranges::any_of(block.columns, [&](const Quantity* other) {
-    if (beside(*other, block, "_error") == &quantity) return true;
+    if (beside(*other, block, "_half_width") == &quantity) return true;
     return has_interval(*other, block) &&
            std::ranges::any_of(interval_endings, [&](const char* ending) {
              return beside(*other, block, ending) == &quantity;
@@ -89,9 +89,8 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
     return fmt::format("{} ({})", number_text(number_at(&quantity, index), 4),
                        limits_text(low, high, 4));
   }
-  const Quantity* error = beside(quantity, block, "_error");
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
-  const double width = number_at(error, index);
+  const double width = number_at(beside(quantity, block, "_half_width"), index);
   if (!numbers || !(width > 0)) return shown_cell(quantity, index);
   return value_with_error(numbers->at(index), width, scale_of(*numbers));
 }
@@ -200,6 +199,7 @@ class BlockText {
   }
 
   std::string text() {
+    if (layout_.columns == Columns::few && counts_alone()) return "";
     if (block_.n_rows() == 0) return wrapped(left_out(block_, "none: ", all_names()), width());
     const bool brief = layout_.columns == Columns::few;
     if (brief && block_.n_rows() > (keys_ > 1 ? most_rows_of_many_axes : most_rows)) {
@@ -223,6 +223,12 @@ class BlockText {
 
  private:
   std::size_t width() const { return layout_.width; }
+
+  /// Numbers of realizations and of nothing else.
+  bool counts_alone() const {
+    return said_.empty() && empty_.empty() && numbers_.size() == 1 &&
+           numbers_.front()->name == "realizations";
+  }
 
   std::vector<std::string> all_names() const {
     std::vector<std::string> names = empty_;

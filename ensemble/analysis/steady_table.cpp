@@ -49,7 +49,8 @@ void add_blocking(Table& table, const AnalysedSeries& series, const BlockingResu
       {{"blocks", along, counts, "1", "blocks of all realizations", ""},
        {"block_error", along, errors, series.units, "error of the mean if blocks are independent",
         flyvbjerg_petersen},
-       {"block_error_error", along, errors_of_errors, series.units, "its own standard error", ""}});
+       {"block_error_error", along, errors_of_errors, series.units, "its own standard error", ""},
+       one("block_error_dof", infinite, "1", "its degrees of freedom")});
 }
 
 }  // namespace
@@ -80,6 +81,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
                        : "lower bound: longer than the taps can tell",
           wolff),
       one("autocorrelation_time_error", time.error, "taps", "standard error", wolff),
+      one("autocorrelation_time_dof", infinite, "1", "its degrees of freedom"),
       one("drift", state.trend.line.value, series.units,
           "change of the mean over the taps, by a straight line")};
   add_errors(table, "drift", state.trend.line, series.units);

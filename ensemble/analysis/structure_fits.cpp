@@ -138,12 +138,13 @@ void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
   const Parameter& parameter = model.parameters()[j];
   // Beyond a parameter's bounds, and below 0 for the amplitude of counts, the truth cannot lie.
   const double least = law.of_counts && parameter.linear ? 0 : parameter.lower;
-  std::vector<double> values, errors, low, high;
+  std::vector<double> values, errors, dof, low, high;
   for (const FoundLaw& found : taps) {
     const double value = found.fit.values[j], error = found.fit.errors[j];
     const double reach = student_half_width(error, found.realizations, interval_levels[1]);
     values.push_back(value);
     errors.push_back(error);
+    dof.push_back(found.realizations > 0 ? static_cast<double>(found.realizations - 1) : 0);
     low.push_back(std::isnan(reach) ? reach : std::max(value - reach, least));
     high.push_back(std::isnan(reach) ? reach : std::min(value + reach, parameter.upper));
   }
@@ -163,6 +164,8 @@ void add_parameter(const FittedLaw& law, const Model& model, std::size_t j,
   };
   add("", std::move(values), std::move(meaning), model.source());
   add("_error", std::move(errors), "standard error by the jackknife over realizations", "");
+  table.quantities.push_back(
+      {name + "_dof", {"tap"}, std::move(dof), "1", "degrees of freedom of the error", ""});
   add("_low_95", std::move(low), "lower end of the 95 % interval, Student's t over realizations",
       "");
   add("_high_95", std::move(high), "its upper end", "");

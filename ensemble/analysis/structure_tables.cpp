@@ -30,8 +30,12 @@ std::map<std::string_view, Places> longest_places(const PartPackings& part) {
 }
 
 struct MeansAndErrors {
-  std::vector<double> means, errors;
+  std::vector<double> means, errors, dof;
 };
+
+double degrees_of_freedom(std::size_t n_packings) {
+  return n_packings > 0 ? static_cast<double>(n_packings - 1) : 0;
+}
 
 /// Sum over packings of what they have, or the ratio of the sums of value times weight and of
 /// weight with its error by the jackknife over packings (Efron 1982, Jackknife, Bootstrap and Other
@@ -59,6 +63,7 @@ MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
       }
       out.means.push_back(example.pooling == Pooling::sum ? top : top / bottom);
       out.errors.push_back(jackknife_error(left_out));
+      out.dof.push_back(degrees_of_freedom(left_out.size()));
     }
   }
   return out;
@@ -83,6 +88,7 @@ MeansAndErrors averages(const PartPackings& part, std::string_view name, std::si
       }
       out.means.push_back(moments.mean());
       out.errors.push_back(moments.standard_error());
+      out.dof.push_back(degrees_of_freedom(moments.count()));
     }
   }
   return out;
@@ -105,9 +111,10 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
   table.quantities.push_back(
       {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
   if (!quantity.with_error || quantity.pooling == Pooling::sum) return;
-  name.append("_error");
-  table.quantities.push_back({std::move(name), std::move(axes), std::move(found.errors), units,
+  table.quantities.push_back({name + "_error", axes, std::move(found.errors), units,
                               "standard error over realizations", ""});
+  table.quantities.push_back({name + "_dof", std::move(axes), std::move(found.dof), "1",
+                              "degrees of freedom of the error", ""});
 }
 
 /// The packings that have a value, [n_taps, n_places].

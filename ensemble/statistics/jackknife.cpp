@@ -4,7 +4,6 @@
 
 #include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
-#include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -21,8 +20,7 @@ double jackknife_error(std::span<const double> left_out) {
 }
 
 double student_half_width(double error, std::size_t realizations, double level) {
-  if (realizations < 2) return not_a_number;
-  return error * student_two_sided(level, static_cast<double>(realizations - 1));
+  return half_width(error, static_cast<double>(realizations) - 1, level);
 }
 
 }  // namespace jostle::inline ensemble

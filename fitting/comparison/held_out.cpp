@@ -198,13 +198,13 @@ HeldOutLaw compared(const Ensemble& ensemble, const Predictions& law, const Pred
   }
   found.difference = found.squared_error - best.squared_error / n;
   found.error = std::sqrt(variance_of_difference(ensemble, law, best)) / n;
-  const double dof = std::min(law.dof, best.dof);
+  found.dof = std::min(law.dof, best.dof);
   if (found.error > 0) {
     found.t = found.difference / found.error;
   } else if (found.difference > 0) {
     found.t = std::numeric_limits<double>::infinity();
   }
-  found.p = std::min(1.0, n_others * 0.5 * student_tails(found.t, dof));
+  found.p = std::min(1.0, n_others * 0.5 * student_tails(found.t, found.dof));
   found.worse = found.p < LawComparison::level;
   return found;
 }

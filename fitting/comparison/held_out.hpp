@@ -16,8 +16,9 @@ struct HeldOutLaw {
   /// Mean squared error of prediction, less what the error of the law's own fit adds.
   double squared_error = 0;
   double difference = 0;  // of squared_error, from the leading law; 0 for that law
-  double error = 0;  // standard error of the difference, for Student's t of M - 1, fewer with gaps
-  double t = 0;      // difference / error
+  double error = 0;       // standard error of the difference
+  double dof = 0;         // of Student's t for the error: M - 1, fewer with gaps
+  double t = 0;           // difference / error
   /// p-value of the hypothesis that this law comes at least as close to the mean curve as the
   /// leading law, for as many laws as are compared (Bonferroni); 1 for the leading law.
   double p = 1;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/gapped_dof.hpp"
 #include "fitting/numbers.hpp"
@@ -71,6 +73,10 @@ DependentErrors of_independent_points(const LinearProblem& problem, const Fit& f
 }
 
 }  // namespace
+
+double half_width(double error, double dof, double level) {
+  return dof > 0 ? error * two_sided(level, dof) : std::numeric_limits<double>::quiet_NaN();
+}
 
 LinearProblem linear_problem(const Model& model, const Curve& curve, const ParameterValues& values,
                              const std::vector<bool>& free) {

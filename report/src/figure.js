@@ -122,7 +122,7 @@ class Figure {
 
   saveCsv() {
     const {x, y} = this.spec;
-    save(this.name("csv"), csv(["series", x.label, y.label, "standard error", "low", "high"], this.rows()),
+    save(this.name("csv"), csv(["series", x.label, y.label, "half width 68 %", "low", "high"], this.rows()),
       "text/csv");
   }
 

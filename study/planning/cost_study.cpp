@@ -13,6 +13,10 @@ namespace jostle::inline study {
 
 namespace {
 
+double degrees_of_freedom(std::size_t pairs) {
+  return pairs > 0 ? static_cast<double>(pairs - 1) : 0;
+}
+
 double deviation(std::span<const double> values) {
   Moments moments;
   for (const double value : values) moments.add(value);
@@ -49,11 +53,12 @@ std::string part_name(PilotSetting::Part part) {
 void add_windows(const CostOfObservable& cost, Table& table) {
   if (cost.windows.empty()) return;
   std::vector<std::string> names;
-  std::vector<double> differences, errors;
+  std::vector<double> differences, errors, dof;
   for (const WindowEffect& one : cost.windows) {
     names.push_back(one.name);
     differences.push_back(one.difference.bias);
     errors.push_back(one.difference.error);
+    dof.push_back(degrees_of_freedom(one.difference.pairs));
   }
   const std::vector<std::string> window = {"window"};
   const std::string& units = cost.label.units;
@@ -61,7 +66,8 @@ void add_windows(const CostOfObservable& cost, Table& table) {
   table.quantities.insert(
       table.quantities.end(),
       {{"window_difference", window, differences, units, "less the scene's window", ""},
-       {"window_difference_error", window, errors, units, "standard error over replicates", ""}});
+       {"window_difference_error", window, errors, units, "standard error over replicates", ""},
+       {"window_difference_dof", window, dof, "1", "its degrees of freedom", ""}});
 }
 
 std::string window_name(const BulkFraction& bulk) {
@@ -218,18 +224,20 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
   std::vector<Table> tables;
   const std::vector<std::string> setting = {"setting"}, by_tap = {"setting", "tap"};
   for (const CostOfObservable& cost : observables_) {
-    std::vector<double> bias, error, reduction, sigma, statistical;
+    std::vector<double> bias, error, dof, reduction, sigma, statistical;
     for (std::size_t p = 0; p < settings_.size(); ++p) {
       bias.push_back(cost.biases[p].bias);
       error.push_back(cost.biases[p].error);
+      dof.push_back(degrees_of_freedom(cost.biases[p].pairs));
       reduction.push_back(cost.biases[p].variance_reduction);
       sigma.push_back(cost.setting_costs[p].sigma);
       statistical.push_back(sigma.back() / std::sqrt(static_cast<double>(scene_realizations)));
     }
-    std::vector<double> growth, growth_error, growth_tails;
+    std::vector<double> growth, growth_error, growth_dof, growth_tails;
     for (const Growth& one : cost.growths) {
       growth.push_back(one.change.bias);
       growth_error.push_back(one.change.error);
+      growth_dof.push_back(degrees_of_freedom(one.change.pairs));
       growth_tails.push_back(one.tails);
     }
     const std::string& units = cost.label.units;
@@ -240,6 +248,7 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
         {"part", setting, parts, "1", "what differs from the scene", ""},
         {"bias", setting, bias, units, "less the most complete setting, paired", ""},
         {"bias_error", setting, error, units, "standard error over replicates", ""},
+        {"bias_dof", setting, dof, "1", "degrees of freedom of bias_error", ""},
         {"variance_reduction", setting, reduction, "1", "by pairing, of the difference", ""},
         {"sigma", setting, sigma, units,
          "deviation between realizations, pooled over the settings that share their beds", ""},
@@ -259,6 +268,12 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
          "the most complete setting less the one before",
          ""},
         {"last_step_error", {}, std::vector{cost.last_step.error}, units, "standard error", ""},
+        {"last_step_dof",
+         {},
+         std::vector{degrees_of_freedom(cost.last_step.pairs)},
+         "1",
+         "its degrees of freedom",
+         ""},
         {"remainder",
          {},
          std::vector{cost.remainder.value},
@@ -270,12 +285,19 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
          std::vector{cost.remainder.error},
          units,
          "jackknife over replicates",
+         ""},
+        {"remainder_dof",
+         {},
+         std::vector{degrees_of_freedom(cost.remainder.realizations)},
+         "1",
+         "its degrees of freedom",
          ""}};
     if (!cost.growths.empty()) {
       table.quantities.insert(
           table.quantities.end(),
           {{"growth", setting, growth, units, "of the bias, from the middle tap to the last", ""},
            {"growth_error", setting, growth_error, units, "standard error over replicates", ""},
+           {"growth_dof", setting, growth_dof, "1", "its degrees of freedom", ""},
            {"growth_tails", setting, growth_tails, "1", "probability by chance, Student's t", ""}});
     }
     add_windows(cost, table);

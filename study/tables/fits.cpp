@@ -212,6 +212,10 @@ void add_curve(Table& table, const Curve& source, const Fit& fit) {
   if (!curve.sigma.empty()) {
     table.quantities.push_back(
         values("x_error", along, curve.sigma, "standard error of the mean, pooled over taps"));
+    const double dof =
+        curve.n_realizations > 1 ? static_cast<double>(curve.n_realizations - 1) : infinite;
+    table.quantities.push_back(
+        values("x_dof", {}, {dof}, "degrees of freedom of x_error; infinite for given errors"));
   }
   table.quantities.push_back(values("fitted", along, fit.fitted, "the law"));
 }
@@ -245,8 +249,8 @@ void add_comparison(Table& table, const std::string& model, const LawComparison&
       {"held_out_error", law->squared_error,
        "mean squared error of prediction of held-out realizations, in variances of one"},
       {"held_out_difference", law->difference, "held_out_error less that of the leading law"},
-      {"held_out_difference_error", law->error,
-       "standard error, for Student's t of the realizations less 1"},
+      {"held_out_difference_error", law->error, "standard error of held_out_difference"},
+      {"held_out_difference_dof", law->dof, "its degrees of freedom"},
       {"held_out_p", law->p,
        "p-value of the hypothesis that this law is as close to the mean as the leading law"}};
   for (const auto& [name, value, meaning] : numbers) {
@@ -358,10 +362,12 @@ std::vector<FittedCurve> scene_fits(const ResultsFile& file, std::span<const Fit
                                     const FitManner& manner, const FitObserver& observer) {
   std::vector<FittedCurve> all;
   for (const FitRequest& request : requests) {
-    const auto models = models_named(request.model);
+    std::vector<std::unique_ptr<Model>> models;
+    for (const std::string& name : request.models) {
+      for (auto& model : models_named(name)) models.push_back(std::move(model));
+    }
     const FitRange range{static_cast<double>(request.first),
-                         request.last ? static_cast<double>(*request.last)
-                                      : std::numeric_limits<double>::infinity()};
+                         request.last ? static_cast<double>(*request.last) : infinite};
     for (FitSource& source :
          results_curves(file, chosen_points(file.study(), ""), request.observable, range)) {
       all.push_back(fit_curve(models, std::move(source), manner));

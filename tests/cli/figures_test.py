@@ -16,7 +16,7 @@ import numpy
 
 from crafted_test import SEAL, sealed
 from report_test import EVERYTHING, HOSTILE
-from support import BAD_INPUT, BROKEN, EVERY, SHIM, SOURCE, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, EVERY, HALF_OF_THREE, SHIM, SOURCE, TINY, Case, changed
 
 PYTHON = sys.executable  # has what the tests need
 KINDS = ("csv", "json", "py", "svg", "pdf")
@@ -108,13 +108,14 @@ class Everything(Figures):
         self.assertEqual([name for name, _, _ in series],
                          ["dilate = 0.02", "dilate = 0.05", "dilate = 0.1"])
         for point, (_, columns, rows) in enumerate(series):
-            self.assertEqual(columns, ["taps t", "mean height ⟨Z⟩ (diameter)", "standard error",
+            self.assertEqual(columns, ["taps t", "mean height ⟨Z⟩ (diameter)", "half width 68 %",
                                        "low", "high", "label"])
             stored = file[f"ensemble/point_{point:04}"]
             taps = column(rows, 0).astype(int)
             self.assertEqual((taps[0], taps[-1]), (0, 60))
             numpy.testing.assert_array_equal(column(rows, 1), stored["mean_height_mean"][()][taps])
-            numpy.testing.assert_array_equal(column(rows, 2), stored["mean_height_error"][()][taps])
+            numpy.testing.assert_allclose(column(rows, 2), HALF_OF_THREE * stored["mean_height_error"][()][taps],
+                                          rtol=1e-9)
 
     def fits(self, file):
         series = self.data("fits-of-bottom-fraction-point-0001")
@@ -126,7 +127,7 @@ class Everything(Figures):
         self.assertGreater(len(taps), 20)
         x, error, fitted = (stored[key][()][taps] for key in ("x", "x_error", "fitted"))
         numpy.testing.assert_array_equal(column(series[0][2], 1), x)
-        numpy.testing.assert_array_equal(column(series[0][2], 2), error)
+        numpy.testing.assert_allclose(column(series[0][2], 2), HALF_OF_THREE * error, rtol=1e-9)
         numpy.testing.assert_array_equal(column(series[2][2], 1), fitted)
         numpy.testing.assert_array_equal(column(series[5][2], 1), (x - fitted) / error)
 
@@ -140,7 +141,7 @@ class Everything(Figures):
             there = numpy.isfinite(phi)
             numpy.testing.assert_array_equal(column(rows, 0), stored["height"][()][there])
             numpy.testing.assert_array_equal(column(rows, 1), phi[there])
-            numpy.testing.assert_array_equal(column(rows, 2), error[there])
+            numpy.testing.assert_allclose(column(rows, 2), HALF_OF_THREE * error[there], rtol=1e-9)
 
     def spectrum(self, file):
         stored = file["analysis/point_0000/spectrum/mean_height"]

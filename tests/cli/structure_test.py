@@ -144,8 +144,8 @@ class Structure(Case):
         self.run_scene()
         for text in (self.structure("tiny.h5", "--part", "profile").stdout,
                      self.structure("tiny.h5", "--part", "coordination").stdout):
-            self.assertRegex(" ".join(text.split()), r"a\(b\) b, in the last digits of a, is the standard error over")
-        self.assertRegex(" ".join(text.split()), r"standard error over realizations; a \(x to y\): the 95 % interval")
+            self.assertRegex(" ".join(text.split()), r"a\(b\) b, in the last digits of a, is half the 68 % interval")
+        self.assertRegex(" ".join(text.split()), r"degrees of freedom; a \(x to y\): the 95 % interval")
 
     def test_shards_are_measured_when_they_are_merged(self):
         self.write(changed(TINY, structure=SMALL))

@@ -39,6 +39,10 @@ PLAIN = {key: value for key, value in os.environ.items()
          if not key.startswith(("JOSTLE", "SLURM"))}
 
 
+# Half the 68 % interval of a mean over three realizations, in its standard errors: Student's t of two
+# degrees of freedom.
+HALF_OF_THREE = 0.682689492137086 * (2 / (1 - 0.682689492137086 ** 2)) ** 0.5
+
 # Sentences in one line each, however long.
 UNFOLDED = {"COLUMNS": "1000"}
 

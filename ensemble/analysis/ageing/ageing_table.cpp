@@ -126,6 +126,13 @@ void add_scaled(const AgeingCurves& curves, const AgeingFits& fits, Table& table
                               "standard error of scaled_a at equal scaled_lag, those of a, "
                               "shared_a_inf and shared_tau together",
                               ""});
+  table.quantities.push_back(
+      {"scaled_a_dof",
+       {},
+       std::vector{std::max(0.0, static_cast<double>(fits.realizations) - 1)},
+       "1",
+       "degrees of freedom of scaled_a_error",
+       ""});
 }
 
 ScaledCurve scaled_curve(const AgeingCurves& curves, std::size_t k, double tau, double a_inf) {

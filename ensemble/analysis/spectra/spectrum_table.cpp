@@ -155,6 +155,7 @@ Table SpectrumAnalysis::table() const {
       "in the same band, of an AR(1) process of the same autocorrelation time");
   add("ar1_slope_error", trend.is_constant() ? std::nan("") : memory.error.error, "1",
       "standard error, from that of the time, and 0.03 for the bias of short series");
+  add("ar1_slope_dof", memory.error.dof, "1", "degrees of freedom of ar1_slope_error");
   add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
   add("drift", trend.line.value, series_.units,
       "change of the mean over the taps, by a straight line");

@@ -45,15 +45,19 @@ class ColumnsAlong {
   /// Variances, whose logarithm has the error.
   void add_variances(const std::string& name, const std::vector<LogEstimate>& values,
                      const std::string& units, const std::string& meaning) {
-    std::vector<double> value, error, low, high;
+    std::vector<double> value, error, low_68, high_68, low, high;
     for (const LogEstimate& one : values) {
       value.push_back(one.value);
       error.push_back(one.error);
+      low_68.push_back(one.low_68);
+      high_68.push_back(one.high_68);
       low.push_back(one.low_95);
       high.push_back(one.high_95);
     }
     add(name, std::move(value), units, meaning, nowak);
     add(name + "_error", std::move(error), units, "standard error, jackknife of the logarithm");
+    add(name + "_low_68", std::move(low_68), units, "68 % interval, Student's t");
+    add(name + "_high_68", std::move(high_68), units, "68 % interval, Student's t");
     add(name + "_low_95", std::move(low), units, "95 % interval, Student's t");
     add(name + "_high_95", std::move(high), units, "95 % interval, Student's t");
   }

@@ -5,10 +5,12 @@
 #include <span>
 
 #include "ensemble/moments.hpp"
+#include "fitting/fit.hpp"
 #include "results/file/layout.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 #include "study/running/stored_scene.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -53,7 +55,7 @@ DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const Curve
     curve.columns.push_back({.label = series.label,
                              .is_observable = curve.columns.size() < n_observables,
                              .mean = at_places(series.mean, curve.taps),
-                             .error = at_places(series.error, curve.taps),
+                             .half_width = at_places(half_widths(series), curve.taps),
                              .sigma = at_places(series.sigma, curve.taps),
                              .count = at_places(series.count, curve.taps)});
   }
@@ -95,7 +97,8 @@ class SnapshotMeans {
     for (const auto& [tap, moments] : coordination_) {
       drawn.taps.push_back(tap);
       drawn.coordination.push_back(moments.mean());
-      drawn.coordination_error.push_back(moments.standard_error());
+      drawn.coordination_half_width.push_back(
+          half_width(moments.standard_error(), static_cast<double>(moments.count()) - 1));
     }
     std::size_t longest = 0;
     for (const auto& [tap, mean] : heights_) longest = std::max(longest, mean.sums.size());

@@ -23,8 +23,8 @@ struct DrawnRoom {
 /// A column of the ensemble at the taps of its curve.
 struct DrawnColumn {
   Column label;
-  bool is_observable = false;  // else a diagnostic of the engine
-  std::vector<double> mean, error, sigma;
+  bool is_observable = false;                   // else a diagnostic of the engine
+  std::vector<double> mean, half_width, sigma;  // half_width: of the mean's 68 % interval
   std::vector<std::uint32_t> count;
 };
 
@@ -44,7 +44,7 @@ struct DrawnHeights {
 struct DrawnSnapshots {
   std::uint32_t point = 0;
   std::vector<std::uint64_t> taps;
-  std::vector<double> coordination, coordination_error;  // [taps]
+  std::vector<double> coordination, coordination_half_width;  // [taps]
   double bin_width = 0;  // diameters; a multiple of the stored one where those were many
   std::vector<DrawnHeights> heights;
 };

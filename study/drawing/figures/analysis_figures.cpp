@@ -56,7 +56,7 @@ FigurePanel scaled_ageing(const TableView& table) {
   return {.title = fmt::format("Ageing of {}, scaled", words(table.path().back())),
           .caption =
               "A/A∞ against t/τ, with the scales of fits that share one B; the curves fall "
-              "on one where ageing is a change of scales alone." +
+              "on one where ageing is a change of scales alone; bars are 68 % intervals." +
               collapse_text(table),
           .source = "Philippe & Bideau 2001, eq. 6",
           .x = {"t / τ(t_W)", AxisKind::logarithmic},
@@ -64,7 +64,7 @@ FigurePanel scaled_ageing(const TableView& table) {
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double) {
             return FigureRow{.x = at(table.row("scaled_lag", k), j),
                              .y = at(table.row("scaled_a", k), j),
-                             .error = at(table.row("scaled_a_error", k), j)};
+                             .error = at(table.half_width_row("scaled_a", k), j)};
           })};
 }
 
@@ -73,14 +73,14 @@ FigurePanel covariance_ratio(const TableView& table) {
       .title = "Covariance ratio of " + words(table.path().back()),
       .caption =
           "C(t, t_W): covariance over realizations of the values at t_W and t_W+t, over the "
-          "variance at t_W alone: 1 at lag 0, above 1 where realizations spread apart; bars are "
-          "standard errors, left out above 1.",
+          "variance at t_W alone: 1 at lag 0, above 1 where realizations spread apart; bars are 68 "
+          "% intervals, left out where half of one is above 1.",
       .source = table.source("c"),
       .x = {"lag t (taps)", AxisKind::logarithmic},
       .y = {"C(t, t_W)"},
       .rules = {{.y = 0}},
       .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
-        const double error = at(table.row("c_error", k), j);
+        const double error = at(table.half_width_row("c", k), j);
         return FigureRow{
             .x = lag, .y = at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
       })};
@@ -129,7 +129,7 @@ std::vector<FigureSeries> settings_of(const TableView& table) {
                       .hollow = true};
   const std::vector<std::string> names = table.axis_texts("setting");
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const double error = table.value("bias_error", i);
+    const double error = table.half_width("bias", i);
     const FigureRow row{.x = table.value("tap_seconds", i),
                         .y = std::abs(table.value("bias", i)) + (std::isfinite(error) ? error : 0),
                         .label = names[i]};
@@ -152,17 +152,18 @@ void add_steady(const DrawnFile& file, Figures& into) {
           {.title = "Blocking of " + words(table.path().back()),
            .caption =
                fmt::format("Standard error of the mean of taps {}, if blocks of so many taps were "
-                           "independent. It grows until they are; plateau: {}.",
+                           "independent; bars are its 68 % intervals. It grows until they are; "
+                           "plateau: {}.",
                            table.note("taps"), table.note("plateau")),
            .source = table.source("block_error"),
            .x = {"block length (taps)", AxisKind::logarithmic},
-           .y = {"error of the mean" + unit_text(table.units("block_error")),
+           .y = {"standard error of the mean" + unit_text(table.units("block_error")),
                  AxisKind::logarithmic},
            .series = {{.name = "",
                        .colour = kind_colour(0),
                        .drawn = Drawn::joined_points,
                        .rows = rows_of(table.axis("block_length"), table.values("block_error"),
-                                       table.values("block_error_error"))}}},
+                                       table.half_widths("block_error"))}}},
           into, table.name());
     }
   }
@@ -200,7 +201,7 @@ void add_spectra(const DrawnFile& file, Figures& into) {
         if (panel.series.empty()) {
           panel.caption = fmt::format(
               "One-sided power spectral density of taps {} ({} window, {} removed, {}), averaged "
-              "over realizations; bars are standard errors, dashed lines the log-log slopes.",
+              "over realizations; bars are 68 % intervals, dashed lines the log-log slopes.",
               table.note("taps"), table.note("window"), table.note("detrending"),
               table.note("segments"));
           panel.source = table.source("density");
@@ -210,7 +211,7 @@ void add_spectra(const DrawnFile& file, Figures& into) {
                                 .colour = point.colour,
                                 .drawn = Drawn::points,
                                 .rows = rows_of(table.axis("frequency"), table.values("density"),
-                                                table.values("density_error")),
+                                                table.half_widths("density")),
                                 .symbol = panel.series.size(),
                                 .point = point.number});
         std::vector<FigureRow> line = slope_line(table);
@@ -233,11 +234,12 @@ void add_cost(const DrawnFile& file, Figures& into) {
     add_panel(file, std::nullopt,
               {.title = fmt::format("Accuracy of {} against time", words(table.observable())),
                .caption = fmt::format(
-                   "|bias| plus its standard error of each setting, against {}, and the core time "
-                   "of a late tap. Joined: settings that no other beats in both.",
+                   "|bias| of each setting plus half its 68 % interval, against {}, and the core "
+                   "time of a late tap. Line: settings that no other setting beats on both axes.",
                    reference.empty() ? "the most complete" : reference),
                .x = {"core time of a tap (s)", AxisKind::logarithmic},
-               .y = {"|bias| + error" + unit_text(table.units("bias")), AxisKind::logarithmic},
+               .y = {"|bias| + half its 68 % interval" + unit_text(table.units("bias")),
+                     AxisKind::logarithmic},
                .series = settings_of(table)},
               into, table.name());
   }

@@ -117,7 +117,7 @@ std::string csv_head(const Figure& figure) {
     values += (values.empty() ? "" : " | ") + panel.y.label;
   }
   return "panel,series," + text_cell(figure.panels.front().x.label) + "," + text_cell(values) +
-         ",standard error,low,high,label\n";
+         ",half width 68 %,low,high,label\n";
 }
 
 }  // namespace

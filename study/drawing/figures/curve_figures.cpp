@@ -39,7 +39,7 @@ std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string
     for (const DrawnColumn& column : curve.columns) {
       if (column.label.name != name) continue;
       const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
-      one.rows = shows == Shows::mean ? rows_of(taps, column.mean, column.error)
+      one.rows = shows == Shows::mean ? rows_of(taps, column.mean, column.half_width)
                                       : rows_of(taps, column.sigma);
     }
     series.push_back(std::move(one));
@@ -50,7 +50,7 @@ std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string
 void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
   const Column& label = file.column(name)->label;
   const std::string errors = file.n_realizations() > 1
-                                 ? "the band is the standard error of the mean over realizations"
+                                 ? "the band is the 68 % interval of the mean over realizations"
                                  : "of one realization, without an error";
   add_panel(file, std::nullopt,
             {.title = sentence(words(name)),
@@ -83,7 +83,7 @@ void add_spread(const DrawnFile& file, Figures& into) {
         {.title = "Spread of " + words(name),
          .caption =
              fmt::format("Standard deviation of {} over realizations at each tap (population "
-                         "deviation, 1/M). The error of the mean is σ/√(M−1).",
+                         "deviation, 1/M). The standard error of the mean is σ/√(M−1).",
                          words(name)),
          .source = "Rosato et al. 2010",
          .x = file.tap_axis(),
@@ -113,7 +113,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
           {.name = point.label,
            .colour = point.colour,
            .drawn = Drawn::joined_points,
-           .rows = rows_of(as_numbers(kept.taps), kept.coordination, kept.coordination_error),
+           .rows = rows_of(as_numbers(kept.taps), kept.coordination, kept.coordination_half_width),
            .symbol = series.size(),
            .point = point.number});
     }
@@ -122,7 +122,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
     add_panel(file, std::nullopt,
               {.title = "Coordination of the kept packings",
                .caption = "Mean number of centres within the contact cut of a centre, all spheres, "
-                          "at the taps of the snapshots; bars are standard errors over "
+                          "at the taps of the snapshots; bars are 68 % intervals over "
                           "realizations.",
                .x = file.tap_axis(),
                .y = {"mean coordination N_c"},

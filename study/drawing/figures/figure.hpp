@@ -26,7 +26,7 @@ struct FigureAxis {
   std::vector<std::string> names{};  // of AxisKind::names, at 0, 1, 2, ...
 };
 
-/// A value with its standard error or the ends of its interval; NaN where there is none.
+/// A value with half its 68 % interval, or the ends of an interval; NaN where there is none.
 struct FigureRow {
   double x = no_value, y = no_value;
   double error = no_value;

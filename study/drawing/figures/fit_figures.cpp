@@ -21,14 +21,14 @@ std::string data_caption(const TableView& table, const std::string& range) {
   const std::string measured = table.note("measured");
   if (measured.empty()) {
     return fmt::format(
-        "Mean over realizations (points; bars are standard errors pooled over "
+        "Mean over realizations (points; bars are 68 % intervals by the variance pooled over "
         "taps) and the fitted laws, taps {}.",
         range);
   }
   if (measured == "realizations") {
     return fmt::format(
-        "Mean over {} realizations (points; bars are pooled standard errors) and the "
-        "fitted laws, t {}.",
+        "Mean over {} realizations (points; bars are 68 % intervals by the pooled variance) and "
+        "the fitted laws, t {}.",
         table.note("realizations"), range);
   }
   return fmt::format("Measured values (points{}) and the fitted laws, t {}.",
@@ -49,7 +49,7 @@ FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& ob
       .series = {{.name = "data",
                   .colour = ink_colour(),
                   .drawn = Drawn::points,
-                  .rows = rows_of(first.axis("t"), first.values("x"), first.values("x_error"))}}};
+                  .rows = rows_of(first.axis("t"), first.values("x"), first.half_widths("x"))}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {
     panel.series.push_back({.name = law_name(laws[i]),
                             .colour = kind_colour(i),
@@ -73,7 +73,7 @@ FigurePanel residual_panel(const std::vector<TableView>& laws, const std::string
                    "independent: a trend matters, a single point does not."
                  : "Data minus law.",
       .x = t_axis(laws.front()),
-      .y = {scaled ? "(data − law) / error" : "data − law"},
+      .y = {scaled ? "(data − law) / standard error" : "data − law"},
       .rules = {{.y = 0}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {
     std::vector<double> residuals = laws[i].values("x");

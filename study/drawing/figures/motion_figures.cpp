@@ -23,7 +23,9 @@ std::optional<TableView> table_of(const std::vector<TableView>& made, std::uint3
 class ByLag {
  public:
   ByLag(const TableView& table, const std::string& quantity, std::size_t n)
-      : values_(table.values(quantity)), n_lags_(table.axis("lag").size()), n_(n) {}
+      : ByLag(table, table.values(quantity), n) {}
+  ByLag(const TableView& table, std::vector<double> values, std::size_t n)
+      : values_(std::move(values)), n_lags_(table.axis("lag").size()), n_(n) {}
   double operator()(std::size_t k, std::size_t j, std::size_t place = 0) const {
     return at(values_, (k * n_lags_ + j) * n_ + place);
   }
@@ -35,11 +37,11 @@ class ByLag {
 
 FigurePanel squares(const TableView& table, const std::string& name, const std::string& title,
                     const std::string& what) {
-  const ByLag square(table, name, 1), error(table, name + "_error", 1);
+  const ByLag square(table, name, 1), error(table, table.half_widths(name), 1);
   return {.title = title,
           .caption = what +
                      " in a lag t from the waiting time t_W on, mean over spheres and "
-                     "realizations; bars are standard errors.",
+                     "realizations; bars are 68 % intervals.",
           .source = table.source(name),
           .x = {"lag t (taps)", AxisKind::logarithmic},
           .y = {"mean square" + unit_text(table.units(name)), AxisKind::logarithmic},
@@ -53,7 +55,8 @@ FigurePanel by_height(const TableView& table) {
   const std::string name = "msd_lateral";
   const std::vector<double> ages = table.axis("waiting_time"), lags = table.axis("lag");
   const std::size_t n = table.axis("layer").size();
-  const ByLag height(table, "height", n), square(table, name, n), error(table, name + "_error", n);
+  const ByLag height(table, "height", n), square(table, name, n),
+      error(table, table.half_widths(name), n);
   const auto has_all = [&](std::size_t j) {
     for (std::size_t k = 0; k < ages.size(); ++k) {
       if (!std::isfinite(square(k, j))) return false;
@@ -67,8 +70,8 @@ FigurePanel by_height(const TableView& table) {
   FigurePanel panel{
       .title = "Lateral motion by height",
       .caption = fmt::format("Mean square of the lateral displacement in {} taps, of layers of as "
-                             "many spheres each, against their mean height; bars are standard "
-                             "errors.",
+                             "many spheres each, against their mean height; bars are 68 % "
+                             "intervals.",
                              lags[longest]),
       .source = table.source(name),
       .x = {"height (diameter)"},

@@ -15,7 +15,7 @@ FigurePanel compactivity(const TableView& table) {
       .title = "Compactivity, by " + words(table.path().back()),
       .caption =
           "1/X less that of the first steady state, X the compactivity, against the mean "
-          "volume of the states; bars are standard errors.",
+          "volume of the states; bars are 68 % intervals.",
       .source = table.source("inverse_x_fluctuations"),
       .x = {"volume a sphere" + unit_text(table.units("volume"))},
       .y = {"Δ(1/X)" + unit_text(table.units("inverse_x_fluctuations"))},
@@ -24,32 +24,42 @@ FigurePanel compactivity(const TableView& table) {
        {std::pair{"inverse_x_fluctuations", "by fluctuations"},
         std::pair{"inverse_x_histograms", "by overlapping histograms"}}) {
     const std::size_t i = panel.series.size();
-    panel.series.push_back({.name = label,
-                            .colour = kind_colour(i),
-                            .drawn = Drawn::joined_points,
-                            .rows = rows_of(table.values("volume"), table.values(name),
-                                            table.values(std::string(name) + "_error")),
-                            .symbol = i,
-                            .hollow = i > 0});
+    panel.series.push_back(
+        {.name = label,
+         .colour = kind_colour(i),
+         .drawn = Drawn::joined_points,
+         .rows = rows_of(table.values("volume"), table.values(name), table.half_widths(name)),
+         .symbol = i,
+         .hollow = i > 0});
     std::erase_if(panel.series.back().rows,
                   [](const FigureRow& row) { return !std::isfinite(row.y); });
   }
   return panel;
 }
 
+/// Values of a quantity between the ends of their 68 % intervals.
+std::vector<FigureRow> rows_between(const std::vector<double>& xs, const TableView& table,
+                                    const std::string& quantity) {
+  std::vector<FigureRow> rows = rows_of(xs, table.values(quantity));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].low = table.value(quantity + "_low_68", i);
+    rows[i].high = table.value(quantity + "_high_68", i);
+  }
+  return rows;
+}
+
 FigurePanel variances(const TableView& table) {
   return {.title = "Variance of the volume, by " + words(table.path().back()),
           .caption =
               "Variance of a bed's volume a sphere of each state, over taps and "
-              "realizations, against its mean; bars are standard errors.",
+              "realizations, against its mean; bars are 68 % intervals.",
           .source = table.source("volume_variance"),
           .x = {"volume a sphere" + unit_text(table.units("volume"))},
           .y = {"variance" + unit_text(table.units("volume_variance"))},
           .series = {{.name = "",
                       .colour = kind_colour(0),
                       .drawn = Drawn::joined_points,
-                      .rows = rows_of(table.values("volume"), table.values("volume_variance"),
-                                      table.values("volume_variance_error"))}}};
+                      .rows = rows_between(table.values("volume"), table, "volume_variance")}}};
 }
 
 FigurePanel response(const TableView& table) {
@@ -60,7 +70,7 @@ FigurePanel response(const TableView& table) {
       .title = "Memory of " + words(name),
       .caption = fmt::format(
           "Change of {} since the switch to taps of one strength, mean over "
-          "windows of lags, one curve a history; bars are standard errors. "
+          "windows of lags, one curve per history; bars are 68 % intervals. "
           "Histories that came to one value have one curve where it alone is the state.",
           words(name)),
       .source = table.source("response"),
@@ -73,7 +83,7 @@ FigurePanel response(const TableView& table) {
              finite_text("{} = {:.4g} before", control_symbol(control), table.value(control, k)),
          .colour = colour_of(k, n),
          .drawn = Drawn::joined_points,
-         .rows = rows_of(lags, table.row("response", k), table.row("response_error", k)),
+         .rows = rows_of(lags, table.row("response", k), table.half_width_row("response", k)),
          .symbol = k});
   return panel;
 }

@@ -154,15 +154,14 @@ std::vector<std::size_t> tap_places(const TableView& table) {
 }
 
 std::vector<FigureRow> rows_at(const TableView& table, const PartPlot& plot,
-                               const std::string& quantity, const std::string& error,
-                               std::size_t place) {
+                               const std::string& quantity, bool with_errors, std::size_t place) {
   std::vector<double> xs = table.axis(plot.x);
   if (plot.over == Over::its_cube) {
     for (double& x : xs) x = x * x * x;
   }
   std::vector<FigureRow> rows =
       rows_of(xs, table.row(quantity, place),
-              error.empty() ? std::vector<double>{} : table.row(error, place));
+              with_errors ? table.half_width_row(quantity, place) : std::vector<double>{});
   std::erase_if(rows, [&](const FigureRow& row) {
     return !std::isfinite(row.y) || (plot.y_kind == logarithmic && row.y <= 0);
   });
@@ -176,17 +175,16 @@ void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plo
   FigurePanel panel{
       .title = plot.title,
       .caption = sentence(table.long_name(plot.y)) +
-                 (plot.pooled ? "; over all realizations, at some of the kept taps, with jackknife "
-                                "errors."
-                              : "; means over realizations at some of the kept taps, with their "
-                                "standard errors."),
+                 (plot.pooled ? "; over all realizations, at some of the kept taps, with 68 % "
+                                "intervals by the jackknife."
+                              : "; means over realizations at some of the kept taps, with 68 % "
+                                "intervals."),
       .source = table.source(plot.y),
       .x = {plot.x_label, plot.x_kind},
       .y = {plot.y_label, plot.y_kind, plot.from_zero}};
   if (plot.rule) panel.rules.push_back({.y = plot.rule});
   for (std::size_t k = 0; k < places.size(); ++k) {
-    std::vector<FigureRow> rows =
-        rows_at(table, plot, plot.y, std::string(plot.y) + "_error", places[k]);
+    std::vector<FigureRow> rows = rows_at(table, plot, plot.y, true, places[k]);
     if (rows.empty()) continue;
     panel.series.push_back({.name = fmt::format("tap {}", taps[places[k]]),
                             .colour = colour_of(k, places.size()),
@@ -199,7 +197,7 @@ void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plo
        ++k) {
     panel.series.push_back({.name = k == 0 ? plot.beside_name : "",
                             .colour = colour_of(k, places.size()),
-                            .rows = rows_at(table, plot, plot.beside, "", places[k]),
+                            .rows = rows_at(table, plot, plot.beside, false, places[k]),
                             .dash = 1,
                             .has_band = false});
   }
@@ -245,17 +243,16 @@ void add_trends(const DrawnFile& file, const TableView& table, const Part& part,
         title += " and " + words(name);
         panel.caption += "; " + sentence(table.long_name(name));
       }
-      panel.series.push_back(
-          {.name = words(name),
-           .colour = kind_colour(panel.series.size()),
-           .drawn = Drawn::joined_points,
-           .rows = rows_of(taps, values, table.values(std::string(name) + "_error")),
-           .symbol = panel.series.size()});
+      panel.series.push_back({.name = words(name),
+                              .colour = kind_colour(panel.series.size()),
+                              .drawn = Drawn::joined_points,
+                              .rows = rows_of(taps, values, table.half_widths(name)),
+                              .symbol = panel.series.size()});
     }
     if (panel.series.empty() || n_drawn == most_trends) continue;
     ++n_drawn;
     panel.title = sentence(title) + " by tap";
-    panel.caption += "; means over realizations with standard errors.";
+    panel.caption += "; means over realizations with 68 % intervals.";
     panel.y.label += unit_text(table.units(trend.names.front()));
     add_panel(file, table.point(), std::move(panel), into);
   }
@@ -271,7 +268,7 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
   FigurePanel panel{
       .title = title,
       .caption = sentence(table.long_name(quantity)) +
-                 "; means over realizations with standard errors, beside the published share.",
+                 "; means over realizations with 68 % intervals, beside the published share.",
       .source = source.empty() ? "Philippe & Bideau 2001, table I" : source,
       .x = {"Bernal's canonical holes", AxisKind::names},
       .y = {"share", linear, true}};
@@ -292,7 +289,7 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
         (static_cast<double>(k) - static_cast<double>(places.size() - 1) / 2) * 0.09;
     for (std::size_t j = 0; j < names.size(); ++j) {
       one.rows.push_back(row_at(j, shift, table.row(quantity, places[k]),
-                                table.row(quantity + "_error", places[k])));
+                                table.half_width_row(quantity, places[k])));
     }
     panel.series.push_back(std::move(one));
   }

@@ -28,7 +28,7 @@ FigurePanel loop_panel(const TableView& table) {
       .title = "Hysteresis of " + words(observable),
       .caption =
           "Mean of the last taps of every step of the protocol, in the order of the steps; "
-          "bars are standard errors over realizations. A branch ends where the strength "
+          "bars are 68 % intervals over realizations. A branch ends where the strength "
           "turns.",
       .source = table.source(observable),
       .x = {control_label(control, table.units(control))},
@@ -48,7 +48,7 @@ FigurePanel loop_panel(const TableView& table) {
     for (const std::size_t i : steps_of(branch, b, numbers)) {
       one.rows.push_back({.x = table.value(control, i),
                           .y = table.value(observable, i),
-                          .error = table.value(observable + "_error", i)});
+                          .error = table.half_width(observable, i)});
     }
     one.name = fmt::format("branch {}, {}", numbers[b] - first + 1,
                            one.rows.back().x > one.rows.front().x ? "upwards" : "downwards");
@@ -79,19 +79,19 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
     const std::string x = table.note("against"), y = table.note("observable");
     if (!table.has_axis(x) || !table.has(y)) continue;
     const bool pooled = table.has(y + "_pooled_error");
-    const std::string errors = y + (pooled ? "_pooled_error" : "_error");
+    const std::string errors = y + (pooled ? "_pooled" : "");
     FigurePanel panel{
         .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
-        .caption = pooled ? "One point per sweep point; bars are standard errors by the variance "
+        .caption = pooled ? "One point per sweep point; bars are 68 % intervals by the variance "
                             "pooled over points, since few realizations know their own badly."
-                          : "One point per sweep point; bars are standard errors.",
+                          : "One point per sweep point; bars are 68 % intervals.",
         .source = table.source(y),
         .x = {control_label(x, table.units(x))},
         .y = {axis_label(y, table.units(y))},
         .series = {{.name = "",
                     .colour = kind_colour(0),
                     .drawn = Drawn::joined_points,
-                    .rows = rows_of(table.axis(x), table.values(y), table.values(errors))}}};
+                    .rows = rows_of(table.axis(x), table.values(y), table.half_widths(errors))}}};
     const double maximum = table.value("maximum_at");
     if (table.value("maximum_p") < SweepMaximum::level) {
       panel.caption += finite_text(

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "study/drawing/figures/figure.hpp"
+#include "study/tables/points/half_widths.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -94,8 +95,35 @@ double TableView::value(const std::string& quantity, std::size_t i) const {
 }
 
 std::vector<double> TableView::row(const std::string& quantity, std::size_t i) const {
-  const Quantity* const one = found(quantity);
-  std::vector<double> all = numbers(one);
+  return row_of(found(quantity), values(quantity), i);
+}
+
+std::vector<double> TableView::half_widths(const std::string& quantity) const {
+  const std::vector<double> low = values(quantity + "_low_68"), dof = values(quantity + "_dof");
+  std::vector<double> widths = values(quantity + (low.empty() ? "_error" : "_high_68"));
+  if (low.size() == widths.size() && !low.empty()) {
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = (widths[i] - low[i]) / 2;
+    return widths;
+  }
+  if (dof.empty()) return {};
+  HalfWidths half;
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    widths[i] = half(widths[i], dof[dof.size() == widths.size() ? i : 0]);
+  }
+  return widths;
+}
+
+double TableView::half_width(const std::string& quantity, std::size_t i) const {
+  const std::vector<double> all = half_widths(quantity);
+  return i < all.size() ? all[i] : no_value;
+}
+
+std::vector<double> TableView::half_width_row(const std::string& quantity, std::size_t i) const {
+  return row_of(found(quantity), half_widths(quantity), i);
+}
+
+std::vector<double> TableView::row_of(const Quantity* one, std::vector<double> all,
+                                      std::size_t i) const {
   if (one == nullptr || one->axes.size() < 2) return all;
   const Quantity* const last = found_axis(one->axes.back());
   const std::size_t length =

@@ -36,6 +36,12 @@ class TableView {
   double value(const std::string& quantity, std::size_t i = 0) const;
   /// Values along the last axis, at one place of the first.
   std::vector<double> row(const std::string& quantity, std::size_t i) const;
+  /// Halves of the 68 % intervals of a quantity's values: of the intervals that the table has, else
+  /// by its standard errors and their degrees of freedom; empty where it has neither.
+  std::vector<double> half_widths(const std::string& quantity) const;
+  double half_width(const std::string& quantity, std::size_t i = 0) const;
+  /// Likewise along the last axis, at one place of the first.
+  std::vector<double> half_width_row(const std::string& quantity, std::size_t i) const;
 
   std::string units(const std::string& name) const;      // of a quantity or an axis
   std::string long_name(const std::string& name) const;  // likewise
@@ -46,6 +52,8 @@ class TableView {
   const Quantity* found(const std::string& quantity) const;
   const Quantity* found_axis(const std::string& name) const;
   const Quantity* either(const std::string& name) const;
+  std::vector<double> row_of(const Quantity* quantity, std::vector<double> all,
+                             std::size_t i) const;
 
   const DrawnTable* drawn_;
   std::optional<std::uint32_t> point_;

@@ -93,7 +93,7 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
   text += listed(refusals);
   text +=
       "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: that "
-      "interval is open. In a difference a(b), b is the standard error. ";
+      "interval is open. ";
   return text +
          html_text(fmt::format("Made {} by jostle {} ({}): {}", by.started, by.version,
                                by.git_revision, by.command_line)) +

@@ -2,31 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
+#include "engine/numbers.hpp"
 #include "fitting/fit.hpp"
-#include "fitting/intervals/distributions.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline study {
 
 namespace {
 
-const std::string error_suffix = "_error", dof_suffix = "_dof";
-
-/// Student's factors, each computed once.
-class Factors {
- public:
-  double at(double dof) {
-    if (!(dof > 0)) return std::numeric_limits<double>::quiet_NaN();
-    const auto [place, is_new] = known_.try_emplace(dof, 0);
-    if (is_new) place->second = two_sided(interval_levels[0], dof);
-    return place->second;
-  }
-
- private:
-  std::map<double, double> known_;
-};
+const std::string error_suffix = "_error", dof_suffix = "_dof", half_width_suffix = "_half_width";
 
 Quantity* named(Table& table, const std::string& name) {
   const auto found = std::ranges::find(table.quantities, name, &Quantity::name);
@@ -35,8 +20,29 @@ Quantity* named(Table& table, const std::string& name) {
 
 }  // namespace
 
+double HalfWidths::operator()(double error, double dof) {
+  if (!(dof > 0)) return not_a_number;
+  const auto [place, is_new] = factors_.try_emplace(dof, 0);
+  if (is_new) place->second = half_width(1, dof);
+  return error * place->second;
+}
+
+std::vector<double> half_widths(const EnsembleSeries& series) {
+  HalfWidths half;
+  std::vector<double> widths;
+  for (std::size_t tap = 0; tap < series.error.size(); ++tap) {
+    widths.push_back(half(series.error[tap], static_cast<double>(series.count[tap]) - 1));
+  }
+  return widths;
+}
+
+std::string mean_text(const EnsembleSeries& series, std::size_t tap) {
+  return value_with_error(
+      series.mean[tap], half_width(series.error[tap], static_cast<double>(series.count[tap]) - 1));
+}
+
 Table with_half_widths(Table table) {
-  Factors factors;
+  HalfWidths half;
   std::vector<std::string> used;
   std::string bare;  // of which there are standard errors alone
   for (Quantity& quantity : table.quantities) {
@@ -47,12 +53,16 @@ Table with_half_widths(Table table) {
     const auto* const freedom = dof ? std::get_if<std::vector<double>>(&dof->values) : nullptr;
     if (!named(table, stem) || !errors) continue;
     if (!freedom || freedom->empty()) {
-      if (!named(table, stem + "_low_95")) bare.append(bare.empty() ? "" : ", ").append(stem);
+      if (!named(table, stem + "_low_95")) {
+        bare.append(bare.empty() ? "" : ", ").append(quantity.name);
+      }
       continue;
     }
     for (std::size_t i = 0; i < errors->size(); ++i) {
-      (*errors)[i] *= factors.at((*freedom)[freedom->size() == errors->size() ? i : 0]);
+      (*errors)[i] = half((*errors)[i], (*freedom)[freedom->size() == errors->size() ? i : 0]);
     }
+    quantity.name = stem + half_width_suffix;
+    quantity.long_name = "half the 68 % interval";
     used.push_back(dof->name);
   }
   std::erase_if(table.quantities, [&](const Quantity& quantity) {
@@ -62,17 +72,15 @@ Table with_half_widths(Table table) {
     return quantity.name.ends_with("_low_95");
   });
   std::string legend;
+  const auto add = [&](const std::string& text) {
+    legend.append(legend.empty() ? "" : "; ").append(text);
+  };
   if (!used.empty()) {
-    legend =
-        "b, in the last digits of a, is half the 68 % interval by Student's t; the file holds "
-        "errors and their degrees of freedom";
-    if (!bare.empty()) legend += "; of " + bare + " the standard error";
-  } else if (!bare.empty()) {
-    legend = "b, in the last digits of a, is the standard error over realizations";
+    add("b, in the last digits of a, is half the 68 % interval by Student's t; the file holds "
+        "standard errors and their degrees of freedom");
   }
-  if (has_intervals) {
-    legend.append(legend.empty() ? "" : "; ").append("a (x to y): the 95 % interval");
-  }
+  if (!bare.empty()) add(bare + ": standard errors");
+  if (has_intervals) add("a (x to y): the 95 % interval");
   if (!legend.empty()) table.notes.emplace_back("a(b)", legend);
   return table;
 }

@@ -27,10 +27,10 @@ Json steady_table(const DrawnFile& file, const std::vector<TableView>& made) {
                     value_cell(table, "autocorrelation_time"), value_cell(table, "drift"),
                     verdict_cell(table.note("verdict"))});
   }
-  return table_block("The last taps of every sweep point",
-                     {"observable", "sweep point", "taps", "mean", "σ of single taps",
-                      "memory τ (taps)", "drift", "verdict"},
-                     rows);
+  return estimates_block("The last taps of every sweep point",
+                         {"observable", "sweep point", "taps", "mean", "σ of single taps",
+                          "memory τ (taps)", "drift", "verdict"},
+                         rows);
 }
 
 Json ageing_table(const TableView& table) {
@@ -45,8 +45,9 @@ Json ageing_table(const TableView& table) {
     row.emplace_back(text_at(table, "verdict", k));
     rows.push_back(row);
   }
-  return table_block("A∞ (1 − 1/(1 + B ln(1 + t/τ))), fitted to each waiting time",
-                     {"waiting time (taps)", "A∞", "B", "τ (taps)", "misfit", "statement"}, rows);
+  return estimates_block("A∞ (1 − 1/(1 + B ln(1 + t/τ))), fitted to each waiting time",
+                         {"waiting time (taps)", "A∞", "B", "τ (taps)", "misfit", "statement"},
+                         rows);
 }
 
 Blocks ageing_blocks(const PageContent& content, const TableView& table) {
@@ -74,10 +75,10 @@ Json slopes_table(const DrawnFile& file, const std::vector<TableView>& made) {
                     number_cell(table, "ar1_slope_p", 0, 2), table.note("verdict"),
                     table.note("drift")});
   }
-  return table_block("Log-log slopes in the band",
-                     {"observable", "sweep point", "slope", "slope of an AR(1) with this memory",
-                      "p", "verdict", "drift"},
-                     rows);
+  return estimates_block("Log-log slopes in the band",
+                         {"observable", "sweep point", "slope",
+                          "slope of an AR(1) with this memory", "p", "verdict", "drift"},
+                         rows);
 }
 
 Json areas_table(const TableView& table) {
@@ -94,8 +95,8 @@ Json areas_table(const TableView& table) {
                     value_cell(table, "area", i), number_cell(table, "area_p_corrected", i, 2),
                     text_at(table, "area_verdict", i)});
   }
-  return table_block("Area between branches, later minus earlier",
-                     {"branches", "over strengths", "area", "p", "verdict"}, rows);
+  return estimates_block("Area between branches, later minus earlier",
+                         {"branches", "over strengths", "area", "p", "verdict"}, rows);
 }
 
 Json differences_table(const TableView& table) {
@@ -105,8 +106,8 @@ Json differences_table(const TableView& table) {
                     value_cell(table, "difference", i),
                     number_cell(table, "difference_p_corrected", i, 2)});
   }
-  return table_block("Differences between points", {"from", "to", "difference", "p, corrected"},
-                     rows);
+  return estimates_block("Differences between points", {"from", "to", "difference", "p, corrected"},
+                         rows);
 }
 
 Json settings_table(const TableView& table) {
@@ -117,7 +118,7 @@ Json settings_table(const TableView& table) {
                     number_cell(table, "tap_seconds", i, 3), number_cell(table, "core_hours", i, 3),
                     table.value("pareto", i) == 1 ? "yes" : ""});
   }
-  return table_block(
+  return estimates_block(
       "Settings, " + words(table.observable()),
       {"setting", "part", "bias", "core time per tap (s)", "core hours of the scene", "best"},
       rows);
@@ -131,12 +132,9 @@ Json steady_section(const PageContent& content) {
   const Json curves = points_block(content.file, numbers_of(made), [&](std::uint32_t point) {
     return Blocks{figures_block(content, {.section = "steady", .point = point})};
   });
-  return page_section(
-      "steady", "Steady state",
-      "Whether the last taps drift, and their mean. Values are value(standard error). The error "
-      "of few realizations is uncertain itself.",
-      {steady_table(content.file, made), details_block("Blocking curves", {curves}),
-       refusals_block(content.file, all)});
+  return page_section("steady", "Steady state", "Whether the last taps drift, and their mean.",
+                      {steady_table(content.file, made), details_block("Blocking curves", {curves}),
+                       refusals_block(content.file, all)});
 }
 
 Json ageing_section(const PageContent& content) {

@@ -46,6 +46,12 @@ Json table_block(const std::string& caption, const PageRow& head,
           {"rows", shown_rows}};
 }
 
+Json estimates_block(const std::string& caption, const PageRow& head,
+                     const std::vector<PageRow>& rows) {
+  return table_block(caption + ". In a(b), b is half the 68 % interval, in the last digits of a.",
+                     head, rows);
+}
+
 Json verdict_cell(const std::string& text) {
   if (text.empty()) return "–";
   for (const std::string word : {"not reached", "reached", "cannot decide", "found", "not met",
@@ -136,7 +142,7 @@ std::string title_of(const DrawnFile& file, const TableView& table) {
 }
 
 std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i) {
-  return typeset_with_error(table.value(quantity, i), table.value(quantity + "_error", i));
+  return typeset_with_error(table.value(quantity, i), table.half_width(quantity, i));
 }
 
 std::string number_cell(const TableView& table, const std::string& quantity, std::size_t i,

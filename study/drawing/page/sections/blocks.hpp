@@ -51,6 +51,9 @@ Json figures_block(const PageContent& content, const WantedFigures& wanted);
 /// A cell is a text, or {"strong": "reached", "text": ", ..."}.
 using PageRow = std::vector<Json>;
 Json table_block(const std::string& caption, const PageRow& head, const std::vector<PageRow>& rows);
+/// A table with values "a(b)"; the caption says what b is.
+Json estimates_block(const std::string& caption, const PageRow& head,
+                     const std::vector<PageRow>& rows);
 /// A verdict begins with what it states; the page sets it off.
 Json verdict_cell(const std::string& text);
 

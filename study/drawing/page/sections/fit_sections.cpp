@@ -57,8 +57,8 @@ Json parameter_table(const Parameters& parameters, const std::string& law) {
                     interval(parameters.low(j, 1), parameters.high(j, 1)),
                     j < statements.size() ? statements[j] : ""});
   }
-  return table_block("Parameters of the " + law,
-                     {"parameter", "estimate", "95 % interval", "statement"}, rows);
+  return estimates_block("Parameters of the " + law,
+                         {"parameter", "estimate", "95 % interval", "statement"}, rows);
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -96,11 +96,10 @@ Json comparison(const std::vector<TableView>& laws) {
                     is_held_out ? number_cell(law, "held_out_p", 0, 2) : "–",
                     number_cell(law, "points", 0, 6), number_cell(law, "effective_points", 0, 3)});
   }
-  return table_block(
+  return estimates_block(
       "The laws compared. Held-out error: mean squared error of the prediction of a realization "
       "that the fit has not seen, in variances of one realization. Difference: from the leading "
-      "law, with its standard error. p: of the hypothesis that the law is as close to the mean "
-      "curve as the leading law.",
+      "law. p: of the hypothesis that the law is as close to the mean curve as the leading law",
       {"law", "formula", "reduced χ²", "R²", "held-out error", "difference", "p", "points",
        "independent points"},
       rows);

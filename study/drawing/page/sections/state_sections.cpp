@@ -27,10 +27,10 @@ Json times_table(const DrawnFile& file, const std::vector<TableView>& tables) {
                                                                table.value("median_time_high_95")),
                     value_cell(table, "growth_per_decade"), table.note("law")});
   }
-  return table_block("Times to order",
-                     {"observable", "sweep point", "ordered", "half by tap (95 %)",
-                      "growth per decade of taps", "law of the times"},
-                     rows);
+  return estimates_block("Times to order",
+                         {"observable", "sweep point", "ordered", "half by tap (95 %)",
+                          "growth per decade of taps", "law of the times"},
+                         rows);
 }
 
 Json steps_table(const TableView& table) {
@@ -45,10 +45,10 @@ Json steps_table(const TableView& table) {
     row.emplace_back(number_cell(table, "overlap", i, 2));
     rows.push_back(row);
   }
-  return table_block("Steps of 1/X from state to state",
-                     {"states", "step fluctuations", "step histograms", "step difference", "bend",
-                      "distance (deviations)", "overlap"},
-                     rows);
+  return estimates_block("Steps of 1/X from state to state",
+                         {"states", "step fluctuations", "step histograms", "step difference",
+                          "bend", "distance (deviations)", "overlap"},
+                         rows);
 }
 
 Json histories_table(const TableView& table) {
@@ -72,7 +72,7 @@ Json histories_table(const TableView& table) {
     }
     rows.push_back(row);
   }
-  return table_block("Differences between histories at equal value, p corrected", head, rows);
+  return estimates_block("Differences between histories at equal value, p corrected", head, rows);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Json numbers_table(const TableView& table, const Part& part) {
     }
     rows.push_back(row);
   }
-  return table_block(part.title, head, rows);
+  return estimates_block(part.title, head, rows);
 }
 
 Json part_section(const PageContent& content, const Part& part) {
