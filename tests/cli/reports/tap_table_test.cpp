@@ -30,31 +30,31 @@ TEST_CASE("Few columns are the observables, and what has room of the engine's") 
   const std::string shown = tap_table(two_taps(), {.width = 80});
   CHECK(shown ==
         "tap  mean_height    fraction  sweeps\n"
-        "  0   3.7524(82)  0.5413(20)  6125.0\n"
-        "  1   3.7524(82)  0.5413(20)  6125.0\n");
+        "  0   3.7524(87)  0.5413(21)  6125.0\n"
+        "  1   3.7524(87)  0.5413(21)  6125.0\n");
   CHECK(tap_table(two_taps(), {.width = 36}) == shown);
   CHECK(tap_table(two_taps(), {.width = 35}) ==
         "tap  mean_height    fraction\n"
-        "  0   3.7524(82)  0.5413(20)\n"
-        "  1   3.7524(82)  0.5413(20)\n");
+        "  0   3.7524(87)  0.5413(21)\n"
+        "  1   3.7524(87)  0.5413(21)\n");
 }
 
 TEST_CASE("Observables are never left out: they stand below") {
   CHECK(tap_table(two_taps(), {.width = 20}) ==
         "tap  mean_height\n"
-        "  0   3.7524(82)\n"
-        "  1   3.7524(82)\n"
+        "  0   3.7524(87)\n"
+        "  1   3.7524(87)\n"
         "\n"
         "tap    fraction\n"
-        "  0  0.5413(20)\n"
-        "  1  0.5413(20)\n");
+        "  0  0.5413(21)\n"
+        "  1  0.5413(21)\n");
 }
 
 TEST_CASE("All columns have sigma beside every observable, however wide") {
   CHECK(tap_table(two_taps(), {.width = 20, .columns = Columns::all}) ==
         "tap  mean_height   sigma    fraction  sigma  sweeps\n"
-        "  0   3.7524(82)  0.0246  0.5413(20)  0.006  6125.0\n"
-        "  1   3.7524(82)  0.0246  0.5413(20)  0.006  6125.0\n");
+        "  0   3.7524(87)  0.0246  0.5413(21)  0.006  6125.0\n"
+        "  1   3.7524(87)  0.0246  0.5413(21)  0.006  6125.0\n");
 }
 
 TEST_CASE("A column without a value, or without an error, says so") {
@@ -64,7 +64,7 @@ TEST_CASE("A column without a value, or without an error, says so") {
   one.reached = {2, 1};
   CHECK(tap_table(one, {.width = 80}) ==
         "tap  M  mean_height    fraction  sweeps\n"
-        "  0  2   3.7524(82)  0.5413(20)  6125.0\n"
+        "  0  2   3.7524(87)  0.5413(21)  6125.0\n"
         "  1  1            -      0.5413  6125.0\n");
 }
 
@@ -75,8 +75,8 @@ TEST_CASE("One realization of many says so at every tap, and has no deviation") 
   one.columns[0].sigma = {0, 0};
   CHECK(tap_table(one, {.width = 80, .columns = Columns::all}) ==
         "tap  M  mean_height  sigma\n"
-        "  0  1   3.7524(82)      -\n"
-        "  1  1   3.7524(82)      -\n");
+        "  0  1       3.7524      -\n"
+        "  1  1       3.7524      -\n");
 }
 
 TEST_CASE("Reported taps are about three a decade, with both ends") {

@@ -10,6 +10,7 @@ using namespace jostle;
 
 namespace {
 
+constexpr double error_is_known = std::numeric_limits<double>::infinity();
 constexpr Layout all_columns{.width = 80, .columns = Columns::all};
 
 Table example() {
@@ -28,13 +29,22 @@ Table example() {
 }  // namespace
 
 TEST_CASE("A table for people has values with their errors, then columns") {
-  const std::string text = table_text(example(), all_columns);
+  Table table = example();
+  table.quantities.push_back({"tau_dof", {}, std::vector{error_is_known}, "1", "", ""});
+  const std::string text = table_text(table, all_columns);
   CHECK(text.find("  verdict                it ages\n") != std::string::npos);
   CHECK(text.find("  tau                    12.35(21) taps   (memory)\n") != std::string::npos);
   CHECK(text.find("tau_error") == std::string::npos);
   CHECK(text.find("age  lag  a\n  1    2  1\n") != std::string::npos);
   CHECK(text.find(" 10    8  -\n") != std::string::npos);
   CHECK(text.find("  in taps                age, lag\n") != std::string::npos);
+}
+
+TEST_CASE("A standard error without degrees of freedom is a row of its own") {
+  const std::string text = table_text(example(), all_columns);
+  CHECK(text.find("  tau                    12.35 taps   (memory)\n") != std::string::npos);
+  CHECK(text.find("  tau_error              0.21 taps\n") != std::string::npos);
+  CHECK(text.find("tau_error: standard errors") != std::string::npos);
 }
 
 TEST_CASE("A table for people has values with their 95 % intervals") {
@@ -134,7 +144,8 @@ TEST_CASE("Rounding noise is seen beside the column it is in") {
   Table table = {.name = "t",
                  .axes = {{"n", {"n"}, std::vector<std::uint64_t>{1, 2}, "", "", ""}},
                  .quantities = {{"x", {"n"}, std::vector{5000.0, 1e-12}, "1", "", ""},
-                                {"x_error", {"n"}, std::vector{2.5, 1e-12}, "1", "", ""}},
+                                {"x_error", {"n"}, std::vector{2.5, 1e-12}, "1", "", ""},
+                                {"x_dof", {}, std::vector{error_is_known}, "1", "", ""}},
                  .notes = {}};
   const std::string text = table_text(table, all_columns);
   CHECK(text.find("5000.0(2.5)\n") != std::string::npos);
