@@ -124,10 +124,10 @@ std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& 
                     100 * pilot.scatter()));
   }
   if (plan.starts > 1) {
-    warnings.push_back(fmt::format(
-        "the longest task needs about {}, limit {}: {} submissions. The script puts itself back "
-        "into the queue; more --jobs or --hours make it fewer",
-        format_duration(plan.longest_task), format_duration(time_limit(arguments)), plan.starts));
+    warnings.push_back(
+        fmt::format("the longest task needs {}: the script puts itself back into the queue. More "
+                    "--jobs or --hours make it fewer",
+                    counted(plan.starts, "submission")));
   }
   if (plan.most_realizations < arguments.cpus) {
     warnings.push_back(fmt::format(

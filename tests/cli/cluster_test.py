@@ -189,7 +189,8 @@ class Script(Case):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 10_000_000}]))
         long = self.jostle("slurm", "scene.json", "--hours", 1e-6, "--cpus", 1, "--jobs", 1)
         self.assertEqual(self.options(long.stdout)["time"], "00:01:00")
-        self.assertRegex(long.stderr, r"needs\s+about\s+[\d.]+ \w+,\s+limit\s+1\s+min:\s+\d+\s+submissions")
+        self.assertRegex(" ".join(long.stderr.split()),
+                         r"longest task needs about [\d.hmins ]+, limit 1 min 0 s: \d+ submissions")
         self.assertRegex(long.stderr, r"core-hours\s+\([\d.e+]+\s+to\s+[\d.e+]+\),\s+efficiency\s+\d+\s+%")
         restarts = int(re.search(r"most_restarts=(\d+)", long.stdout)[1])
         self.assertGreater(restarts, 10)
