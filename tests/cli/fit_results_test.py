@@ -119,8 +119,9 @@ class Kept(Case):
         protocol = [{"tap": {"dilate": 0.05}, "count": 40}]
         self.write(changed(TINY, protocol=protocol, fits=asked))
         done = self.run_scene()
-        rows = done.stdout.split("fits of mean_height\n")[1].split("asymptote a(b)")[0].splitlines()
-        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "difference", "asymptote"])
+        rows = done.stdout.split("fits of mean_height\n")[1].split("a(b):")[0].splitlines()
+        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "asymptote"])  # nothing to compare
+        self.assertNotIn("difference", done.stdout)
         self.assertEqual([row.split()[:4] for row in rows[1:]],
                          [["dilate", "=", value, "inverse_log"] for value in ("0.02", "0.1")])
         self.assertNotIn("95 %", done.stdout)
@@ -131,6 +132,13 @@ class Kept(Case):
         self.write(changed(TINY, protocol=protocol, fits=asked))
         self.run_scene("--resume")
         self.assertEqual(self.tables(), [name.replace("inverse_log", "kww") for name in names])
+        asked[0]["model"] = ["inverse_log", "kww"]
+        self.write(changed(TINY, protocol=protocol, fits=asked))
+        done = self.run_scene("--force")
+        rows = done.stdout.split("fits of mean_height\n")[1].split("a(b):")[0].splitlines()
+        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "difference", "asymptote"])
+        self.assertEqual([row.split()[3] for row in rows[1:]], ["inverse_log", "kww"] * 2)
+        self.assertEqual(len(self.tables()), 4)
 
     def test_shards_are_fitted_when_they_are_merged(self):
         asked = [{"observable": "mean_height", "model": "kww"}]
