@@ -21,9 +21,9 @@ def check(holds, *found):
         raise AssertionError(" ".join(map(str, found)))
 
 
-def at_most(rate, bound, what):
-    """Rates of ENSEMBLES ensembles, within three binomial errors."""
-    check(rate <= bound + 3 * np.sqrt(bound * (1 - bound) / ENSEMBLES), what, rate, "above", bound)
+def at_most(rate, bound, what, ensembles=ENSEMBLES):
+    """Rates of so many ensembles, within three binomial errors."""
+    check(rate <= bound + 3 * np.sqrt(bound * (1 - bound) / ensembles), what, rate, "above", bound)
 
 
 def pages_are_those_of_the_reduced_data():
@@ -108,9 +108,10 @@ def least_effects_keep_their_size(random):
     refuted with power."""
     claim = Claim("", "", "positive", relevant=0.005)
     for truth, bounds in ((0.005, {NOT: LEVEL}), (0.0, {REPRODUCED: LEVEL / 2, UNDERPOWERED: 1 - POWER})):
-        found = rates([positive(claim, [Estimate.of(random.normal(truth, 0.005, 8))])[0] for _ in range(ENSEMBLES)])
+        found = rates([positive(claim, [Estimate.of(random.normal(truth, 0.005, 8))])[0]
+                       for _ in range(10 * ENSEMBLES)])
         for word, bound in bounds.items():
-            at_most(found[word], bound, f"relevant 0.005, truth {truth}: {word}")
+            at_most(found[word], bound, f"relevant 0.005, truth {truth}: {word}", 10 * ENSEMBLES)
 
 
 def laws_that_do_not_fit_are_found(random):
