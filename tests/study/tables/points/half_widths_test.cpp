@@ -69,7 +69,7 @@ TEST_CASE("Errors of a table become half widths where their degrees of freedom a
   REQUIRE(shown.quantities.size() == 4);
   CHECK(shown.quantities[1].name == "x_half_width");
   const auto& widths = std::get<std::vector<double>>(shown.quantities[1].values);
-  CHECK(widths[0] == Approx(0.132126).epsilon(1e-5));
+  CHECK(widths[0] == Approx(0.13212773729262588).epsilon(1e-9));
   CHECK(widths[1] == Approx(0.1).epsilon(1e-12));
   CHECK(shown.quantities[3].name == "y_error");  // a standard error is a column of its own
   REQUIRE(shown.notes.size() == 1);
