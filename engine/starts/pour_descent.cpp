@@ -16,7 +16,7 @@ constexpr double deepest_at_rest = 1e-12;
 constexpr double no_push = 1e-9;  // share of the weight that counts as none
 constexpr double tipping = 1e-7;  // sideways step off an unstable balance
 constexpr int max_turns = 1000;
-constexpr int max_tips = 200;  // one is enough to leave an unstable balance
+constexpr int max_tips = 20;  // one is enough to leave an unstable balance
 constexpr Vec3 downward = {0, 0, -1};
 
 // The contacts that steer a motion: none (free fall), one, or two.

@@ -205,13 +205,16 @@ TEST_CASE("Small beds of any sizes, narrow and degenerate ones too, are poured w
 }
 
 TEST_CASE("Beside a tube a sphere rests on one that stands on its axis, at any angle") {
-  const StartSpheres spheres = with_diameters({3, 1});
-  PourBed bed(Cylinder{3}, spheres.sizes);
-  bed.next(0);
-  bed.add({1.5, 1.5, 1.5});
-  const Vec3 rest = rest_from(bed, 1, 1.9, 1.5);
-  CHECK(rest.x == Approx(2.5).epsilon(1e-9));
-  CHECK(rest.z == Approx(1.5 + std::sqrt(3.0)).epsilon(1e-9));
+  for (const double room : {2.0, 1e-4}) {
+    const StartSpheres spheres = with_diameters({3, 3 - room});
+    PourBed bed(Cylinder{3}, spheres.sizes);
+    bed.next(0);
+    bed.add({1.5, 1.5, 1.5});
+    const Vec3 rest = rest_from(bed, 1, 1.5 + 0.2 * room, 1.5);
+    const double reach = 3 - 0.5 * room, across = 0.5 * room;
+    CHECK(rest.x == Approx(1.5 + across).epsilon(1e-9));
+    CHECK(rest.z == Approx(1.5 + std::sqrt(reach * reach - across * across)).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("A sphere with a place is poured first, from there") {
