@@ -172,6 +172,7 @@ class Check {
 
 void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   Check check(scene, faults);
+  check_kinds(scene, faults);
   check.start_suits_container();
   check.engine_suits();
   check.relaxations_can_be();

@@ -52,9 +52,17 @@ class LadderMaker {
     Vec3 half = extent(scene_.container);
     half.x *= 0.5;
     if (half.x < narrowest_half) return;
+    const Container container = *container_of(name_of(scene_.container), half);
+    std::vector<MixtureKind> kinds = with_share(scene_.kinds, 0.5);
+    for (MixtureKind& kind : kinds)
+      if (kind.place) (*kind.place)[0] *= 0.5;
+    if (!kinds.empty() && width_fault(container, range_of(kinds).greatest)) return;
     add(PilotSetting::Part::spheres, "half the footprint", engine_of(scene_));
-    settings_.back().n_spheres /= 2;
-    settings_.back().container = *container_of(name_of(scene_.container), half);
+    PilotSetting& setting = settings_.back();
+    setting.n_spheres =
+        kinds.empty() ? scene_.n_spheres / 2 : static_cast<std::uint32_t>(n_spheres_of(kinds));
+    setting.kinds = std::move(kinds);
+    setting.container = container;
   }
 
   void add(PilotSetting::Part part, std::string name, const EngineSettings& engine) {
@@ -63,8 +71,8 @@ class LadderMaker {
                          return setting.engine == engine;
                        });
     if (known) return;
-    settings_.push_back(
-        {part, std::move(name), engine, scene_.n_spheres, scene_.container, scene_.start});
+    settings_.push_back({part, std::move(name), engine, scene_.n_spheres, scene_.container,
+                         scene_.start, scene_.kinds});
   }
 
   const Scene& scene_;
@@ -226,7 +234,10 @@ class RelaxationLadder : LadderMaker {
     for (const double factor : {0.5, 2.0}) {
       AnyMove other = move;
       other.max_step = rounded(move.max_step * factor);
-      if (other.max_step > least_periodic_width) continue;
+      const double longest = scene_.kinds.empty()
+                                 ? least_periodic_width
+                                 : std::min(least_periodic_width, 2 * range_of(scene_.kinds).least);
+      if (other.max_step > longest) continue;
       Relaxation relax = scene_.relax;
       relax.move = other;
       add(PilotSetting::Part::step, finite_text("{} = {:.3g}", name, other.max_step), relax);
@@ -268,7 +279,7 @@ class RelaxationLadder : LadderMaker {
     if (std::holds_alternative<FittedPour>(scene_.start)) {
       add(PilotSetting::Part::start, "poured between the walls", scene_.relax);
       settings_.back().start = SteepestDescentPour{};
-    } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) &&
+    } else if (std::holds_alternative<SteepestDescentPour>(scene_.start) && scene_.kinds.empty() &&
                !start_fault(FittedPour{}, scene_.container)) {
       add(PilotSetting::Part::start, "fitted between the walls", scene_.relax);
       settings_.back().start = FittedPour{};
@@ -374,7 +385,10 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
   if (starts_differ) axis.columns.push_back({"/start", {}});
   for (const PilotSetting& setting : settings) {
     axis.columns[0].second.push_back(std::visit(Written{}, setting.engine));
-    axis.columns[1].second.push_back(setting.n_spheres);
+    Scene spheres;
+    spheres.n_spheres = setting.n_spheres;
+    spheres.kinds = setting.kinds;
+    axis.columns[1].second.push_back(written_spheres(spheres));
     axis.columns[2].second.push_back(written_value(OneOf<Container>{}, setting.container));
     if (starts_differ)
       axis.columns[3].second.push_back(written_value(OneOf<StartChoice>{}, setting.start));

@@ -16,6 +16,7 @@ struct PilotSetting {
   std::uint32_t n_spheres = 0;
   Container container;
   StartChoice start;
+  std::vector<MixtureKind> kinds{};  // empty: equal spheres
 };
 
 /// The scene's own setting first, then the others; within a part from rough to complete. Stops:

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "config/grids.hpp"
+#include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
 #include "ensemble/statistics/counted.hpp"
 
@@ -10,32 +11,45 @@ namespace jostle::inline config {
 
 namespace {
 
-/// Starts with every file read once, its centres shared by all plans.
+/// A packing of a file, its centres shared by all plans.
+struct LoadedPacking {
+  std::shared_ptr<const std::vector<Vec3>> centres;
+  std::shared_ptr<const Sizes> sizes;  // null: equal spheres
+};
+
+/// Starts with every file read once.
 class StartMaker {
  public:
   explicit StartMaker(const PackingLoader& load) : load_(load) {}
 
-  Start operator()(const StartChoice& choice, std::uint32_t n_spheres) {
-    return std::visit([&](const auto& start) { return start_of(start, n_spheres); }, choice);
+  Start operator()(const Scene& scene) {
+    return std::visit([&](const auto& start) { return start_of(start, scene); }, scene.start);
   }
 
  private:
   template <class Other>
-  Start start_of(const Other& start, std::uint32_t) {
+  Start start_of(const Other& start, const Scene&) {
     return start;
   }
-  Start start_of(const PackingFile& file, std::uint32_t n_spheres) {
-    auto& centres = loaded_[file];
-    if (!centres) centres = std::make_shared<const std::vector<Vec3>>(load_(file));
-    if (centres->size() != n_spheres) {
-      throw StartError(fmt::format("{} holds {}, the scene {}: set \"spheres\" to {}", file.path,
-                                   counted(centres->size(), "sphere"), n_spheres, centres->size()));
+  Start start_of(const PackingFile& file, const Scene& scene) {
+    LoadedPacking& loaded = loaded_[file];
+    if (!loaded.centres) {
+      Packing packing = load_(file);
+      loaded = {std::make_shared<const std::vector<Vec3>>(std::move(packing.centres)),
+                std::move(packing.sizes)};
     }
-    return GivenPacking{centres, file.overlap};
+    const std::size_t n = loaded.centres->size();
+    if (n != scene.n_spheres) {
+      const std::string mend =
+          scene.kinds.empty() ? fmt::format("set \"spheres\" to {}", n) : "correct their counts";
+      throw StartError(fmt::format("{} holds {}, the scene {}: {}", file.path, counted(n, "sphere"),
+                                   scene.n_spheres, mend));
+    }
+    return GivenPacking{loaded.centres, file.overlap, sizes_for(loaded.sizes, scene, file.path)};
   }
 
   const PackingLoader& load_;
-  std::map<PackingFile, std::shared_ptr<const std::vector<Vec3>>> loaded_;
+  std::map<PackingFile, LoadedPacking> loaded_;
 };
 
 Snapshots snapshots(const SnapshotChoice& choice, std::uint64_t taps) {
@@ -86,7 +100,9 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
     plan.streams = here.streams;
     plan.container = here.container;
     plan.n_spheres = here.n_spheres;
-    plan.start = make_start_of(here.start, here.n_spheres);
+    plan.kinds = here.kinds;
+    plan.pour_order = here.pour_order;
+    plan.start = make_start_of(here);
     plan.protocol = stages(here.protocol);
     plan.engine = engine_of(here);
     plan.observables = here.observables;

@@ -133,6 +133,62 @@ constexpr auto snapshots_field = irregular(
           "What is kept of the packing at chosen taps; tap 0 is the start.", Json::object(), "");
     });
 
+constexpr auto spheres_field = irregular(
+    "spheres",
+    [](const Reader& in, Scene& scene) {
+      if (const auto spheres = in.find("spheres"))
+        read_spheres(*spheres, scene);
+      else
+        in.missing("spheres", "the number of spheres, a whole number, or a list of kinds");
+    },
+    [](const Scene& scene, Json& out) { out["spheres"] = written_spheres(scene); },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["spheres"] = described_as(
+          spheres_schema(definitions), "Spheres",
+          "The number of equal spheres of diameter 1, or the kinds of a mixture. A start from a "
+          "file takes the sizes that the file holds.",
+          std::nullopt, "[4096, 3456]");
+      out.required.emplace_back("spheres");
+    });
+
+// Equal spheres are poured as they are numbered: they have no order that scenes could name.
+constexpr auto pour_order_field = irregular(
+    "pour_order",
+    [](const Reader& in, Scene& scene) {
+      if (const auto order = in.find("pour_order"))
+        read_value(word(pour_orders), *order, scene.pour_order);
+    },
+    [](const Scene& scene, Json& out) {
+      if (!scene.kinds.empty()) out["pour_order"] = name_in(pour_orders, scene.pour_order);
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["pour_order"] = described_as(
+          value_schema(word(pour_orders), definitions), "Order of pouring",
+          "The order in which the spheres of a mixture are poured. Spheres with a place come "
+          "first. The numbers of the spheres are those of the list of kinds.",
+          "random", "");
+    });
+
+/// What is observed by default; some of it is defined for equal spheres alone.
+constexpr auto observe_form = list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables");
+constexpr auto observe_field = irregular(
+    "observe",
+    [](const Reader& in, Scene& scene) {
+      if (const auto observe = in.find("observe"))
+        read_value(observe_form, *observe, scene.observables);
+      else if (!scene.kinds.empty())
+        scene.observables = default_observables(scene.kinds);
+    },
+    [](const Scene& scene, Json& out) {
+      out["observe"] = written_value(observe_form, scene.observables);
+    },
+    [](ObjectSchema& out, Definitions& definitions) {
+      out.properties["observe"] =
+          described_as(value_schema(observe_form, definitions), "Observables",
+                       "What is measured at the start and after every tap.",
+                       written_default(observe_form, Scene{}.observables), "");
+    });
+
 constexpr auto identity_fields() {
   return std::tuple{
       schema_link,
@@ -166,10 +222,8 @@ constexpr auto simulation_fields() {
              .title = "Container",
              .examples = R"([{"sides": "periodic", "width": 16}, {"sides": "walls", "width": 16},
                              {"sides": "cylinder", "diameter": 19}])"}),
-      field("spheres", &Scene::n_spheres, Whole{1, most_spheres}, "",
-            {.required = "the number of spheres, a whole number",
-             .title = "Number of spheres",
-             .examples = "[4096, 3456]"}),
+      spheres_field,
+      pour_order_field,
       field("start", &Scene::start, OneOf<StartChoice>{}, "How the packing begins: tap 0",
             {.title = "Starting packing",
              .examples = R"([{"pour": "steepest_descent"}, {"pour": "fitted"},
@@ -189,9 +243,7 @@ constexpr auto simulation_fields() {
 
 constexpr auto measured_fields() {
   return std::tuple{
-      field("observe", &Scene::observables,
-            list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables"),
-            "What is measured at the start and after every tap", {.title = "Observables"}),
+      observe_field,
       snapshots_field,
       field("motion", &Scene::motion, Object<MotionChoice>{},
             "Displacements over many taps, measured while the bed is tapped: mean square "
@@ -261,7 +313,8 @@ std::string scene_schema() {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
               {"title", "jostle scene"},
               {"description",
-               "One study of a tapped packing of equal hard spheres. Lengths in sphere diameters, "
+               "One study of a tapped packing of hard spheres, equal ones or a mixture. Lengths in "
+               "sphere diameters, "
                "angles in radians. docs/reference/scene.md explains every key."}};
   schema.update(object_schema(scene_fields(), definitions).json());
   schema["definitions"] = definitions.all();

@@ -14,6 +14,7 @@
 
 #include "config/fault.hpp"
 #include "config/json/json.hpp"
+#include "engine/bed/mixture.hpp"
 #include "engine/fields.hpp"
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/plan.hpp"
@@ -205,7 +206,9 @@ struct Scene {
   Streams streams = Streams::independent;
 
   Container container;
-  std::uint32_t n_spheres = 0;
+  std::uint32_t n_spheres = 0;     // of all kinds
+  std::vector<MixtureKind> kinds;  // of a mixture; empty: equal spheres, or the sizes of a file
+  PourOrder pour_order = PourOrder::random;
   StartChoice start;
   std::vector<ProtocolLine> protocol;
   Relaxation relax;
@@ -266,15 +269,16 @@ Json resolved(const Scene& scene);
 /// Number of sweep points, 1 without a sweep.
 std::size_t n_sweep_points(const Scene& scene);
 
-/// Reads the centres of a saved packing. May throw; make_plans lets it pass.
-using PackingLoader = std::function<std::vector<Vec3>(const PackingFile&)>;
+/// Reads a saved packing. May throw; make_plans lets it pass.
+using PackingLoader = std::function<Packing(const PackingFile&)>;
 
 /// The scene of every sweep point, in the order of the sweep (first axis slowest); of a scene that
 /// was parsed, ParsedScene has them.
 std::vector<Scene> point_scenes(const Scene& scene);
 
 /// One plan per sweep point, of their scenes. Calls `load` once for every distinct file. Throws
-/// StartError where a file does not hold as many spheres as the scene.
+/// StartError where a file does not hold the spheres of the scene, or holds spheres of several
+/// sizes that something in the scene does not take.
 std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& points,
                              const PackingLoader& load);
 /// Makes the scenes of the points, too.

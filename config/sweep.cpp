@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t most_points = 100'000;
 
 /// What a sweep may set: what is simulated and measured. The rest belongs to the study as a whole.
-const std::vector<std::string> swept_parts{"container",   "spheres", "start",
-                                           "protocol",    "engine",  "relax",
-                                           "relax_start", "observe", "snapshots"};
+const std::vector<std::string> swept_parts{"container", "spheres",  "pour_order", "start",
+                                           "protocol",  "engine",   "relax",      "relax_start",
+                                           "observe",   "snapshots"};
 
 /// Every pointer that leads somewhere in a value.
 void collect_pointers(const Json& value, const std::string& pointer,

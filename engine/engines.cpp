@@ -49,6 +49,12 @@ std::optional<std::string> engine_start_fault(const EngineSettings& settings, co
   return "trials move hard spheres: a packing that overlaps can be given to discrete elements only";
 }
 
+std::optional<std::string> engine_mixture_fault(const EngineSettings& settings) {
+  if (std::holds_alternative<DiscreteElement>(settings))
+    return "discrete elements require equal spheres of diameter 1: use Monte Carlo";
+  return std::nullopt;
+}
+
 const char* unit_name(const EngineSettings& settings) {
   return std::visit([](const auto& engine) { return engine.unit; }, settings);
 }

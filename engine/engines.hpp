@@ -27,6 +27,9 @@ std::optional<std::string> engine_tap_fault(const EngineSettings& settings, cons
 /// overlap.
 std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start);
 
+/// Why the engine does not move spheres of several sizes; nothing if it does.
+std::optional<std::string> engine_mixture_fault(const EngineSettings& settings);
+
 /// What reports call a unit of the engine, and as many units as there are spheres: "trials" and
 /// "sweeps", "sphere steps" and "time steps".
 const char* unit_name(const EngineSettings& settings);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/bed/container.hpp"
+#include "engine/bed/mixture.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/engines.hpp"
 #include "engine/fields.hpp"
@@ -68,7 +70,10 @@ struct Plan {
   Streams streams = Streams::independent;
 
   Container container;
-  std::uint32_t n_spheres = 0;
+  std::uint32_t n_spheres = 0;     // of all kinds
+  std::vector<MixtureKind> kinds;  // of a mixture whose sizes are drawn; empty: equal spheres, or
+                                   // those of a given packing
+  PourOrder pour_order = PourOrder::random;  // of a mixture
   Start start;
   std::vector<Stage> protocol;
   EngineSettings engine;
@@ -84,6 +89,16 @@ std::uint64_t total_taps(const Plan& plan);
 /// The stream of a realization at the plan's sweep point. Matched: the start, its relaxation and
 /// the taps draw at every point what they draw at the point without values.
 StreamKey stream_key(const Plan& plan, std::uint32_t realization, Purpose purpose);
+
+/// The sizes of the spheres of a realization: drawn from its stream of Purpose::sizes, or those of
+/// the given packing; null for equal spheres.
+std::shared_ptr<const Sizes> sizes_of(const Plan& plan, std::uint32_t realization);
+
+/// Whether realizations may differ in the diameters of their spheres.
+bool has_drawn_sizes(const Plan& plan);
+
+/// The spheres that a start places, with these sizes.
+StartSpheres start_spheres(const Plan& plan, std::shared_ptr<const Sizes> sizes);
 
 /// The tap with number t in 1 .. total_taps(plan).
 const Tap& tap_number(const Plan& plan, std::uint64_t t);

@@ -33,8 +33,14 @@ Realization::Realization(const Plan& plan, std::uint32_t index, std::unique_ptr<
       index_(index),
       state_(resumed ? std::move(*resumed) : RealizationState{}),
       dynamics_(std::move(dynamics)),
-      packing_{plan.container, std::exchange(state_.centres, {})},
+      sizes_(sizes_of(plan, index)),
+      packing_{plan.container, std::exchange(state_.centres, {}), sizes_},
       tap_random_(stream_key(plan, index, Purpose::tap), state_.tap_stream_position) {
+  if (!state_.diameters.empty() && (!sizes_ || state_.diameters != diameters_of(*sizes_)))
+    throw StateError(
+        "the stored state has spheres of other diameters than this version of the program draws: "
+        "go on with the version that began the run");
+  state_.diameters.clear();
   if (state_.rows > 0) observer_.emplace(plan.observables, state_.observable_windows);
   if (packing_.centres.empty()) return;
   dynamics_->load(packing_);
@@ -74,7 +80,8 @@ bool Realization::start(const StopAsked& stop) {
   RandomStream random(stream_key(plan_, index_, Purpose::start));
   Packing poured;
   try {
-    packing_ = make_start(plan_.start, plan_.container, plan_.n_spheres, random, stop, &poured);
+    packing_ = make_start(plan_.start, plan_.container, start_spheres(plan_, sizes_), random, stop,
+                          &poured);
   } catch (const StartStopped&) {
     return false;
   }
@@ -141,6 +148,7 @@ RealizationState Realization::state() const {
   Packing bed;
   dynamics_->store(bed);
   state.centres = std::move(bed.centres);
+  if (sizes_ && has_drawn_sizes(plan_)) state.diameters = diameters_of(*sizes_);
   state.engine = dynamics_->save();
   return state;
 }

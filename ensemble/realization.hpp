@@ -53,6 +53,8 @@ class Realization {
   Slice advance(std::uint64_t units, const StopAsked& stop = {});
 
   RealizationState state() const;
+  /// Null where all spheres have the diameter 1.
+  const std::shared_ptr<const Sizes>& sizes() const { return sizes_; }
   const Dynamics& dynamics() const { return *dynamics_; }
 
  private:
@@ -67,7 +69,8 @@ class Realization {
   std::uint32_t index_;
   RealizationState state_;  // but for the centres and the engine, which the members below hold
   std::unique_ptr<Dynamics> dynamics_;
-  Packing packing_;  // as last recorded
+  std::shared_ptr<const Sizes> sizes_;  // null: equal spheres
+  Packing packing_;                     // as last recorded
   RandomStream tap_random_;
   std::optional<Observer> observer_;
 };

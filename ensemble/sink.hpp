@@ -57,6 +57,7 @@ struct RealizationState {
   std::optional<FittingReport> fitting;  // of a fitted pour
   std::vector<Vec3> centres;
   std::optional<MotionState> motion{};  // where the plan asks for it, from tap 0 on
+  std::vector<double> diameters{};      // [n_spheres], where realizations draw their own
 };
 
 enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 2, failed = 3 };

@@ -13,6 +13,7 @@
 #include "results/file/axes.hpp"
 #include "results/file/intact_file.hpp"
 #include "results/file/layout.hpp"
+#include "results/file/mixtures.hpp"
 #include "results/file/motion_group.hpp"
 #include "results/file/results_file_impl.hpp"
 #include "results/file/snapshot_statistics.hpp"
@@ -281,6 +282,21 @@ std::optional<MotionRecords> ResultsFile::motion(std::uint32_t point) const {
   });
 }
 
+std::shared_ptr<const Sizes> ResultsFile::sizes(RealizationId id) const {
+  const StudyPoint& point = study().points.at(id.point);
+  if (!point.mixture) return nullptr;
+  return naming_file(impl_->path, [&] {
+    if (!point.mixture->drawn()) return point.mixture->sizes({});
+    const auto drawn = read_drawn_diameters(impl_->file(), point, id, study().realizations);
+    const auto fault = sizes_fault(drawn, point.mixture->kind_of, point.mixture->kinds);
+    if (fault)
+      throw Hdf5Error("/" + std::string(spheres_folder) + "/" + point_name(id.point) + "/" +
+                      sphere_diameters + ": realization " + std::to_string(id.realization) +
+                      " has not begun, or the file is not written by jostle: " + *fault);
+    return point.mixture->sizes(drawn);
+  });
+}
+
 std::vector<SnapshotRecord> ResultsFile::snapshots(RealizationId id) const {
   return snapshots_of(*realization(id));
 }
@@ -303,6 +319,10 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
     try {
       RealizationState state = get_realization_state(reader);
       validate(state, study().points.at(id.point));
+      const StudyPoint& point = study().points.at(id.point);
+      if (!state.diameters.empty() &&
+          state.diameters != read_drawn_diameters(impl_->file(), point, id, study().realizations))
+        throw Hdf5Error("/" + name + " goes on with spheres of other sizes than those stored");
       if (state.rows != impl_->tables(id.point).rows.at(id.realization))
         throw Hdf5Error("/" + name + " goes on from another tap than the last that is stored");
       return state;

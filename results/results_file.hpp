@@ -125,6 +125,9 @@ class ResultsFile {
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
   /// Its kept positions alone: tap and centres.
   std::vector<SnapshotRecord> positions(RealizationId id) const;
+  /// The sizes of its spheres: null where all have the diameter 1. Throws where they are drawn, and
+  /// the realization has not begun or has failed.
+  std::shared_ptr<const Sizes> sizes(RealizationId id) const;
   /// Gives back the file's descriptor and what was kept of it in memory, until it is read again.
   void rest() const;
   /// Gives back what was kept of its series.

@@ -20,7 +20,23 @@ namespace {
 /// The scene names a file only by its path: what it held when the run began is known by this.
 std::string sum_of_given(const Start& start) {
   const auto* given = std::get_if<GivenPacking>(&start);
-  return given ? hex(sha256(std::as_bytes(std::span(*given->centres)))) : "";
+  if (given == nullptr) return "";
+  Sha256 sum;
+  sum.add(std::as_bytes(std::span(*given->centres)));
+  if (given->sizes) {
+    sum.add(std::as_bytes(std::span(given->sizes->radii())));
+    sum.add(std::as_bytes(std::span(given->sizes->kind_of())));
+  }
+  return hex(sum.finish());
+}
+
+/// Kinds and diameters as the first realization has them; drawn ones are left to each.
+std::shared_ptr<const PointSpheres> mixture_of(const Plan& plan) {
+  const auto sizes = sizes_of(plan, 0);
+  if (!sizes) return nullptr;
+  return std::make_shared<const PointSpheres>(
+      PointSpheres{sizes->kinds(), sizes->kind_of(),
+                   has_drawn_sizes(plan) ? std::vector<double>{} : diameters_of(*sizes)});
 }
 
 StudyPoint make_point(const Plan& plan) {
@@ -30,6 +46,7 @@ StudyPoint make_point(const Plan& plan) {
                    .seed = plan.seed,
                    .container = plan.container,
                    .n_spheres = plan.n_spheres,
+                   .mixture = mixture_of(plan),
                    .taps = total_taps(plan),
                    .observables = {},
                    .diagnostics = columns(plan.engine),
@@ -40,6 +57,17 @@ StudyPoint make_point(const Plan& plan) {
   for (const Observable& observable : plan.observables)
     point.observables.push_back(label(observable));
   return point;
+}
+
+/// Has the last point share the spheres of an earlier one that has the same.
+void share_spheres(std::vector<StudyPoint>& points) {
+  StudyPoint& last = points.back();
+  if (!last.mixture) return;
+  for (const StudyPoint& earlier : std::span(points).first(points.size() - 1)) {
+    if (!earlier.mixture || *earlier.mixture != *last.mixture) continue;
+    last.mixture = earlier.mixture;
+    return;
+  }
 }
 
 /// Bins of n(z) up to the top of a bed that is looser than any that settles.
@@ -65,6 +93,7 @@ std::uint64_t bytes_of_realization(const StudyPoint& point) {
       (profiles > 0 ? profiles * histogram_bins(point) * sizeof(double) : 0) + 512;
   return (point.taps + 1) * point.n_columns() * sizeof(double) +
          point.snapshots.taps.size() * a_snapshot + positions + 4096 +
+         (point.mixture && point.mixture->drawn() ? 2 * sizeof(double) * point.n_spheres : 0) +
          (point.motion ? 2 * motion_bytes(*point.motion, point.n_spheres) : 0);
 }
 
@@ -91,6 +120,10 @@ std::string utc_now() {
 
 }  // namespace
 
+std::shared_ptr<const Sizes> PointSpheres::sizes(const std::vector<double>& of_realization) const {
+  return std::make_shared<const Sizes>(drawn() ? of_realization : diameters, kind_of, kinds);
+}
+
 std::vector<Column> StudyPoint::columns() const {
   std::vector<Column> all = observables;
   all.insert(all.end(), diagnostics.begin(), diagnostics.end());
@@ -108,7 +141,10 @@ std::string common_unit(const Study& study) {
 Study make_study(std::span<const Plan> plans, std::string scene, std::string resolved_scene,
                  std::uint32_t realizations) {
   Study study{std::move(scene), std::move(resolved_scene), realizations, {}};
-  for (const Plan& plan : plans) study.points.push_back(make_point(plan));
+  for (const Plan& plan : plans) {
+    study.points.push_back(make_point(plan));
+    share_spheres(study.points);
+  }
   return study;
 }
 

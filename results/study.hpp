@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,11 +10,28 @@
 #include <vector>
 
 #include "engine/bed/container.hpp"
+#include "engine/bed/sizes.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/sink.hpp"
 #include "structure/observables.hpp"
 
 namespace jostle::inline results {
+
+/// Spheres of mixtures of all sweep points together, at most; points with the same spheres count
+/// once.
+inline constexpr std::uint64_t most_mixed_spheres_in_all = 50'000'000;
+
+/// The spheres of a mixture at one sweep point.
+struct PointSpheres {
+  std::vector<SphereKind> kinds;       // in the order of the scene's list
+  std::vector<std::uint32_t> kind_of;  // [n_spheres]
+  std::vector<double> diameters;       // [n_spheres]; empty where realizations draw their own
+  bool operator==(const PointSpheres&) const = default;
+
+  bool drawn() const { return diameters.empty(); }
+  /// With the diameters of a realization where they are drawn.
+  std::shared_ptr<const Sizes> sizes(const std::vector<double>& of_realization) const;
+};
 
 /// What a results file must know of one sweep point to lay out and read back its numbers.
 struct StudyPoint {
@@ -23,13 +41,14 @@ struct StudyPoint {
   std::uint64_t seed = 0;
   Container container;
   std::uint32_t n_spheres = 0;
+  std::shared_ptr<const PointSpheres> mixture{};  // null: equal spheres; shared by equal points
   std::uint64_t taps = 0;           // the series have taps + 1 rows: tap 0 is the start
   std::vector<Column> observables;  // as the scene lists them
   std::vector<Column> diagnostics;  // the engine's
   std::string unit = "trials";      // what a unit of its work is called
   Snapshots snapshots;
   std::optional<MotionSettings> motion{};
-  std::string start_sum{};  // SHA-256 of the centres of a start from a file; else empty
+  std::string start_sum{};  // SHA-256 of the spheres of a start from a file; else empty
 
   /// All columns of the series: the observables, then the diagnostics.
   std::vector<Column> columns() const;

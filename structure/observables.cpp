@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
 #include "engine/bed/slab.hpp"
 #include "structure/density/layers.hpp"
 #include "structure/measure.hpp"
+#include "structure/mixing.hpp"
 #include "structure/order/ordered_front.hpp"
 
 namespace jostle::inline structure {
@@ -47,6 +49,24 @@ struct Label {
             "height up to which half of the spheres, layer by layer, are fcc or hcp",
             "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
   }
+  Column operator()(const KindHeight& height) const {
+    return {"height_" + height.kind, "diameter",
+            "mean height of the spheres of kind " + height.kind + ", weighted by volume", "jostle"};
+  }
+  Column operator()(const Segregation& s) const {
+    return {std::string(Segregation::about.name) + suffix(s.large) + suffix(s.small), "1",
+            "segregation S = 2 (z_L - z_S)/H of two kinds", "jostle"};
+  }
+  Column operator()(const LaceyIndex& index) const {
+    return {std::string(LaceyIndex::about.name) + suffix(index.kind), "1",
+            "Lacey's mixing index, its random state with fixed numbers of spheres",
+            "Gu & Chen 2014, Chem. Eng. Res. Des."};
+  }
+
+ private:
+  static std::string suffix(const std::optional<std::string>& kind) {
+    return kind ? "_" + *kind : "";
+  }
 };
 
 // The window an observable keeps for the whole run; {0, 0} where it needs none.
@@ -78,7 +98,7 @@ struct Measure {
   double operator()(const MeanHeight&) const { return mean_height(packing); }
 
   double operator()(const BottomFraction&) const {
-    return solids_fraction(packing, {0, 4 * sphere_radius});
+    return solids_fraction(packing, {0, 4 * sphere_radius});  // in a mixture, too: 2 d
   }
 
   double operator()(const CorrectedFraction& corrected) const {
@@ -101,7 +121,63 @@ struct Measure {
   double operator()(const GrownLayers&) const { return static_cast<double>(grown_layers(packing)); }
 
   double operator()(const OrderedHeight&) const { return ordered_height(packing, orders()); }
+
+  double operator()(const KindHeight& height) const {
+    return kind_height(packing, kind_named(*packing.sizes, height.kind));
+  }
+
+  double operator()(const Segregation& s) const {
+    return segregation(
+        packing, s.large ? kind_named(*packing.sizes, *s.large) : largest_kind(*packing.sizes),
+        s.small ? kind_named(*packing.sizes, *s.small) : smallest_kind(*packing.sizes));
+  }
+
+  double operator()(const LaceyIndex& index) const {
+    return lacey_index(
+        packing,
+        index.kind ? kind_named(*packing.sizes, *index.kind) : largest_kind(*packing.sizes),
+        index.cell);
+  }
 };
+
+template <class Observed>
+constexpr bool of_equal_spheres =
+    std::is_same_v<Observed, CorrectedFraction> || std::is_same_v<Observed, CrystallineFraction> ||
+    std::is_same_v<Observed, GrownLayers> || std::is_same_v<Observed, OrderedHeight>;
+template <class Observed>
+constexpr bool of_mixtures =
+    std::is_same_v<Observed, KindHeight> || std::is_same_v<Observed, Segregation> ||
+    std::is_same_v<Observed, LaceyIndex>;
+
+/// The kinds that an observable names.
+struct NamedKinds {
+  using Names = std::vector<std::optional<std::string>>;
+  Names operator()(const KindHeight& height) const { return {height.kind}; }
+  Names operator()(const Segregation& s) const { return {s.large, s.small}; }
+  Names operator()(const LaceyIndex& index) const { return {index.kind}; }
+  template <class Other>
+  Names operator()(const Other&) const {
+    return {};
+  }
+};
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Throws std::invalid_argument, as a caller of the library sees it: scenes are checked when read.
+void require_measurable(const Packing& packing, const std::vector<Observable>& observables) {
+  std::vector<std::string> kinds;
+  if (packing.sizes)
+    for (const SphereKind& kind : packing.sizes->kinds()) kinds.push_back(kind.name);
+  for (const Observable& observable : observables) {
+    const auto fault =
+        packing.sizes ? mixture_fault(observable, kinds) : equal_spheres_fault(observable);
+    if (fault) throw std::invalid_argument(*fault);
+  }
+}
 
 }  // namespace
 
@@ -111,6 +187,35 @@ std::optional<std::string> observable_fault(const Observable& observable,
   return label(observable).name +
          " is measured from a floor, a fully_periodic container has none: write \"observe\": [] "
          "and keep snapshots";
+}
+
+std::optional<std::string> mixture_fault(const Observable& observable,
+                                         const std::vector<std::string>& kinds) {
+  const bool equal = std::visit(
+      []<class Observed>(const Observed&) { return of_equal_spheres<Observed>; }, observable);
+  if (equal)
+    return label(observable).name +
+           " is defined for equal spheres alone: leave it out of what is observed of a mixture";
+  for (const auto& name : std::visit(NamedKinds{}, observable)) {
+    if (name && std::ranges::find(kinds, *name) == kinds.end())
+      return "no kind of spheres is named \"" + *name + "\" (kinds: " + listed(kinds) + ")";
+  }
+  const bool of_two = std::visit(
+      []<class Observed>(const Observed&) {
+        return std::is_same_v<Observed, Segregation> || std::is_same_v<Observed, LaceyIndex>;
+      },
+      observable);
+  if (of_two && kinds.size() < 2)
+    return label(observable).name + " is that of two kinds of spheres or more, and there is one";
+  return std::nullopt;
+}
+
+std::optional<std::string> equal_spheres_fault(const Observable& observable) {
+  const bool mixtures =
+      std::visit([]<class Observed>(const Observed&) { return of_mixtures<Observed>; }, observable);
+  if (!mixtures) return std::nullopt;
+  return label(observable).name +
+         " is measured of kinds of spheres: list kinds under \"spheres\", or leave it out";
 }
 
 Column label(const Observable& observable) {
@@ -139,7 +244,7 @@ Observer::Observer(const std::vector<Observable>& observables, std::vector<Heigh
 }
 
 std::vector<double> Observer::operator()(const Packing& packing) const {
-  require_equal_spheres(packing, "observables");
+  require_measurable(packing, observables_);
   std::vector<double> values;
   values.reserve(observables_.size());
   Orders orders(packing);

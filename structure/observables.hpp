@@ -110,12 +110,84 @@ struct OrderedHeight {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-using Observable = std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction,
-                                CrystallineFraction, GrownLayers, OrderedHeight>;
+/// The name of a kind of spheres; empty: as the observable chooses.
+inline constexpr Text kind_name_form{
+    "A-Za-z", "A-Za-z0-9_", longest_kind_name,
+    "expected the name of a kind: letters, digits and underscores, a letter first, at most 40 of "
+    "them"};
+
+/// Mean height of the spheres of a kind, diameters, each weighted by its volume (kind_height() in
+/// mixing.hpp). Of a kind of one sphere: the height of an intruder.
+struct KindHeight {
+  std::string kind;
+  bool operator==(const KindHeight&) const = default;
+
+  static constexpr About about{
+      .name = "kind_height",
+      .text =
+          "Mean height of the centres of a kind, weighted by volume, diameters. Of a kind of "
+          "one sphere: the height of an intruder. Stored as height_KIND"};
+  static constexpr auto fields() {
+    return std::tuple{field("kind", &KindHeight::kind, kind_name_form, "Name of the kind",
+                            {.required = "the name of a kind of spheres"})};
+  }
+};
+
+/// S = 2 (z_L - z_S)/H (segregation() in mixing.hpp). Without names: the kinds of the largest and
+/// of the smallest mean diameter.
+struct Segregation {
+  std::optional<std::string> large = std::nullopt, small = std::nullopt;
+  bool operator==(const Segregation&) const = default;
+
+  static constexpr About about{
+      .name = "segregation",
+      .text =
+          "S = 2 (z_L - z_S)/H of two kinds, H being twice the mean height: 1 where the first "
+          "fills the upper half and the second the lower",
+      .symbol = "S"};
+  static constexpr auto fields() {
+    return std::tuple{field("large", &Segregation::large, kind_name_form,
+                            "Kind L; absent: the one of the largest mean diameter"),
+                      field("small", &Segregation::small, kind_name_form,
+                            "Kind S; absent: the one of the smallest mean diameter")};
+  }
+};
+
+/// Lacey's mixing index of a kind among all others, on cells (lacey_index() in mixing.hpp).
+struct LaceyIndex {
+  double cell = 3;  // diameters
+  std::optional<std::string> kind = std::nullopt;
+  bool operator==(const LaceyIndex&) const = default;
+
+  static constexpr About about{
+      .name = "lacey_index",
+      .text =
+          "Lacey's mixing index on cells: 0 where kinds are apart, 1 on average where spheres "
+          "are labelled at random",
+      .symbol = "M"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("cell", &LaceyIndex::cell, Number{between(0.5, 1000), "diameters"},
+              "Edge of a cell: sides of the container are divided into whole numbers of cells of "
+              "about this size"),
+        field("kind", &LaceyIndex::kind, kind_name_form,
+              "The kind that is counted; absent: the one of the largest mean diameter")};
+  }
+};
+
+using Observable =
+    std::variant<MeanHeight, BottomFraction, CorrectedFraction, BulkFraction, CrystallineFraction,
+                 GrownLayers, OrderedHeight, KindHeight, Segregation, LaceyIndex>;
 
 /// Why it cannot be measured in the container; nothing if it can. All are measured from a floor.
 std::optional<std::string> observable_fault(const Observable& observable,
                                             const Container& container);
+
+/// Why it cannot be measured of a mixture of the named kinds; nothing if it can.
+std::optional<std::string> mixture_fault(const Observable& observable,
+                                         const std::vector<std::string>& kinds);
+/// Why it cannot be measured of equal spheres; nothing if it can.
+std::optional<std::string> equal_spheres_fault(const Observable& observable);
 
 /// How an observable is stored; its name is also that in scenes.
 Column label(const Observable& observable);

@@ -11,10 +11,13 @@
 namespace jostle::inline structure {
 
 std::vector<unsigned> coordination_numbers(const Packing& packing, double cut) {
-  const NeighbourFinder finder(packing, cut);
+  const NeighbourFinder finder(packing, packing.sizes ? cut * 2 * packing.largest_radius() : cut);
   std::vector<unsigned> numbers(finder.size(), 0);
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t, Vec3, double) { ++numbers[i]; });
+    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      const double reach = cut * (packing.radius(i) + packing.radius(j));
+      if (!packing.sizes || distance_squared <= reach * reach) ++numbers[i];
+    });
   }
   return numbers;
 }

@@ -13,8 +13,8 @@
 namespace jostle::inline structure {
 
 /// N_c: mean number of other centres within `cut` diameters (at the cut included) of a centre,
-/// every periodic image being a centre of its own. Rosato et al. 2010: cut = 1.05. Requires a
-/// sphere.
+/// every periodic image being a centre of its own. In a mixture the cut is in sums of the two
+/// radii. Rosato et al. 2010: cut = 1.05. Requires a sphere.
 double coordination(const Packing& packing, double cut = 1.05);
 
 /// The number of centres within `cut` of each centre, [n_spheres].

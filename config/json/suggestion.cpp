@@ -55,7 +55,8 @@ constexpr std::string_view strength_hint =
     "(Philippe & Bideau 2001, eq. 2): 1.7e-4 Gamma^2 in the tube of Knight et al. (30 Hz, 0.8 m). "
     "Discrete elements have the \"acceleration\" Gamma of \"half_sine\" and \"vibration\".";
 constexpr std::string_view sizes_hint =
-    " All spheres have one diameter, which is the unit of length.";
+    " Sizes belong to the kinds of a mixture: \"spheres\": [{\"name\": \"a\", \"count\": 100, "
+    "\"diameter\": 1.2}, ...].";
 constexpr std::string_view friction_hint =
     " Contact laws belong to \"engine\": {\"discrete_element\": ...}; Monte Carlo has none.";
 

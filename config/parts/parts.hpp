@@ -15,6 +15,16 @@ bool read_value(const OneOf<Container>& form, const Reader& in, Container& into)
 Json written_value(const OneOf<Container>& form, const Container& container);
 Json value_schema(const OneOf<Container>& form, Definitions& definitions);
 
+/// What is observed of a mixture by default: what is defined for equal spheres alone is left out.
+std::vector<Observable> default_observables(const std::vector<MixtureKind>& kinds);
+/// The number of equal spheres, or the kinds of a mixture.
+void read_spheres(const Reader& in, Scene& scene);
+Json written_spheres(const Scene& scene);
+Json spheres_schema(Definitions& definitions);
+bool read_part(const Reader& in, MixtureKind& kind);
+Json written_part(const MixtureKind& kind);
+Json part_schema(std::type_identity<MixtureKind> type, Definitions& definitions);
+
 bool read_value(const OneOf<StartChoice>& form, const Reader& in, StartChoice& into);
 Json written_value(const OneOf<StartChoice>& form, const StartChoice& start);
 Json value_schema(const OneOf<StartChoice>& form, Definitions& definitions);
@@ -91,6 +101,17 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns the kinds of a mixture.
+void check_kinds(const Scene& scene, std::vector<Fault>& faults);
+/// Of these, what concerns spheres whose diameters are in the range, of these kinds: parts that are
+/// defined for equal spheres alone, widths and steps.
+void check_mixture(const Scene& scene, const DiameterRange& range,
+                   const std::vector<std::string>& kinds, std::vector<Fault>& faults);
+/// The sizes of a packing from a file (null: equal spheres) as a scene takes them: with the kinds
+/// that it lists, which must match. Throws StartError where they do not, or where something in the
+/// scene does not take spheres of several sizes.
+std::shared_ptr<const Sizes> sizes_for(const std::shared_ptr<const Sizes>& of_file,
+                                       const Scene& scene, const std::string& path);
 /// Of these, what concerns the motion of spheres.
 void check_motion(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns the structure of its packings.

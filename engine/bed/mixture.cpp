@@ -157,9 +157,8 @@ std::vector<std::string> mixture_faults(const std::vector<MixtureKind>& kinds) {
   if (kinds.empty()) return {"no kind of spheres is given: give at least one"};
   std::vector<std::string> faults;
   std::set<std::string> names;
-  std::uint64_t spheres = 0;
+  const std::uint64_t spheres = n_spheres_of(kinds);
   for (const MixtureKind& kind : kinds) {
-    spheres += kind.count;
     if (!names.insert(kind.name).second)
       faults.push_back("two kinds are named \"" + kind.name + "\": give each a name of its own");
   }
@@ -191,6 +190,26 @@ std::optional<std::string> width_fault(const Container& container, double larges
                                         std::pair(boundary.periodic_y, boundary.width_y)})
     if (auto fault = narrow(periodic, periodic ? "periodic width" : sides, width)) return fault;
   return boundary.periodic_z ? narrow(true, "periodic height", boundary.height) : std::nullopt;
+}
+
+std::uint64_t n_spheres_of(const std::vector<MixtureKind>& kinds) {
+  std::uint64_t n = 0;
+  for (const MixtureKind& kind : kinds) n += kind.count;
+  return n;
+}
+
+std::vector<MixtureKind> with_share(std::vector<MixtureKind> kinds, double share) {
+  for (MixtureKind& kind : kinds) {
+    const std::uint32_t all = kind.count;
+    kind.count = std::max(1u, static_cast<std::uint32_t>(std::lround(share * all)));
+    auto* listed = std::get_if<ListedDiameters>(&kind.diameter);
+    if (listed == nullptr) continue;
+    std::vector<double> thinned;
+    for (std::uint64_t i = 0; i < kind.count; ++i)
+      thinned.push_back(listed->values[(2 * i + 1) * all / (2 * std::uint64_t{kind.count})]);
+    listed->values = std::move(thinned);
+  }
+  return kinds;
 }
 
 std::shared_ptr<const Sizes> draw_sizes(const std::vector<MixtureKind>& kinds,

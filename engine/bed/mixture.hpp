@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/bed/sizes.hpp"
+#include "engine/fields.hpp"
 
 // Kinds of spheres and the laws of their diameters, from which the sizes of a realization are
 // drawn.
@@ -17,6 +19,13 @@ namespace jostle::inline engine {
 
 /// Laws are cut at so many standard deviations, so that the extremes of a mixture are known.
 inline constexpr double cut_of_diameter_laws = 3;
+
+/// Kinds of a mixture, at most.
+inline constexpr std::size_t most_kinds = 1000;
+/// The diameters that spheres may have.
+inline constexpr Number diameter_form{between(least_diameter, greatest_diameter), "diameters"};
+/// Standard deviations of diameters.
+inline constexpr Number diameter_deviation_form{between(0, greatest_diameter), "diameters"};
 
 /// All spheres of one diameter.
 struct FixedDiameter {
@@ -29,24 +38,54 @@ struct FixedDiameter {
 struct LognormalDiameter {
   double mean = 1, deviation = 0.1;
   bool operator==(const LognormalDiameter&) const = default;
+
+  static constexpr About about{
+      "lognormal",
+      "The logarithm of the diameter is normal, cut at 3 standard deviations; mean and deviation "
+      "are those of the diameter without the cut"};
+  static constexpr auto fields() {
+    return std::tuple{field("mean", &LognormalDiameter::mean, diameter_form),
+                      field("deviation", &LognormalDiameter::deviation, diameter_deviation_form,
+                            "Standard deviation")};
+  }
 };
 
 /// Normal, cut at 3 standard deviations; mean and deviation are those without the cut.
 struct NormalDiameter {
   double mean = 1, deviation = 0.1;
   bool operator==(const NormalDiameter&) const = default;
+
+  static constexpr About about{
+      "normal", "Normal, cut at 3 standard deviations; mean and deviation without the cut"};
+  static constexpr auto fields() {
+    return std::tuple{field("mean", &NormalDiameter::mean, diameter_form),
+                      field("deviation", &NormalDiameter::deviation, diameter_deviation_form,
+                            "Standard deviation")};
+  }
 };
 
 /// Uniform in [from, to].
 struct UniformDiameter {
   double from = 0.8, to = 1.2;
   bool operator==(const UniformDiameter&) const = default;
+
+  static constexpr About about{"uniform", "Uniform between two diameters"};
+  static constexpr auto fields() {
+    return std::tuple{field("from", &UniformDiameter::from, diameter_form),
+                      field("to", &UniformDiameter::to, diameter_form)};
+  }
 };
 
 /// The diameter of every sphere of the kind, in their order: [count].
 struct ListedDiameters {
   std::vector<double> values;
   bool operator==(const ListedDiameters&) const = default;
+
+  static constexpr About about{"list", "The diameter of every sphere of the kind, in their order"};
+  static constexpr auto fields() {
+    return std::tuple{
+        field("", &ListedDiameters::values, list_of(diameter_form, 1, most_spheres, "diameters"))};
+  }
 };
 
 using DiameterLaw = std::variant<FixedDiameter, LognormalDiameter, NormalDiameter, UniformDiameter,
@@ -69,6 +108,8 @@ struct MixtureKind {
   std::uint32_t count = 0;
   DiameterLaw diameter = FixedDiameter{};
   double density = 1;  // relative
+  /// Of a single sphere: x and y, diameters, above which it is poured before all without a place.
+  std::optional<std::array<double, 2>> place = std::nullopt;
   bool operator==(const MixtureKind&) const = default;
 };
 
@@ -82,6 +123,13 @@ DiameterRange range_of(const std::vector<MixtureKind>& kinds);
 /// Returns why spheres as large do not go into the container, or nothing: periodic widths exceed
 /// two diameters of the largest sphere, other widths are at least one.
 std::optional<std::string> width_fault(const Container& container, double largest_diameter);
+
+/// All spheres of the kinds.
+std::uint64_t n_spheres_of(const std::vector<MixtureKind>& kinds);
+
+/// The kinds with about `share` of their spheres, in (0, 1], at least one of each: listed diameters
+/// are thinned evenly.
+std::vector<MixtureKind> with_share(std::vector<MixtureKind> kinds, double share);
 
 /// Draws the sizes of a realization: kind by kind in their order, sphere by sphere. Only lognormal,
 /// normal and uniform diameters take numbers from the stream. Requires kinds without faults.

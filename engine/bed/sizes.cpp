@@ -25,6 +25,14 @@ std::optional<std::string> kinds_fault(std::span<const SphereKind> kinds) {
   std::set<std::string> names;
   for (const SphereKind& kind : kinds) {
     if (kind.name.empty()) return "a kind of spheres has no name: give each a name of its own";
+    // Files of text part words at blanks and quotes.
+    const bool is_word = std::ranges::all_of(kind.name, [](char c) {
+      return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+             c == '_' || c == '-' || c == '+' || c == '.';
+    });
+    if (!is_word || kind.name.size() > longest_kind_name)
+      return "a kind of spheres is named \"" + kind.name + "\": a name has at most " +
+             std::to_string(longest_kind_name) + " letters, digits and the characters _ - + .";
     if (!names.insert(kind.name).second)
       return "two kinds of spheres are named \"" + kind.name + "\": give each a name of its own";
     if (!within(kind.density, least_density, greatest_density))
@@ -83,5 +91,12 @@ Sizes::Sizes(std::span<const double> diameters, std::vector<std::uint32_t> kinds
 
 Sizes::Sizes(std::span<const double> diameters)
     : Sizes(diameters, std::vector<std::uint32_t>(diameters.size(), 0), {{"spheres", 1}}) {}
+
+std::vector<double> diameters_of(const Sizes& sizes) {
+  std::vector<double> diameters;
+  diameters.reserve(sizes.size());
+  for (const double radius : sizes.radii()) diameters.push_back(2 * radius);
+  return diameters;
+}
 
 }  // namespace jostle::inline engine

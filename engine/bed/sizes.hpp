@@ -16,6 +16,8 @@ inline constexpr double least_diameter = 0.2, greatest_diameter = 10, greatest_s
 /// Densities, relative to that of a sphere of diameter 1 and mass 1.
 inline constexpr double least_density = 1e-3, greatest_density = 1e3;
 
+inline constexpr std::size_t longest_kind_name = 40;
+
 /// A kind of spheres: its name, and the density that its spheres share.
 struct SphereKind {
   std::string name;
@@ -63,5 +65,8 @@ class Sizes {
   std::vector<SphereKind> kinds_;
   double smallest_ = 0, largest_ = 0;
 };
+
+/// [n_spheres], diameters.
+std::vector<double> diameters_of(const Sizes& sizes);
 
 }  // namespace jostle::inline engine

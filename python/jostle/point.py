@@ -269,6 +269,51 @@ class Point:
         frame = group["position/step"][()].tolist().index(self._kept_tap(group, tap))
         return group["position/value"][frame]
 
+    # Spheres.
+
+    @cached_property
+    def _mixture(self) -> h5py.Group | None:
+        """The group of kinds and diameters; None of equal spheres."""
+        group = self._file.get(f"spheres/{self._name}")
+        if group is not None and "has_spheres_of_point" in group.attrs:
+            return self._file[f"spheres/point_{int(group.attrs['has_spheres_of_point']):04}"]
+        return group
+
+    @property
+    def is_mixture(self) -> bool:
+        """Whether spheres have sizes of their own; else all have the diameter 1."""
+        return self._mixture is not None
+
+    @property
+    def kinds(self) -> list[str]:
+        """The names of the kinds of spheres, in the order of the scene; none of equal spheres."""
+        return [] if self._mixture is None else texts(self._mixture["name"][()])
+
+    @property
+    def densities(self) -> np.ndarray:
+        """[kind]: relative densities; none of equal spheres."""
+        return np.zeros(0) if self._mixture is None else self._mixture["density"][()]
+
+    @property
+    def kind(self) -> np.ndarray:
+        """[sphere]: the kind of every sphere, an index of `kinds`; 0 of equal spheres."""
+        if self._mixture is None:
+            return np.zeros(self.n_spheres, dtype=np.uint32)
+        return self._mixture["kind"][()]
+
+    def diameters(self, realization: int = 0) -> np.ndarray:
+        """[sphere]: the diameters of a realization's spheres; 1 of equal spheres. NaN of a realization that draws
+        its own and has not begun, or has failed."""
+        realization = whole_number(realization, "realization")
+        if realization >= self.n_realizations:
+            raise NotThere(f"{self._results.path}: no realization {realization}: there are {self.n_realizations}")
+        if self._mixture is None:
+            return np.ones(self.n_spheres)
+        if "diameter" in self._mixture and self._mixture["diameter"].ndim == 1:
+            return self._mixture["diameter"][()]
+        drawn = self._file.get(f"spheres/{self._name}/diameter")
+        return np.full(self.n_spheres, np.nan) if drawn is None else drawn[realization]
+
     def contacts(self, realization: int = 0, tap: int | None = None) -> Contacts:
         """Of grains whose snapshots keep contacts: those with force, after a tap (None: the last that is
         kept)."""

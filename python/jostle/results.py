@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-LAYOUT = 1  # attribute jostle_format of the root
+LAYOUTS = (1, 2)  # attribute jostle_format of the root; 2: with mixtures
 MONTE_CARLO = ["sweeps", "acceptance", "capped", "dropped_offsets"]  # unnamed in files
 
 
@@ -86,9 +86,9 @@ def _opened(path: str, known_as: str) -> h5py.File:
 def _require_layout(file: h5py.File, known_as: str) -> None:
     layout = file.attrs.get("jostle_format")
     whole = isinstance(layout, (int, np.integer)) and not isinstance(layout, bool)
-    if not whole or int(layout) != LAYOUT:
-        what = "not written by jostle" if layout is None else f"of layout {text(layout)}, which is not {LAYOUT}"
-        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layout {LAYOUT}")
+    if not whole or int(layout) not in LAYOUTS:
+        what = "not written by jostle" if layout is None else f"of layout {text(layout)}"
+        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layouts 1 and 2")
 
 
 @reads_file

@@ -10,6 +10,14 @@ namespace {
 // Leads the bytes of a state; counts up when they change, from a number that no older state, which
 // began with its rows, can begin with.
 constexpr std::uint32_t state_format = 0xf0000004, state_format_with_motion = 0xf0000005;
+// Of mixtures whose diameters are drawn: these follow all else.
+constexpr std::uint32_t state_format_with_diameters = 0xf0000006,
+                        state_format_with_motion_and_diameters = 0xf0000007;
+
+std::uint32_t format_of(const RealizationState& state) {
+  if (state.diameters.empty()) return state.motion ? state_format_with_motion : state_format;
+  return state.motion ? state_format_with_motion_and_diameters : state_format_with_diameters;
+}
 
 }  // namespace
 
@@ -55,7 +63,7 @@ MotionState get_motion(ByteReader& reader) {
 }  // namespace
 
 void put(ByteWriter& writer, const RealizationState& state) {
-  writer.put(state.motion ? state_format_with_motion : state_format);
+  writer.put(format_of(state));
   writer.put(state.rows);
   writer.put(state.relaxing);
   writer.put(state.engine);
@@ -67,11 +75,12 @@ void put(ByteWriter& writer, const RealizationState& state) {
   }
   writer.put(state.centres);
   if (state.motion) put(writer, *state.motion);
+  if (!state.diameters.empty()) writer.put(state.diameters);
 }
 
 RealizationState get_realization_state(ByteReader& reader) {
   const auto format = reader.get<std::uint32_t>();
-  if (format != state_format && format != state_format_with_motion)
+  if (format < state_format || format > state_format_with_motion_and_diameters)
     throw std::out_of_range("a state of another version of the program");
   RealizationState state;
   state.rows = reader.get<std::uint64_t>();
@@ -85,7 +94,10 @@ RealizationState get_realization_state(ByteReader& reader) {
       (*state.fitting).*column.field = reader.get<double>();
   }
   state.centres = reader.get_vector<Vec3>();
-  if (format == state_format_with_motion) state.motion = get_motion(reader);
+  const bool has_motion =
+      format == state_format_with_motion || format == state_format_with_motion_and_diameters;
+  if (has_motion) state.motion = get_motion(reader);
+  if (format >= state_format_with_diameters) state.diameters = reader.get_vector<double>();
   return state;
 }
 

@@ -53,11 +53,12 @@ std::vector<ExportedFrame> snapshots_of(const ResultsFile& file, RealizationId i
   auto records = file.snapshots(id);
   std::erase_if(records, [](const SnapshotRecord& record) { return record.centres.empty(); });
   require(!records.empty(), file, name);
+  const auto sizes = file.sizes(id);
   std::vector<ExportedFrame> frames;
   for (SnapshotRecord& record : records) {
     ExportedFrame& frame = frames.emplace_back();
     frame.tap = record.tap;
-    frame.packing = {study.points[id.point].container, std::move(record.centres)};
+    frame.packing = {study.points[id.point].container, std::move(record.centres), sizes};
     if (!record.velocities.empty())
       frame.vectors.push_back(
           {"velocity", "velo", {"vx", "vy", "vz"}, std::move(record.velocities)});

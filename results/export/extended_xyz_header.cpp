@@ -200,10 +200,14 @@ std::optional<SizeColumns> size_named(const std::string& name) {
   std::string plain = lower(name);
   std::erase(plain, '_');
   for (const char* radius : {"radius", "radii", "particleradius", "r", "rad"})
-    if (plain == radius) return SizeColumns{.name = name, .model = sphere_radius};
+    if (plain == radius)
+      return SizeColumns{.name = name, .model = sphere_radius, .of_mixtures = plain.size() > 3};
   for (const char* diameter :
        {"diameter", "diameters", "particlediameter", "size", "d", "diam", "sigma"})
-    if (plain == diameter) return SizeColumns{.name = name, .model = 2 * sphere_radius};
+    if (plain == diameter)
+      return SizeColumns{.name = name,
+                         .model = 2 * sphere_radius,
+                         .of_mixtures = plain.ends_with("diameter") || plain == "diameters"};
   if (plain == "asphericalshape")
     return SizeColumns{.name = name, .model = sphere_radius, .zero_means = true};
   return std::nullopt;
@@ -231,6 +235,22 @@ void require_model_keys(const Keys& keys) {
   }
 }
 
+/// The kinds of a mixture, each with its density, which is 1 where none is given.
+std::vector<SphereKind> kinds_of(const Keys& keys) {
+  const auto named = keys.find("kinds");
+  if (named == keys.end()) return {};
+  std::vector<SphereKind> kinds;
+  for (const std::string& name : words_of(named->second)) kinds.push_back({name, 1});
+  const auto given = keys.find("densities");
+  if (given == keys.end()) return kinds;
+  const auto densities = words_of(given->second);
+  if (densities.size() != kinds.size())
+    refuse("kinds names {} kinds of spheres, and densities has {} numbers; give one per kind",
+           kinds.size(), densities.size());
+  for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].density = finite_number(densities[k]);
+  return kinds;
+}
+
 /// Reads Properties=name:type:columns:..., where a line must hold all of them: one that lacks a
 /// number would pass for another. Without it, a name and the positions are all.
 void read_columns(const Keys& keys, ExtendedXyzHeader& header) {
@@ -251,6 +271,7 @@ void read_columns(const Keys& keys, ExtendedXyzHeader& header) {
       positions = true;
       header.positions = column;
     }
+    if (lower(name) == "species" && type == "S" && n == 1) header.species = column;
     if (auto size = size_named(name)) {
       size->first = column;
       size->n = n;
@@ -289,23 +310,31 @@ std::size_t positive_count(const std::string& word) {
 }
 
 void require_model_size(const std::string& name, double least, double most, double model) {
-  const double close = rounding * model;
-  if (std::abs(least - model) <= close && std::abs(most - model) <= close) return;
+  if (is_model_size(least, most, model)) return;
   if (!(least > 0))
     refuse("{} is {}: every sphere must have {}, with lengths in diameters", name, least, model);
   constexpr std::array ambiguous = {"r", "rad", "d", "diam", "sigma"};
   const char* const rename = std::ranges::find(ambiguous, lower(name)) != ambiguous.end()
                                  ? ". Rename the column if it holds no sizes"
                                  : "";
-  if (most - least <= rounding * most)
+  if (are_alike(least, most))
     refuse(
         "{} is {}, and the spheres of the model have {}: lengths must be in diameters. Divide all "
         "lengths (Lattice, Origin, pos, {}) by {:.6g}{}",
         name, least, model, name, least / model, rename);
   refuse(
-      "{} is from {} to {}: spheres of several sizes are not known. All spheres must have {}, with "
-      "lengths in diameters{}",
+      "{} is from {} to {}: sizes of a mixture are read of columns named radius or diameter alone. "
+      "Rename the column, or give all spheres {}, with lengths in diameters{}",
       name, least, most, model, rename);
+}
+
+bool is_model_size(double least, double most, double model) {
+  const double close = rounding * model;
+  return std::abs(least - model) <= close && std::abs(most - model) <= close;
+}
+
+bool are_alike(double least, double most) {
+  return most - least <= rounding * most;
 }
 
 std::string periodic_directions(const Boundary& boundary) {
@@ -316,9 +345,10 @@ std::string periodic_directions(const Boundary& boundary) {
 
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment) {
   const Keys keys = CommentParser(comment).keys();
-  ExtendedXyzHeader header{.container = container_in(keys), .origin = origin_of(keys), .sizes = {}};
+  ExtendedXyzHeader header{.container = container_in(keys), .origin = origin_of(keys), .sizes = {}, .species = {}, .kinds = {}};
   require_model_keys(keys);
   read_columns(keys, header);
+  header.kinds = kinds_of(keys);
   return header;
 }
 

@@ -1,24 +1,27 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/container.hpp"
+#include "engine/bed/sizes.hpp"
 #include "engine/bed/vec3.hpp"
 
 // The comment line of an extended XYZ frame: the properties of the spheres below it.
 namespace jostle::inline results {
 
-/// A column, or several, that holds sizes of spheres: all must have the model's.
+/// A column, or several, that holds sizes of spheres.
 struct SizeColumns {
   std::string name;       // as the file spells it
   std::size_t first = 0;  // index of a word in a line
   std::size_t n = 1;
-  double model = 0;         // the only size that the model has: radius 0.5 or diameter 1
-  bool zero_means = false;  // 0 stands for "the radius", as in OVITO's aspherical shapes
+  double model = 0;          // the size of equal spheres: radius 0.5 or diameter 1
+  bool of_mixtures = false;  // named radius or diameter, so that it may hold several sizes
+  bool zero_means = false;   // 0 stands for "the radius", as in OVITO's aspherical shapes
 };
 
 struct ExtendedXyzHeader {
@@ -27,6 +30,8 @@ struct ExtendedXyzHeader {
   std::size_t positions = 1;
   std::size_t n_columns = 4;
   std::vector<SizeColumns> sizes;
+  std::optional<std::size_t> species;  // a column of names
+  std::vector<SphereKind> kinds;       // as the line lists them; empty: those that species name
 };
 
 /// Reads a comment line. Throws std::invalid_argument: whatever changes the meaning of the
@@ -43,6 +48,11 @@ double finite_number(const std::string& word);
 /// A whole number above 0, or std::invalid_argument.
 std::size_t positive_count(const std::string& word);
 
+/// Whether the sizes from `least` to `most` are the model's, but for digits that another program
+/// did not write.
+bool is_model_size(double least, double most, double model);
+/// Whether they are alike.
+bool are_alike(double least, double most);
 /// Throws std::invalid_argument where the sizes that `name` gives, from `least` to `most`, are not
 /// the model's.
 void require_model_size(const std::string& name, double least, double most, double model);

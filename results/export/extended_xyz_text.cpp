@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <optional>
 
@@ -17,10 +18,27 @@ struct Columns {
   std::span<const VectorColumn> vectors;
 };
 
+/// Without it the sizes of a mixture would not read back.
+bool lacks_radius(const Packing& packing, const Columns& columns) {
+  return packing.sizes && std::ranges::find(columns.numbers, "radius", &ParticleColumn::name) ==
+                              columns.numbers.end();
+}
+
+std::string kinds(const Packing& packing) {
+  if (!packing.sizes) return "";
+  std::string names, densities;
+  for (const SphereKind& kind : packing.sizes->kinds()) {
+    names += (names.empty() ? "" : " ") + kind.name;
+    densities += fmt::format("{}{}", densities.empty() ? "" : " ", kind.density);
+  }
+  return fmt::format(" kinds=\"{}\" densities=\"{}\"", names, densities);
+}
+
 std::string comment(const Packing& packing, const Columns& columns) {
   const Vec3 size = extent(packing.container);
-  const double height = size.z > 0 ? size.z : top_height(packing) + sphere_radius;
+  const double height = size.z > 0 ? size.z : surface_height(packing);
   std::string properties = "species:S:1:pos:R:3";
+  if (lacks_radius(packing, columns)) properties += ":radius:R:1";
   for (const ParticleColumn& column : columns.numbers) {
     const bool real = std::holds_alternative<std::vector<double>>(column.values);
     properties += fmt::format(":{}:{}:1", column.name, real ? "R" : "I");
@@ -29,17 +47,21 @@ std::string comment(const Packing& packing, const Columns& columns) {
     properties += fmt::format(":{}:R:3", column.xyz_name);
   return fmt::format("Lattice=\"{} 0 0 0 {} 0 0 0 {}\" Properties={} pbc=\"{}\" container={}",
                      size.x, size.y, height, properties,
-                     periodic_directions(Boundary(packing.container)), name_of(packing.container));
+                     periodic_directions(Boundary(packing.container)), name_of(packing.container)) +
+         kinds(packing);
 }
 
 void append_frame(std::string& text, const Packing& packing, const Columns& columns,
                   std::optional<std::uint64_t> tap) {
-  require_equal_spheres(packing, "extended XYZ files");
   text += fmt::format("{}\n{}", packing.centres.size(), comment(packing, columns));
   text += tap ? fmt::format(" tap={}\n", *tap) : "\n";
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
     const Vec3 r = packing.centres[i];
-    fmt::format_to(std::back_inserter(text), "X {} {} {}", r.x, r.y, r.z);
+    const auto& sizes = packing.sizes;
+    fmt::format_to(std::back_inserter(text), "{} {} {} {}",
+                   sizes ? sizes->kinds()[sizes->kind(i)].name : "X", r.x, r.y, r.z);
+    if (lacks_radius(packing, columns))
+      fmt::format_to(std::back_inserter(text), " {}", sizes->radius(i));
     for (const ParticleColumn& column : columns.numbers)
       text.append(1, ' ').append(cell_text(column, i));
     for (const VectorColumn& column : columns.vectors) text += cell_text(column, i);

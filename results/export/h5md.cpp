@@ -58,8 +58,7 @@ std::vector<double> centres(const ExportedFrame& frame) {
 /// The edges of the box as the rows of a matrix; an open top ends at the highest point.
 std::vector<double> edges(const ExportedFrame& frame) {
   const Boundary boundary(frame.packing.container);
-  const double height =
-      boundary.periodic_z ? boundary.height : top_height(frame.packing) + sphere_radius;
+  const double height = boundary.periodic_z ? boundary.height : surface_height(frame.packing);
   return {boundary.width_x, 0, 0, 0, boundary.width_y, 0, 0, 0, height};
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 std::string header(const ExportedFrame& frame) {
   const Vec3 size = extent(frame.packing.container);
-  const double height = size.z > 0 ? size.z : top_height(frame.packing) + sphere_radius;
+  const double height = size.z > 0 ? size.z : surface_height(frame.packing);
   const Boundary boundary(frame.packing.container);
   const auto ends = [](bool periodic) { return periodic ? "pp" : "ff"; };
   std::string columns;
@@ -33,7 +33,9 @@ std::string lammps_dump_text(std::span<const ExportedFrame> frames) {
     text += header(frame);
     for (std::size_t i = 0; i < frame.packing.centres.size(); ++i) {
       const Vec3 r = frame.packing.centres[i];
-      fmt::format_to(std::back_inserter(text), "{} 1 {} {} {}", i + 1, r.x, r.y, r.z);
+      const auto& sizes = frame.packing.sizes;
+      fmt::format_to(std::back_inserter(text), "{} {} {} {} {}", i + 1,
+                     sizes ? sizes->kind(i) + 1 : 1, r.x, r.y, r.z);
       for (const ParticleColumn& column : frame.columns)
         text.append(1, ' ').append(cell_text(column, i));
       for (const VectorColumn& column : frame.vectors) text += cell_text(column, i);

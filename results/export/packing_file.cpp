@@ -22,7 +22,8 @@ Packing read_snapshot(const std::string& path, const PackingSelector& selector) 
   std::string kept;
   for (auto record = records.rbegin(); record != records.rend(); ++record) {
     if (!selector.tap || *selector.tap == record->tap)
-      return {study.points[selector.point].container, record->centres};
+      return {study.points[selector.point].container, record->centres,
+              file.sizes({selector.point, selector.realization})};
     kept = fmt::format("{}{}{}", record->tap, kept.empty() ? "" : ", ", kept);
   }
   throw ResultsError(

@@ -55,8 +55,12 @@ Packing wrapped_inside(const Packing& packing) {
 }
 
 std::vector<ParticleColumn> particle_columns(const Packing& packing) {
-  require_equal_spheres(packing, "exported columns");
   const Packing moved = wrapped_inside(packing);
+  if (packing.sizes)
+    return {{"radius", packing.sizes->radii()},
+            {"kind", packing.sizes->kind_of()},
+            {"mass", packing.sizes->masses()},
+            {"coordination", coordination_numbers(moved)}};
   const NeighbourTable nearest = nearest_neighbours(moved, 12);
   std::vector<double> q6;
   for (const BondOrder& order : bond_order(nearest)) q6.push_back(order.q6);

@@ -79,6 +79,10 @@ RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realizatio
     motion_->add(static_cast<std::uint32_t>(realizations_.size()), *head.state->motion,
                  point_.container);
   }
+  if (head.state && point_.mixture && point_.mixture->drawn() && !head.state->diameters.empty()) {
+    if (!diameters_) diameters_.emplace(file_, number_, n_realizations_, point_.n_spheres);
+    diameters_->write(static_cast<std::uint32_t>(realizations_.size()), head.state->diameters);
+  }
   if (head.state) write_restart(*head.state);
   realizations_.push_back(std::move(realization));
   return head.status;
@@ -118,6 +122,7 @@ void PointWriter::finish() {
   write_fittings();
   write_motion();
   write_timing();
+  if (diameters_) diameters_->finish();
 }
 
 /// The columns and their moments, a block of taps at a time. Taps beyond the farthest realization's

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ensemble/motion/motion_records.hpp"
+#include "results/file/mixtures.hpp"
 #include "results/file/snapshot_statistics.hpp"
 #include "results/hdf5/write.hpp"
 #include "results/stored_realization.hpp"
@@ -55,6 +56,7 @@ class PointWriter {
   std::vector<Work> work_;
   std::vector<std::optional<FittingReport>> fittings_;  // [n_realizations]
   std::optional<MotionRecords> motion_;                 // where it is followed
+  std::optional<DrawnDiameters> diameters_;             // of mixtures that draw them
   SnapshotStatistics statistics_;                       // of snapshots
 };
 

@@ -33,7 +33,7 @@ bool write_points(const WritableHdf5File& file, const FileContent& content) {
 
 void write_hdf5(const std::string& path, const FileContent& content) {
   WritableHdf5File file(path);
-  write_root(file);
+  write_root(file, content.study);
   write_study(file, content.study);
   RunState state = RunState::running;
   if (content.realization)

@@ -4,19 +4,22 @@
 #include <span>
 
 #include "results/file/layout.hpp"
+#include "results/file/mixtures.hpp"
 #include "results/file/study_writer.hpp"
 #include "results/hdf5/read.hpp"
 
 namespace jostle::inline results {
 namespace {
 
-void check_layout(hid_t file) {
+/// Returns the layout.
+std::uint32_t check_layout(hid_t file) {
   if (checked(H5Aexists(file, "jostle_format")) == 0)
     throw Hdf5Error("not written by jostle: the root has no attribute jostle_format");
   const auto version = read_number_attribute<std::uint32_t>(file, "jostle_format");
-  if (version != layout_version)
-    throw Hdf5Error(
-        fmt::format("layout {}, but this jostle reads layout {}", version, layout_version));
+  if (version != layout_version && version != layout_of_mixtures)
+    throw Hdf5Error(fmt::format("layout {}, but this jostle reads layouts {} and {}", version,
+                                layout_version, layout_of_mixtures));
+  return version;
 }
 
 Container read_container(hid_t group) {
@@ -171,6 +174,15 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
   return point;
 }
 
+/// The layout tells whether there are mixtures, so that no reader takes one for equal spheres.
+void check_mixtures(hid_t file, std::uint32_t layout, const Study& study) {
+  const bool mixtures = std::ranges::any_of(
+      study.points, [](const StudyPoint& point) { return point.mixture != nullptr; });
+  if (mixtures != (layout == layout_of_mixtures) || mixtures != exists(file, spheres_folder))
+    throw Hdf5Error(fmt::format("layout {} {} the sizes of spheres: not written by jostle", layout,
+                                mixtures || layout == layout_version ? "with" : "without"));
+}
+
 RunState state_named(const std::string& name) {
   for (const RunState state : {RunState::running, RunState::interrupted, RunState::complete})
     if (name == name_of(state)) return state;
@@ -180,7 +192,7 @@ RunState state_named(const std::string& name) {
 }  // namespace
 
 Study read_study(hid_t file) {
-  check_layout(file);
+  const std::uint32_t layout = check_layout(file);
   Study study;
   const Hdf5Handle scene = open_group(file, "scene");
   study.scene = read_text(scene, "verbatim");
@@ -191,9 +203,13 @@ Study read_study(hid_t file) {
   const SweptValues swept = read_swept_values(sweep, n_points);
   KeptInAll kept;
   for (std::size_t p = 0; p < n_points; ++p) {
-    study.points.push_back(read_point(sweep, study.points, swept));
+    StudyPoint point = read_point(sweep, study.points, swept);
+    if (layout == layout_of_mixtures)
+      point.mixture = read_mixture(file, study.points, point.n_spheres);
+    study.points.push_back(std::move(point));
     kept.add(study.points.back());
   }
+  check_mixtures(file, layout, study);
   return study;
 }
 

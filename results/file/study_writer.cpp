@@ -8,6 +8,7 @@
 
 #include "engine/number_reading.hpp"
 #include "results/file/layout.hpp"
+#include "results/file/mixtures.hpp"
 #include "results/hdf5/write.hpp"
 
 namespace jostle::inline results {
@@ -204,8 +205,10 @@ void write_table(hid_t sweep, const Study& study) {
 
 }  // namespace
 
-void write_root(hid_t file) {
-  write_attribute(file, "jostle_format", layout_version);
+void write_root(hid_t file, const Study& study) {
+  const bool mixture = std::ranges::any_of(
+      study.points, [](const StudyPoint& point) { return point.mixture != nullptr; });
+  write_attribute(file, "jostle_format", mixture ? layout_of_mixtures : layout_version);
   write_h5md_root(file);
 }
 
@@ -232,6 +235,7 @@ void write_study(hid_t file, const Study& study) {
     if (!keeps_the_same(study.points[as], study.points[p])) as = p;
     write_point(sweep, p, study.points[p], as);
   }
+  write_mixtures(file, study);
 }
 
 void write_provenance(hid_t file, const FileContent& content, RunState state) {

@@ -7,7 +7,7 @@
 // /provenance.
 namespace jostle::inline results {
 
-void write_root(hid_t file);
+void write_root(hid_t file, const Study& study);
 /// The group /h5md alone, of any H5MD file.
 void write_h5md_root(hid_t file);
 void write_study(hid_t file, const Study& study);

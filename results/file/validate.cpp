@@ -148,6 +148,12 @@ bool is_followed(const MotionState& motion, const MotionSettings& settings, std:
   return true;
 }
 
+/// The diameters that its realization drew, where it draws any.
+bool has_its_sizes(const RealizationState& state, const StudyPoint& point) {
+  if (!point.mixture || !point.mixture->drawn()) return state.diameters.empty();
+  return !sizes_fault(state.diameters, point.mixture->kind_of, point.mixture->kinds);
+}
+
 }  // namespace
 
 void validate(const RealizationState& state, const StudyPoint& point) {
@@ -158,6 +164,7 @@ void validate(const RealizationState& state, const StudyPoint& point) {
   require(
       state.centres.size() == point.n_spheres && std::ranges::all_of(state.centres, is_position),
       "a restart state without its spheres");
+  require(has_its_sizes(state, point), "a restart state without the sizes of its spheres");
   // Windows are taken from the bed at tap 0; until that is recorded there are none.
   const std::size_t n_windows = state.rows > 0 ? point.observables.size() : 0;
   require(state.observable_windows.size() == n_windows, "a restart state of other observables");

@@ -18,13 +18,19 @@ namespace {
 
 using Clock = ProcessorClock;
 
-constexpr double narrowest = 8;             // diameters, of a footprint that is cut
-constexpr std::uint32_t most_oversize = 5;  // times max_spheres, before depth is cut as well
+constexpr double narrowest = 8;              // diameters, of a footprint that is cut
+constexpr double narrowest_for_largest = 3;  // and in diameters of the largest sphere
+constexpr std::uint32_t most_oversize = 5;   // times max_spheres, before depth is cut as well
+
+double narrowest_cut(const Plan& plan) {
+  if (plan.kinds.empty()) return narrowest;
+  return std::max(narrowest, narrowest_for_largest * range_of(plan.kinds).greatest);
+}
 
 /// A width times about `factor`, never below the narrowest; a whole number of `unit`s of it where
 /// a lattice wants that.
-double cut_width(double width, double factor, double unit) {
-  const double least = std::min(width, std::max(narrowest, width * factor));
+double cut_width(double width, double factor, double unit, double least_width) {
+  const double least = std::min(width, std::max(least_width, width * factor));
   if (unit == 0) return least;
   const double whole = std::round(width / unit);
   return width * std::min(whole, std::ceil(least / unit)) / whole;
@@ -51,13 +57,14 @@ Container with_cut_footprint(const Plan& plan, double share) {
   Vec3 size = extent(plan.container);
   const LatticeUnits units = lattice_units(plan);
   const double factor = std::sqrt(share);
-  const double left_x = cut_width(size.x, factor, units.x) / size.x;
-  const double left_y = cut_width(size.y, factor, units.y) / size.y;
+  const double least = narrowest_cut(plan);
+  const double left_x = cut_width(size.x, factor, units.x, least) / size.x;
+  const double left_y = cut_width(size.y, factor, units.y, least) / size.y;
   if (boundary.tube) {
-    size.x = cut_width(size.x, factor, 0);
+    size.x = cut_width(size.x, factor, 0, least);
   } else {
-    size.x = cut_width(size.x, share / left_y, units.x);
-    size.y = cut_width(size.y, share / left_x, units.y);
+    size.x = cut_width(size.x, share / left_y, units.x, least);
+    size.y = cut_width(size.y, share / left_x, units.y, least);
   }
   return *container_of(name_of(plan.container), size);
 }
@@ -125,6 +132,7 @@ Plan short_plan(const Plan& plan, const CutBed& bed, const std::vector<std::size
   Plan cut = plan;
   cut.container = bed.container;
   cut.n_spheres = bed.n_spheres;
+  cut.kinds = bed.kinds;
   cut.snapshots.taps = {};
   cut.protocol = {};
   for (const std::size_t stage : stages) {
@@ -220,19 +228,37 @@ class Pilot {
   bool settled_ = true;
 };
 
+/// The bed with so much of the plan's spheres, at least one of each kind; places move with the
+/// sides.
+void set_share(CutBed& bed, const Plan& plan, double share) {
+  if (plan.kinds.empty()) {
+    bed.n_spheres = std::max(1u, static_cast<std::uint32_t>(std::lround(share * plan.n_spheres)));
+    return;
+  }
+  bed.kinds = with_share(plan.kinds, share);
+  bed.n_spheres = static_cast<std::uint32_t>(n_spheres_of(bed.kinds));
+  const Boundary whole(plan.container), cut(bed.container);
+  for (MixtureKind& kind : bed.kinds) {
+    if (!kind.place) continue;
+    (*kind.place)[0] *= cut.width_x / whole.width_x;
+    (*kind.place)[1] *= cut.width_y / whole.width_y;
+  }
+}
+
 }  // namespace
 
 CutBed cut_down(const Plan& plan, std::uint32_t max_spheres) {
-  CutBed bed{plan.container, plan.n_spheres};
+  CutBed bed{plan.container, plan.n_spheres, true, plan.kinds};
   const bool may_be_cut =
       has_gravity(plan.container) && !std::holds_alternative<GivenPacking>(plan.start);
   if (!may_be_cut || plan.n_spheres <= max_spheres) return bed;
   const double share = static_cast<double>(max_spheres) / plan.n_spheres;
   bed.container = with_cut_footprint(plan, share);
   const double left = footprint_area(bed.container) / footprint_area(plan.container);
-  bed.n_spheres = std::max(1u, static_cast<std::uint32_t>(std::lround(left * plan.n_spheres)));
+  set_share(bed, plan, left);
   bed.as_deep = bed.n_spheres <= most_oversize * max_spheres;
-  if (!bed.as_deep) bed.n_spheres = most_oversize * max_spheres;
+  if (!bed.as_deep)
+    set_share(bed, plan, static_cast<double>(most_oversize * max_spheres) / plan.n_spheres);
   return bed;
 }
 

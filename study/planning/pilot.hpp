@@ -33,11 +33,13 @@ PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_sp
 struct CutBed {
   Container container;
   std::uint32_t n_spheres = 0;
-  bool as_deep = true;  // false where the least footprint still holds too many spheres
+  bool as_deep = true;               // false where the least footprint still holds too many spheres
+  std::vector<MixtureKind> kinds{};  // of a mixture, at least one sphere of each
 };
 
 /// A bed of about `max_spheres` spheres on a smaller footprint, as deep as the plan's: relaxations
-/// take as many sweeps. Footprints stay at least 8 diameters wide, and whole lattices; a column of
+/// take as many sweeps. Footprints stay at least 8 diameters wide, and 3 of the largest sphere of a
+/// mixture, and whole lattices; a column of
 /// more than five times `max_spheres` on such a footprint is made shallower. Beds that are small
 /// enough, packings from files and boxes without gravity stay as they are.
 CutBed cut_down(const Plan& plan, std::uint32_t max_spheres);

@@ -49,7 +49,7 @@ class PackingFiles {
  public:
   explicit PackingFiles(fs::path folder) : folder_(std::move(folder)) {}
 
-  std::vector<Vec3> load(const PackingFile& file) {
+  Packing load(const PackingFile& file) {
     const PackingSelector selector{.point = file.point,
                                    .realization = file.realization,
                                    .tap = file.frame ? file.frame : file.tap};
@@ -57,7 +57,7 @@ class PackingFiles {
     paths_.push_back(path);
     Packing packing = read_packing(path, selector);
     packed_[packing.centres.data()] = {path, packing.container};  // which moving does not change
-    return std::move(packing.centres);
+    return packing;
   }
   const std::vector<std::string>& paths() const { return paths_; }
 

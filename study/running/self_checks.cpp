@@ -107,7 +107,7 @@ std::string look_for_overlaps() {
     while (!realization.finished()) {
       const Slice slice = realization.advance(1'000'000);
       if (!slice.row) continue;
-      require_no_overlap({plan.container, realization.state().centres},
+      require_no_overlap({plan.container, realization.state().centres, realization.sizes()},
                          fmt::format("point {}, tap {}", plan.point_id, slice.row->tap));
       ++taps;
     }

@@ -201,7 +201,8 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   ensemble.read = [&file, &container, point](std::uint32_t r) {
     std::vector<KeptPacking> packings;
     for (SnapshotRecord& snapshot : file.positions({point, r})) {
-      packings.push_back({snapshot.tap, {container, std::move(snapshot.centres)}});
+      packings.push_back(
+          {snapshot.tap, {container, std::move(snapshot.centres), file.sizes({point, r})}});
     }
     return packings;
   };

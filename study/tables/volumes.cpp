@@ -57,9 +57,10 @@ struct SpheresOf {
     const auto& quantiles = std::get<QuantileWindow>(bulk.window);
     return VolumeOf{n() * (quantiles.high - quantiles.low)};
   }
-  std::optional<VolumeOf> operator()(const CrystallineFraction&) const { return std::nullopt; }
-  std::optional<VolumeOf> operator()(const GrownLayers&) const { return std::nullopt; }
-  std::optional<VolumeOf> operator()(const OrderedHeight&) const { return std::nullopt; }
+  template <class Other>
+  std::optional<VolumeOf> operator()(const Other&) const {
+    return std::nullopt;
+  }
 };
 
 VolumeOf volume_of(const Scene& scene, const std::string& observable, double mean,
@@ -90,6 +91,8 @@ std::vector<std::uint32_t> common_realizations(const ResultsFile& file, const So
                                                const std::string& observable) {
   std::vector<std::uint32_t> common;
   for (const Source& source : sources.all) {
+    if (file.study().points[source.point].mixture)
+      throw BadInput("volumes per sphere are defined for equal spheres, and these are a mixture");
     const ObservableSeries series(file, source.point, observable);
     require_taps(file, source.point, series.n_realizations());
     if (source.taps.last >= series.n_rows())

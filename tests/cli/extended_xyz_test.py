@@ -124,16 +124,56 @@ class ExtendedXyz(Case):
         for name, model in (("radius", 0.5), ("Radius", 0.5), ("diameter", 1.0), ("particle_radius", 0.5),
                             ("aspherical_shape", 0.5)):
             header = HEADER.replace("pos:R:3", f"pos:R:3:{name}:R:1")
-            several = [[*row, 0.3 if i % 2 else model] for i, row in enumerate(self.rows)]
-            last = [[*row, 0.3 if i == 47 else model] for i, row in enumerate(self.rows)]
-            for rows in (several, last):
-                self.refused_by_all(frame(rows, header), f"{name} is from 0.3 to {model:g}: spheres of several sizes")
+            if name == "aspherical_shape":
+                several = [[*row, 0.3 if i % 2 else model] for i, row in enumerate(self.rows)]
+                last = [[*row, 0.3 if i == 47 else model] for i, row in enumerate(self.rows)]
+                for rows in (several, last):
+                    self.refused_by_all(frame(rows, header), f"{name} is from 0.3 to {model:g}: sizes of a mixture")
             self.refused_by_all(frame([[*row, 0.3] for row in self.rows], header),
                                 f"{name} is 0.3, and the spheres of the model have {model:g}.*Divide all lengths")
         self.refused_by_all(frame(self.rows, HEADER + " radius=0.3"), "radius is 0.3")
         self.refused_by_all(frame(self.rows, HEADER + ' Diameter="0.5"'), "diameter is 0.5")
         self.refused_by_all(frame(self.rows, HEADER + " units=mm"), "must be in diameters")
         self.read_alike(frame(self.rows, HEADER + " radius=0.5 units=diameters"))
+
+    def test_sizes_of_a_mixture_are_read(self):
+        """Sizes by radius and by diameter, by every command that takes them; kinds by species."""
+        for name, small, large in (("radius", 0.3, 0.5), ("particle_radius", 0.3, 0.5), ("Diameter", 0.6, 1.0)):
+            header = HEADER.replace("pos:R:3", f"pos:R:3:{name}:R:1")
+            rows = [["s" if i % 2 else "l", *row[1:], small if i % 2 else large] for i, row in enumerate(self.rows)]
+            self.write(frame(rows, header), "a.xyz")
+            self.jostle("export", "a.xyz", "--format", "extxyz", "-o", "b.xyz", "--force")
+            self.assertIn('kinds="l s"', (self.folder / "b.xyz").read_text().splitlines()[1])
+            for file in ("a.xyz", "b.xyz"):
+                self.write(changed(START, start={"file": file}))
+                self.run_scene("-o", "start.h5", "--force")
+                with h5py.File(self.folder / "start.h5") as h5:
+                    self.assertEqual(h5.attrs["jostle_format"], 2)
+                    self.assertEqual(h5["spheres/point_0000/name"].asstr()[()].tolist(), ["l", "s"])
+                    np.testing.assert_allclose(h5["spheres/point_0000/diameter"][()], [1.0, 0.6] * 24)
+            refused = self.jostle("structure", "a.xyz", "--settings", REGION, expect=None)
+            self.assertIn(refused.returncode, (BAD_INPUT, BROKEN))
+            self.assertIn("measures of structure require equal spheres", refused.stderr)
+
+    def test_listed_kinds_must_match_those_of_the_file(self):
+        header = HEADER.replace("pos:R:3", "pos:R:3:radius:R:1")
+        rows = [["s" if i % 2 else "l", *row[1:], 0.3 if i % 2 else 0.5] for i, row in enumerate(self.rows)]
+        self.write(frame(rows, header), "a.xyz")
+        small, large = {"name": "s", "count": 24, "diameter": 0.6}, {"name": "l", "count": 24}
+        observe = ["mean_height", {"kind_height": {"kind": "s"}}, "segregation"]
+        self.write(changed(START, spheres=[small, large | {"density": 3}], observe=observe))
+        self.run_scene("-o", "start.h5", "--force")
+        with h5py.File(self.folder / "start.h5") as h5:
+            self.assertEqual(h5["spheres/point_0000/name"].asstr()[()].tolist(), ["s", "l"])
+            self.assertEqual(h5["spheres/point_0000/density"][()].tolist(), [1, 3])
+            self.assertEqual(h5["spheres/point_0000/kind"][()].tolist(), [1, 0] * 24)
+        for spheres, says in (([small | {"count": 23}, large | {"count": 25}], '24 spheres of kind "s"'),
+                              ([small | {"diameter": 0.7}, large], "diameter 0.6"),
+                              ([small | {"name": "t"}, large], 'kind "l"|kind "s"'),
+                              ([small], "24")):
+            self.write(changed(START, spheres=spheres, observe=["mean_height"]))
+            refused = self.jostle("check", "scene.json", "--no-pilot", expect=BAD_INPUT)
+            self.assertRegex(refused.stderr, says)
 
     def test_sizes_by_their_short_names(self):
         for name, model in (("r", 0.5), ("rad", 0.5), ("d", 1.0), ("diam", 1.0), ("sigma", 1.0), ("R", 0.5)):

@@ -46,17 +46,18 @@ class SmallInputs(Case):
             self.assertAlmostEqual(fractions[0], 0.5411, delta=5e-5)
             self.assertLess(heights[1], 1.02 * HEIGHT)
 
-    def test_spheres_of_two_sizes_are_refused(self):
+    def test_spheres_of_two_sizes_are_read_or_refused_by_name(self):
         self.take("radius_two_sizes.xyz", "st_o_z.json")
         scene = json.loads((self.folder / "st_o_z.json").read_text())
         scene["start"]["file"] = "radius_two_sizes.xyz"
         self.write(scene)
-        for command in (["structure", "radius_two_sizes.xyz", "--part", "profile"],
-                        ["run", "scene.json", "--no-progress"], ["check", "scene.json", "--no-pilot"],
-                        ["export", "radius_two_sizes.xyz", "--format", "lammps"]):
-            done = self.jostle(*command, expect=None)
-            self.assertIn(done.returncode, (BAD_INPUT, BROKEN), command)
-            self.assertRegex(done.stderr, r"radius_two_sizes\.xyz: line \d+: radius is from 0\.3 to 0\.5")
+        done = self.jostle("structure", "radius_two_sizes.xyz", "--part", "profile", expect=None)
+        self.assertIn(done.returncode, (BAD_INPUT, BROKEN))
+        self.assertIn("measures of structure require equal spheres", done.stderr)
+        self.jostle("check", "scene.json", "--no-pilot")
+        self.jostle("export", "radius_two_sizes.xyz", "--format", "lammps", "-o", "two.dump")
+        radii = {line.split()[5] for line in (self.folder / "two.dump").read_text().splitlines()[9:]}
+        self.assertEqual(radii, {"0.3", "0.5"})
 
     # Pairs (kind: order/pair_correlation_test.cpp).
 

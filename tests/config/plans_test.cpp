@@ -67,7 +67,7 @@ TEST_CASE("A packing file is loaded once for all points that name it") {
   std::map<PackingFile, int> loads;
   const auto load = [&](const PackingFile& file) {
     ++loads[file];
-    return std::vector<Vec3>{{1, 1, 0.5}, {3, 3, file.tap ? 0.5 : 0.75}};
+    return Packing{PeriodicBox{8, 8}, {{1, 1, 0.5}, {3, 3, file.tap ? 0.5 : 0.75}}};
   };
   const auto plans = make_plans(scene, load);
   REQUIRE(plans.size() == 4);
@@ -81,7 +81,9 @@ TEST_CASE("A packing file is loaded once for all points that name it") {
 
 TEST_CASE("A packing file with another number of spheres is a start that cannot be") {
   const Scene scene = scene_of(text_of(good_scenes / "from_results.json"));
-  const auto load = [](const PackingFile&) { return std::vector<Vec3>(512); };
+  const auto load = [](const PackingFile&) {
+    return Packing{PeriodicBox{8, 8}, std::vector<Vec3>(512)};
+  };
   CHECK_THROWS_WITH(make_plans(scene, load),
                     "earlier.h5 holds 512 spheres, the scene 4096: set \"spheres\" to 512");
   CHECK_THROWS_AS(make_plans(scene, load), StartError);

@@ -40,6 +40,9 @@ RealizationState begin_state(const StudyPoint& point, RealizationId id) {
   RealizationState state;
   for (std::uint32_t i = 0; i < point.n_spheres; ++i)
     state.centres.push_back({noise(i, id.realization), noise(i, point.id), 0.5 + i});
+  if (point.mixture && point.mixture->drawn())
+    for (std::uint32_t i = 0; i < point.n_spheres; ++i)
+      state.diameters.push_back(0.8 + 0.4 * noise(1000 + i, 7 * point.id + id.realization));
   keep(state, {});
   state.observable_windows = {{0, 0}, {1, 3}};
   state.fitting = {.spheres_moved = 3.0 + id.realization,
@@ -132,7 +135,22 @@ class Rows : public Sink {
 
 }  // namespace
 
+namespace {
+
+std::shared_ptr<const PointSpheres> spheres(const StudySize& sizes) {
+  if (sizes.kinds == StudySpheres::equal) return nullptr;
+  PointSpheres spheres{{{"small", 1}, {"large", 2.5}}, {}, {}};
+  for (std::uint32_t i = 0; i < sizes.spheres; ++i) {
+    spheres.kind_of.push_back(i % 2);
+    if (sizes.kinds == StudySpheres::fixed) spheres.diameters.push_back(1 + 0.4 * (i % 2));
+  }
+  return std::make_shared<const PointSpheres>(std::move(spheres));
+}
+
+}  // namespace
+
 Study study(const StudySize& sizes) {
+  const auto mixture = spheres(sizes);
   Study study;
   study.scene = "{\"name\": \"synthetic\"} // as typed, with an \xc3\xbc\n";
   study.resolved_scene = fmt::format("taps {}, realizations {}", sizes.taps, sizes.realizations);
@@ -153,6 +171,7 @@ Study study(const StudySize& sizes) {
     point.snapshots.velocities = point.snapshots.contacts = true;
     point.snapshots.granular_temperature = point.snapshots.forces = true;
     point.snapshots.driven_temperature = true;
+    point.mixture = mixture;
     study.points.push_back(point);
   }
   return study;

@@ -11,10 +11,15 @@
 // their state as real ones do, so that a wrong restart gives wrong rows.
 namespace jostle::synthetic {
 
+/// What the spheres are: equal, a mixture of fixed diameters, or one whose realizations draw
+/// theirs.
+enum class StudySpheres { equal, fixed, drawn };
+
 struct StudySize {
   std::uint32_t points = 2, realizations = 3, spheres = 5;
   std::uint64_t taps = 6;
   std::vector<std::uint64_t> snapshot_taps = {0, 2, 6};
+  StudySpheres kinds = StudySpheres::equal;
 };
 
 /// A study with two observables; its resolved scene names the sizes.

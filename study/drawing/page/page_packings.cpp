@@ -182,13 +182,22 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   std::uint32_t largest = 0;
   std::size_t most_there = 0;
   const std::size_t n_points = file.study().points.size();
+  bool has_mixtures = false;
   for (const std::size_t point : evenly_spread(n_points, most_shown_points)) {
+    if (file.study().points[point].mixture) {
+      has_mixtures = true;
+      continue;
+    }
     KeptPoint kept = kept_of(file, static_cast<std::uint32_t>(point));
     if (kept.realizations.empty()) continue;
     largest = std::max(largest, kept.n_spheres);
     most_there = std::max(most_there, kept.of);
     points.push_back(std::move(kept));
   }
+  if (has_mixtures)
+    left_out.push_back(
+        "packings of mixtures are not drawn: the page draws spheres of one diameter; export them "
+        "to look at them in another program");
   if (points.empty()) return Json::array();
   const auto most = static_cast<std::size_t>(static_cast<double>(room) /
                                              (bytes_of_a_sphere * std::max(1u, largest) + 200));

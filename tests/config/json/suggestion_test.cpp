@@ -26,7 +26,7 @@ TEST_CASE("The nearest candidate is suggested, and none that is far") {
 TEST_CASE("A quantity that papers name otherwise has a hint, a misspelt key its nearest") {
   const std::vector<std::string> keys{"spheres", "start", "protocol"};
   CHECK(key_hint("acceleration", keys).find("Gamma") != std::string::npos);
-  CHECK(key_hint("polydispersity", keys).find("one diameter") != std::string::npos);
+  CHECK(key_hint("polydispersity", keys).find("kinds of a mixture") != std::string::npos);
   CHECK(key_hint("friction", keys).find("discrete_element") != std::string::npos);
   CHECK(key_hint("sphere", keys) == " Did you mean \"spheres\"?");
   CHECK(key_hint("colour", keys).empty());

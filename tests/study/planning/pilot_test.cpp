@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "engine/bed/boundary.hpp"
 #include "tests/monte_carlo_plan.hpp"
 
 using namespace jostle;
@@ -118,4 +119,28 @@ TEST_CASE("What is followed of the motion is counted in the memory") {
   large.protocol = {{Dilate{0.02}, 1}};
   large.motion = plan.motion;
   CHECK(pilot(large, 1'000'000).bytes > 4 * motion_bytes(*plan.motion, 40'000));
+}
+
+TEST_CASE("A mixture is cut kind by kind, and keeps at least one sphere of each") {
+  Plan plan = plan_of(PeriodicBox{200, 200}, 0);
+  std::vector<double> listed(1000, 1.0);
+  listed.back() = 3;
+  plan.kinds = {{"small", 398'000, LognormalDiameter{1, 0.1}},
+                {"listed", 1000, ListedDiameters{listed}},
+                {"large", 999, FixedDiameter{4}},
+                {"intruder", 1, FixedDiameter{6}, 1, {{100, 50}}}};
+  plan.n_spheres = 400'000;
+  const CutBed bed = cut_down(plan, 20'000);
+  REQUIRE(bed.kinds.size() == 4);
+  CHECK(bed.n_spheres == n_spheres_of(bed.kinds));
+  CHECK(bed.n_spheres <= 20'100);
+  CHECK(bed.kinds[3].count == 1);
+  CHECK(bed.kinds[2].count == Approx(50).margin(1));
+  CHECK(bed.kinds[0].count == Approx(19'900).epsilon(0.01));
+  CHECK(std::get<ListedDiameters>(bed.kinds[1].diameter).values.size() == bed.kinds[1].count);
+  const Boundary cut(bed.container);
+  CHECK((*bed.kinds[3].place)[0] == Approx(cut.width_x / 2));
+  CHECK((*bed.kinds[3].place)[1] == Approx(cut.width_y / 4));
+  CHECK_FALSE(width_fault(bed.container, 6));
+  CHECK(depth(bed) == Approx(400'000 / 40'000.0).epsilon(1e-2));
 }

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/parts/parts.hpp"
+
+namespace jostle::inline config {
+
+namespace {
+
+constexpr Whole count_form{1, most_spheres};
+constexpr auto kinds_form = list_of(Object<MixtureKind>{}, 1, most_kinds, "kinds of spheres");
+
+/// A number, or a law under its name.
+struct DiameterForm {};
+using SpreadDiameter =
+    std::variant<LognormalDiameter, NormalDiameter, UniformDiameter, ListedDiameters>;
+
+bool read_value(const DiameterForm&, const Reader& in, DiameterLaw& into) {
+  if (in.value().is_number()) {
+    FixedDiameter fixed;
+    const bool read = read_value(diameter_form, in, fixed.value);
+    into = fixed;
+    return read;
+  }
+  if (!in.value().is_object()) {
+    in.wrong_type(fmt::format("{}, or an object with one of the keys {}", expected(diameter_form),
+                              listed(names_of<SpreadDiameter>())));
+    return false;
+  }
+  SpreadDiameter spread;
+  if (!read_value(OneOf<SpreadDiameter>{}, in, spread)) return false;
+  std::visit([&](auto& law) { into = std::move(law); }, spread);
+  return in.sound();
+}
+Json written_value(const DiameterForm&, const DiameterLaw& diameter) {
+  return std::visit(
+      []<class Law>(const Law& law) -> Json {
+        if constexpr (std::is_same_v<Law, FixedDiameter>) {
+          return plain_number(law.value);
+        } else {
+          return written_value(OneOf<SpreadDiameter>{}, SpreadDiameter(law));
+        }
+      },
+      diameter);
+}
+Json value_schema(const DiameterForm&, Definitions& definitions) {
+  return either(value_schema(diameter_form, definitions),
+                value_schema(OneOf<SpreadDiameter>{}, definitions));
+}
+
+/// [x, y]
+struct PlaceForm {};
+constexpr Number coordinate_form{between(0, widest_container), "diameters"};
+
+bool read_value(const PlaceForm&, const Reader& in, std::array<double, 2>& place) {
+  if (!in.is_list(2, 2, "numbers, x and y")) return false;
+  const bool x = read_value(coordinate_form, in.element(0), place[0]);
+  const bool y = read_value(coordinate_form, in.element(1), place[1]);
+  return x && y;
+}
+Json written_value(const PlaceForm&, const std::array<double, 2>& place) {
+  return Json::array({plain_number(place[0]), plain_number(place[1])});
+}
+Json value_schema(const PlaceForm&, Definitions& definitions) {
+  return {{"type", "array"},
+          {"minItems", 2},
+          {"maxItems", 2},
+          {"items", value_schema(coordinate_form, definitions)}};
+}
+
+constexpr std::tuple kind_fields{
+    field("name", &MixtureKind::name, kind_name_form,
+          "Name of the kind, by which observables and files know it",
+          {.required = "the name of the kind"}),
+    field("count", &MixtureKind::count, count_form, "Number of spheres of the kind",
+          {.required = "the number of spheres of the kind"}),
+    field("diameter", &MixtureKind::diameter, DiameterForm{},
+          "One diameter for all spheres of the kind, or a law from which every realization draws "
+          "them"),
+    field("density", &MixtureKind::density, Number{between(least_density, greatest_density)},
+          "Density relative to that of a sphere of mass 1 and diameter 1"),
+    field("place", &MixtureKind::place, PlaceForm{},
+          "Of a single sphere: x and y, diameters, above which it is poured, before all spheres "
+          "without a place")};
+
+}  // namespace
+
+bool read_part(const Reader& in, MixtureKind& kind) {
+  if (!read_object(kind_fields, in, kind)) return false;
+  const auto diameter = in.find("diameter");
+  if (diameter && in.sound()) {
+    if (const auto fault = diameter_fault(kind.diameter, kind.count)) diameter->fault(*fault);
+  }
+  const auto place = in.find("place");
+  if (place && in.sound() && kind.count != 1)
+    place->fault(
+        fmt::format("a place is that of one sphere, and the kind has {}: set \"count\" to "
+                    "1, or leave the place out",
+                    kind.count));
+  return true;
+}
+Json written_part(const MixtureKind& kind) {
+  return written_object(kind_fields, kind);
+}
+Json part_schema(std::type_identity<MixtureKind>, Definitions& definitions) {
+  return object_schema(kind_fields, definitions).json();
+}
+
+void read_spheres(const Reader& in, Scene& scene) {
+  if (!in.value().is_array()) {
+    if (in.value().is_number()) {
+      read_value(count_form, in, scene.n_spheres);
+    } else {
+      in.wrong_type(expected(count_form) + ", or a list of kinds of spheres");
+    }
+    return;
+  }
+  read_value(kinds_form, in, scene.kinds);
+  if (!in.sound()) return;
+  for (std::string& fault : mixture_faults(scene.kinds)) in.fault(std::move(fault));
+  if (in.sound()) scene.n_spheres = static_cast<std::uint32_t>(n_spheres_of(scene.kinds));
+}
+
+Json written_spheres(const Scene& scene) {
+  if (scene.kinds.empty()) return std::uint64_t{scene.n_spheres};
+  return written_value(kinds_form, scene.kinds);
+}
+
+Json spheres_schema(Definitions& definitions) {
+  return either(value_schema(count_form, definitions), value_schema(kinds_form, definitions));
+}
+
+std::vector<Observable> default_observables(const std::vector<MixtureKind>& kinds) {
+  constexpr std::size_t most = 10;  // heights of kinds, each a column of every series
+  std::vector<Observable> observables{MeanHeight{}, BottomFraction{}, BulkFraction{}};
+  for (const MixtureKind& kind : kinds) {
+    const Observable height = KindHeight{kind.name};
+    const bool is_new = std::ranges::find(observables, height) == observables.end();
+    if (is_new && kinds.size() <= most) observables.push_back(height);
+  }
+  return observables;
+}
+
+}  // namespace jostle::inline config

@@ -1,0 +1,142 @@
+"""Spheres of several sizes: scenes, files, stops, shards and what is refused by name."""
+
+import json
+import random
+import unittest
+
+import h5py
+import numpy as np
+
+from support import BAD_INPUT, Case, changed
+
+WIDTH = 6.0
+KINDS = [{"name": "small", "count": 60}, {"name": "large", "count": 12, "diameter": 1.5},
+         {"name": "intruder", "count": 1, "diameter": 2.5, "density": 2}]
+SCENE = {
+    "name": "mixture", "seed": 4, "realizations": 3, "container": {"sides": "periodic", "width": WIDTH},
+    "spheres": KINDS, "start": {"file": "start.xyz"}, "protocol": [{"tap": {"dilate": 0.1}, "count": 6}],
+    "relax": {"polar": {}, "stop": {"mean_height": {"eta": 1e-3, "every_sweeps": 20}}},
+    "observe": ["mean_height", "bulk_fraction", {"kind_height": {"kind": "intruder"}}, "segregation",
+                {"lacey_index": {"cell": 2, "kind": "large"}}],
+    "snapshots": {"taps": [0, 3, 6]},
+}
+
+
+def scattered():
+    """Spheres of the kinds above, none of which overlap, as extended XYZ."""
+    numbers = random.Random(5)
+    spheres = [(kind["name"], kind.get("diameter", 1)) for kind in KINDS for _ in range(kind["count"])]
+    placed = {}
+    for i in sorted(range(len(spheres)), key=lambda i: -spheres[i][1]):
+        d = spheres[i][1]
+        while i not in placed:
+            r = np.array([numbers.uniform(0, WIDTH), numbers.uniform(0, WIDTH), numbers.uniform(d / 2, 13)])
+            ways = [r - other for other in placed.values()]
+            for way in ways:
+                way[:2] -= WIDTH * np.round(way[:2] / WIDTH)
+            reach = [1e-9 + (d + spheres[j][1]) / 2 for j in placed]
+            if all(np.linalg.norm(way) > least for way, least in zip(ways, reach)):
+                placed[i] = r
+    lines = [str(len(spheres)), f'Lattice="{WIDTH} 0 0 0 {WIDTH} 0 0 0 16" Properties=species:S:1:pos:R:3:diameter:R:1 '
+             "container=periodic"]
+    return "\n".join(lines + [f"{name} {placed[i][0]} {placed[i][1]} {placed[i][2]} {d}"
+                              for i, (name, d) in enumerate(spheres)]) + "\n"
+
+
+class Mixtures(Case):
+    def setUp(self):
+        super().setUp()
+        self.write(scattered(), "start.xyz")
+        self.write(SCENE)
+
+    def test_threads_shards_and_resumes_give_the_same_digest(self):
+        self.run_scene("-o", "one.h5", "--threads", "1")
+        expected = self.digest("one.h5")
+        self.run_scene("-o", "two.h5", "--threads", "2")
+        self.assertEqual(self.digest("two.h5"), expected)
+        for share in (1, 2):
+            self.run_scene("-o", f"share{share}.h5", "--shard", f"{share}/2")
+        self.jostle("merge", "share1.h5", "share2.h5", "-o", "merged.h5")
+        self.assertEqual(self.digest("merged.h5"), expected)
+        self.write(changed(SCENE, protocol=[{"tap": {"dilate": 0.1}, "count": 3}], snapshots={"taps": [0, 3]}))
+        self.run_scene("-o", "resumed.h5")
+        self.write(SCENE)
+        self.run_scene("-o", "resumed.h5", "--resume")
+        self.assertEqual(self.digest("resumed.h5"), expected)
+
+    def test_heights_of_kinds_are_those_of_the_kept_packings(self):
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            self.assertEqual(file.attrs["jostle_format"], 2)
+            spheres = file["spheres/point_0000"]
+            self.assertEqual(spheres["name"].asstr()[()].tolist(), [kind["name"] for kind in KINDS])
+            self.assertEqual(spheres["density"][()].tolist(), [1, 1, 2])
+            kind, volume = spheres["kind"][()], spheres["diameter"][()] ** 3
+            positions = file["particles/point_0000_realization_00001/position/value"][()]
+            series = file["observables/point_0000"]
+            for frame, tap in enumerate((0, 3, 6)):
+                z = positions[frame][:, 2]
+                mean = np.average(z, weights=volume)
+                heights = [z[kind == k].mean() for k in range(3)]
+                self.assertAlmostEqual(series["mean_height"][tap, 1], mean, delta=1e-12)
+                self.assertAlmostEqual(series["height_intruder"][tap, 1], heights[2], delta=1e-12)
+                self.assertAlmostEqual(series["segregation"][tap, 1], (heights[2] - heights[0]) / mean, delta=1e-12)
+                x = np.floor(positions[frame] / [2, 2, 2 * 1e9]).astype(int)
+                self.assertTrue((x[:, :2] < 3).all())
+
+    def test_no_tap_makes_an_overlap(self):
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            radius = file["spheres/point_0000/diameter"][()] / 2
+            for realization in range(3):
+                for r in file[f"particles/point_0000_realization_{realization:05}/position/value"][()]:
+                    way = r[:, None] - r[None]
+                    way[..., :2] -= WIDTH * np.round(way[..., :2] / WIDTH)
+                    gap = np.linalg.norm(way, axis=-1) - radius[:, None] - radius[None]
+                    self.assertGreater(gap[~np.eye(len(r), dtype=bool)].min(), -1e-12)
+                    self.assertGreaterEqual((r[:, 2] - radius).min(), -1e-12)
+
+    def test_exports_read_back_as_starts_and_structure_is_refused_by_name(self):
+        self.run_scene("-o", "a.h5")
+        self.jostle("export", "a.h5", "--format", "extxyz", "-o", "end.xyz")
+        for file in ("end.xyz", {"path": "a.h5", "realization": 0, "tap": 6}):
+            for spheres in (KINDS, 73):
+                self.write(changed(SCENE, start={"file": file}, spheres=spheres, realizations=1))
+                self.run_scene("-o", "b.h5", "--force")
+                with h5py.File(self.folder / "a.h5") as first, h5py.File(self.folder / "b.h5") as second:
+                    name = "particles/point_0000_realization_00000/position/value"
+                    np.testing.assert_array_equal(first[name][2], second[name][0])
+                    for part in ("name", "density", "kind", "diameter"):
+                        np.testing.assert_array_equal(first[f"spheres/point_0000/{part}"][()],
+                                                      second[f"spheres/point_0000/{part}"][()])
+        for command in (("structure", "a.h5"), ("structure", "end.xyz")):
+            refused = self.jostle(*command, expect=None)
+            self.assertNotEqual(refused.returncode, 0)
+            self.assertIn("measures of structure require equal spheres", refused.stderr)
+
+    def test_volumes_are_refused_by_name(self):
+        self.write(changed(SCENE, protocol=[{"tap": {"dilate": 0.01 * k}, "count": 40} for k in (1, 2, 3)]))
+        self.run_scene("-o", "a.h5")
+        refused = self.jostle("analyse", "a.h5", "volumes", "--observable", "bulk_fraction", expect=None)
+        self.assertIn("volumes per sphere are defined for equal spheres", refused.stdout + refused.stderr)
+
+    def test_pages_say_that_mixtures_are_not_drawn(self):
+        self.run_scene("-o", "a.h5")
+        self.jostle("report", "a.h5", "-o", "a.html")
+        self.assertIn("packings of mixtures are not drawn", (self.folder / "a.html").read_text())
+
+    def test_what_a_file_of_sizes_does_not_go_with_is_refused_when_the_scene_is_read(self):
+        for changes, says in (({"observe": ["corrected_fraction"]}, "/observe/0: corrected_fraction"),
+                              ({"structure": {"profile": {}}}, "/structure: measures of structure"),
+                              ({"container": {"sides": "periodic", "width": 5}}, "must exceed 5"),
+                              ({"relax": {"polar": {}, "sampler": "skipping"}}, "/relax/sampler"),
+                              ({"engine": {"discrete_element": {}}, "relax": None}, "discrete elements"),
+                              ({"observe": [{"kind_height": {"kind": "larg"}}]}, 'named "larg"')):
+            for spheres in (KINDS, 73):
+                self.write(changed(SCENE, spheres=spheres, **changes))
+                refused = self.jostle("check", "scene.json", "--no-pilot", expect=BAD_INPUT)
+                self.assertIn(says, refused.stderr, json.dumps(changes))
+
+
+if __name__ == "__main__":
+    unittest.main()
