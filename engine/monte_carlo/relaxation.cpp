@@ -45,9 +45,9 @@ struct Measure {
   }
 
  private:
-  // Whether <Z> has changed by less than bound(<Z> before), diameters, and in a mixture the mean
-  // height of every kind likewise: the rise of one intruder among many is invisible in the mean.
-  // Not at the first test.
+  // Returns whether <Z> has changed by less than bound(<Z> before), diameters, and in a mixture the
+  // mean height of every kind likewise: one intruder that rises is invisible in the mean. Returns
+  // false at the first test.
   template <class Bound>
   bool changes_less_than(const Bound& bound) const {
     const double before = progress.last_value;

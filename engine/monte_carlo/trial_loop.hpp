@@ -32,7 +32,7 @@ enum class Sampler {
 inline constexpr NameTable<Sampler, 2> samplers{
     {{"exhaustive", Sampler::exhaustive}, {"skipping", Sampler::rejection_free}}};
 
-/// What a loop is compiled for: equal spheres cost less.
+/// The spheres that a loop is compiled for: equal ones cost less.
 enum class SphereSizes { equal, several };
 
 /// What the rejection-free sampler must remember besides MoveState; unused by the exhaustive one.

@@ -7,7 +7,7 @@
 
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
 
-// Which typed loop is made for a container and a move.
+// Chooses the typed loop for a container and a move.
 namespace jostle::inline engine {
 
 // Calls act(box, policy) with the container and the move as the loop is compiled for them: a move

@@ -121,9 +121,9 @@ class NeighbourListsOf {
   }
 
   bool enter(Index i, Index newcomer) {
+    const Index length = *rows_[i];
+    if (length + 1 >= rows_.room(i) && !rows_.enlarge(i)) return false;
     Index* const row = rows_[i];
-    const Index length = *row;
-    if (length + 1 >= rows_.room(i)) return false;
     row[1 + length] = newcomer;
     *row = length + 1;
     return true;

@@ -6,8 +6,8 @@
 #include "engine/bed/vec3.hpp"
 #include "engine/large_pages.hpp"
 
-// Centres as the trial loop holds them, and what the loop is compiled for: equal spheres or
-// several sizes.
+// Centres as the trial loop holds them, and the two kinds of spheres that it is compiled for: equal
+// ones and several sizes.
 namespace jostle::inline engine {
 
 /// Two lateral coordinates, in one register.
@@ -38,7 +38,7 @@ inline Vec3 unpacked(const PackedCentre& r) {
 /// All spheres have diameter 1: nothing is read.
 struct EqualSpheres {
   static constexpr bool several = false;
-  /// What is known of a radius when a container is laid out: all of it.
+  /// The part of a radius that is known when a container is laid out: all of it.
   static constexpr double known_radius = sphere_radius;
   static Pair raised(Pair low, const PackedCentre&) { return low; }
   static Pair lowered(Pair high, const PackedCentre&) { return high; }

@@ -51,7 +51,7 @@ class TwoSizeFluid {
 
   void run(std::uint64_t sweeps) { loop_->run(2 * n_ * sweeps); }
 
-  // Of configurations `every` sweeps apart.
+  // Averages over configurations `every` sweeps apart.
   Trio contact_values(int configurations, std::uint64_t every) {
     std::array<std::array<double, n_contact_bins>, 3> g{};
     for (int k = 0; k < configurations; ++k) {

@@ -18,7 +18,7 @@ Vec3 random_direction(RandomStream& random) {
   }
 }
 
-// Of a length up to `longest`; the shorter the likelier.
+// A step of a length up to `longest`; the shorter the likelier.
 Vec3 random_step(double longest, RandomStream& random) {
   return longest * random.uniform() * random.uniform() * random_direction(random);
 }

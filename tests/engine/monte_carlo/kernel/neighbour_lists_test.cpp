@@ -153,7 +153,7 @@ void check_renewals(double smallest, double ratio) {
           }
           // In the narrowest containers nothing can walk.
           if (width_x(container) > 1) CHECK(renewals > 100);
-          CHECK(builds < 1 + renewals / 20);
+          CHECK(builds < 1 + renewals / (Spheres::several ? 100 : 20));
         },
         container);
   }
