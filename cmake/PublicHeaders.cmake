@@ -7,6 +7,7 @@ set(JOSTLE_PUBLIC_HEADERS
     config/scene.hpp
     engine/bed/bed_mechanics.hpp
     engine/bed/container.hpp
+    engine/bed/mixture.hpp
     engine/bed/packing.hpp
     engine/bed/random.hpp
     engine/bed/sizes.hpp
