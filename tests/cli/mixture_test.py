@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, Case, changed
+from support import BAD_INPUT, SOURCE, Case, changed
 
 WIDTH = 6.0
 KINDS = [{"name": "small", "count": 60}, {"name": "large", "count": 12, "diameter": 1.5},
@@ -49,7 +49,9 @@ class Mixtures(Case):
         self.write(scattered(), "start.xyz")
         self.write(SCENE)
 
-    def test_threads_shards_and_resumes_give_the_same_digest(self):
+    def same_digests(self, scene):
+        """A run on one thread, on two, in shards and resumed with more taps."""
+        self.write(scene)
         self.run_scene("-o", "one.h5", "--threads", "1")
         expected = self.digest("one.h5")
         self.run_scene("-o", "two.h5", "--threads", "2")
@@ -58,11 +60,30 @@ class Mixtures(Case):
             self.run_scene("-o", f"share{share}.h5", "--shard", f"{share}/2")
         self.jostle("merge", "share1.h5", "share2.h5", "-o", "merged.h5")
         self.assertEqual(self.digest("merged.h5"), expected)
-        self.write(changed(SCENE, protocol=[{"tap": {"dilate": 0.1}, "count": 3}], snapshots={"taps": [0, 3]}))
+        self.write(changed(scene, protocol=[{"tap": {"dilate": 0.1}, "count": 3}], snapshots={"taps": [0, 3]}))
         self.run_scene("-o", "resumed.h5")
-        self.write(SCENE)
+        self.write(scene)
         self.run_scene("-o", "resumed.h5", "--resume")
         self.assertEqual(self.digest("resumed.h5"), expected)
+
+    def test_threads_shards_and_resumes_give_the_same_digest(self):
+        self.same_digests(SCENE)
+
+    def test_drawn_diameters_are_those_of_their_realizations(self):
+        shipped = json.loads((SOURCE / "config/scenes/binary.json").read_text())
+        small, large, intruder = shipped["spheres"]
+        scene = {**shipped, "name": "mixture", "realizations": 3, "container": {"sides": "periodic", "width": WIDTH},
+                 "spheres": [{**small, "count": 60}, {**large, "count": 12}, {**intruder, "place": [3, 3]}],
+                 "protocol": [{"tap": {"dilate": 0.1}, "count": 6}], "snapshots": {"taps": [0, 3, 6]}}
+        scene.pop("$schema")
+        self.same_digests(scene)
+        with h5py.File(self.folder / "one.h5") as file:
+            diameters = file["spheres/point_0000/diameter"][()]
+            self.assertEqual(diameters.shape, (3, 73))
+            self.assertEqual(len(np.unique(diameters[:, :60])), 180)
+            self.assertTrue((diameters[:, 60:72] == 1.5).all() and (diameters[:, 72] == 2.5).all())
+            start = file["particles/point_0000_realization_00002/position/value"][0]
+            np.testing.assert_allclose(start[72], [3, 3, 1.25], atol=1e-12)
 
     def test_heights_of_kinds_are_those_of_the_kept_packings(self):
         self.run_scene("-o", "a.h5")
