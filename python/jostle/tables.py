@@ -188,13 +188,15 @@ def _quantity(dataset: h5py.Dataset, axes: tuple[str, ...]) -> Quantity:
 
 
 def table_from_json(one: dict[str, Any]) -> Table:
-    """Of what the program prints with --json, where null is a number that does not exist."""
-    def quantity(part: dict[str, Any]) -> Quantity:
+    """Of what the program prints with --json, where null is a number that does not exist;
+    of degrees of freedom, an infinite one."""
+    def quantity(name: str, part: dict[str, Any]) -> Quantity:
+        missing = np.inf if name.endswith("_dof") else np.nan
         values = np.array(part["values"], dtype=object)
         known = [value for value in values.reshape(-1) if value is not None]
         if not any(isinstance(value, str) for value in known):
             whole = len(known) == values.size and all(isinstance(value, int) for value in known)
-            values = np.where(np.equal(values, None), np.nan, values).astype(np.int64 if whole else float)
+            values = np.where(np.equal(values, None), missing, values).astype(np.int64 if whole else float)
         return Quantity(values, tuple(part["axes"]), part["units"], part["long_name"], part["source"])
-    return Table(one["name"], {name: quantity(axis) for name, axis in one["axes"].items()},
-                 {name: quantity(value) for name, value in one["quantities"].items()}, one["notes"])
+    return Table(one["name"], {name: quantity(name, axis) for name, axis in one["axes"].items()},
+                 {name: quantity(name, value) for name, value in one["quantities"].items()}, one["notes"])

@@ -231,7 +231,7 @@ class BadFiles(Case):
             file.attrs["jostle_format"] = 99
         data = (self.folder / "bad.h5").read_bytes()
         (self.folder / "bad.h5").write_bytes(data + b"\njostle-sha256 " + b"0" * 64 + b"\n")
-        self.refused("of layout 99, which is not 1")
+        self.refused("of layout 99: this package reads results of jostle of layouts 1 and 2")
 
 
 if __name__ == "__main__":
