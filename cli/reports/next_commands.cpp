@@ -72,7 +72,8 @@ std::vector<std::vector<std::string>> next_commands(const Study& study, const Js
   // The page shows the tables that there are.
   propose(asked_for(scene, "fits") || asked_for(scene, "analyse") || asked_for(scene, "structure"),
           {"report", file});
-  propose(kept && !asked_for(scene, "structure"), {"structure", file});
+  // Measures of structure take equal spheres.
+  propose(kept && !point.mixture && !asked_for(scene, "structure"), {"structure", file});
   propose(kept, {"export", file, "--format", "extxyz"});
   propose(true, {"info", file});
   return commands;

@@ -69,6 +69,13 @@ class Mixtures(Case):
     def test_threads_shards_and_resumes_give_the_same_digest(self):
         self.same_digests(SCENE)
 
+    def test_the_commands_that_a_run_names_next_take_mixtures(self):
+        told = self.run_scene("-o", "a.h5").stdout.split("\nnext:\n")[1]
+        commands = [line.split()[1:] for line in told.splitlines()]
+        self.assertEqual(commands[0][0], "export")
+        for words in commands:
+            self.jostle(*words)
+
     def test_drawn_diameters_are_those_of_their_realizations(self):
         shipped = json.loads((SOURCE / "config/scenes/binary.json").read_text())
         small, large, intruder = shipped["spheres"]
