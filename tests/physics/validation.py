@@ -104,8 +104,8 @@ Phys. Rev. E 81, 061301, 2010) with runs of this program. a(b): b is the standar
 WORDS = """A statement is *reproduced* if its test at 5 % shows it, and *not reproduced* if the test rejects it.
 *Compatible*: a test that can only reject, with 80 % power for the stated difference, did not. *Qualitatively*: the sign
 of a change is found and the printed size is rejected, or single beds show the change. A figure is so called if at most
-half of its decided statements fail. *Underpowered*: the data decide nothing. Each row states its margin. Contrasts and
-margins that were chosen after a look at the data are marked post hoc.
+half of its decided statements fail. *Underpowered*: the data decide nothing. Each row states its margin. Contrasts,
+margins and pooled variances that were chosen after a look at the data are marked post hoc.
 """
 
 
