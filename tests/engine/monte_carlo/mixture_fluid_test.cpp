@@ -162,7 +162,8 @@ TEST_CASE("a fluid of two sizes has the contact values of theory") {
   check_fluid(3, 0.30, 200, 1000, 0.12);
 }
 
-TEST_CASE("fluids of two sizes have the contact values of theory, to one in a hundred", "[slow]") {
+TEST_CASE("fluids of two sizes have the contact values of theory, to one in a hundred",
+          "[nightly]") {
   for (const double ratio : {1.4, 3.0}) {
     for (const double fraction : {0.10, 0.20, 0.30, 0.45})
       check_fluid(ratio, fraction, 500, 40'000, 0.01);
