@@ -345,7 +345,11 @@ std::string periodic_directions(const Boundary& boundary) {
 
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment) {
   const Keys keys = CommentParser(comment).keys();
-  ExtendedXyzHeader header{.container = container_in(keys), .origin = origin_of(keys), .sizes = {}, .species = {}, .kinds = {}};
+  ExtendedXyzHeader header{.container = container_in(keys),
+                           .origin = origin_of(keys),
+                           .sizes = {},
+                           .species = {},
+                           .kinds = {}};
   require_model_keys(keys);
   read_columns(keys, header);
   header.kinds = kinds_of(keys);

@@ -103,8 +103,9 @@ TEST_CASE("A resume refuses snapshots that changed within the taps of the run") 
         }) ==
         "/snapshots/taps: a snapshot of tap 50 was added: only those after the last tap, 130, can "
         "be (at the sweep point dilate = 0.01)\n");
-  CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["every"] = 50; })
-            .starts_with("/snapshots/taps: a snapshot of tap 50 was added"));
+  CHECK(faults_of([](EditedScene& scene) {
+          scene["snapshots"]["every"] = 50;
+        }).starts_with("/snapshots/taps: a snapshot of tap 50 was added"));
   CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["every"] = 1000; }).empty());
   CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["taps"] = {100}; }) ==
         "/snapshots/taps: the snapshot of tap 0 was taken away (at the sweep point dilate = "

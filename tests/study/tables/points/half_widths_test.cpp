@@ -18,8 +18,7 @@ std::pair<double, double> ends_of(const std::string& text) {
   const double value = std::stod(text.substr(0, open));
   const std::string digits = text.substr(open + 1, text.find(')') - open - 1);
   const bool in_last_digits = digits.find('.') == std::string::npos && point != std::string::npos;
-  const double unit =
-      in_last_digits ? std::pow(10.0, -static_cast<double>(open - point - 1)) : 1.0;
+  const double unit = in_last_digits ? std::pow(10.0, -static_cast<double>(open - point - 1)) : 1.0;
   const double half = std::stod(digits) * unit;
   return {value - half, value + half};
 }
