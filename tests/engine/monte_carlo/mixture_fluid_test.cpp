@@ -1,6 +1,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "engine/bed/geometry.hpp"
@@ -31,6 +32,26 @@ Trio contact_values_of_theory(double ratio, double fraction) {
   return {g(0.5), g(ratio / (1 + ratio)), g(0.5 * ratio)};
 }
 
+using Counts = std::array<std::array<double, n_contact_bins>, 3>;
+
+// Counts of pairs per bin, in so many configurations, become values at contact.
+Trio at_contact(Counts counts, int configurations, double ratio, std::uint32_t n_of_each,
+                double volume) {
+  Trio values;
+  const double n = n_of_each;
+  for (int kinds = 0; kinds < 3; ++kinds) {
+    const double touching = kinds == 0 ? 1 : kinds == 1 ? 0.5 * (1 + ratio) : ratio;
+    const double pairs = kinds == 1 ? n * n : 0.5 * n * (n - 1);
+    for (int bin = 0; bin < n_contact_bins; ++bin) {
+      const double low = 1 + bin * bin_width;
+      const double shell = touching * touching * touching * shell_volume(low, low + bin_width);
+      counts[kinds][bin] /= configurations * pairs * shell / volume;
+    }
+    values[kinds] = extrapolated_to_contact(counts[kinds]);
+  }
+  return values;
+}
+
 class TwoSizeFluid {
  public:
   TwoSizeFluid(double ratio, double fraction, std::uint32_t n_of_each, std::uint64_t seed)
@@ -53,28 +74,19 @@ class TwoSizeFluid {
 
   // Averages over configurations `every` sweeps apart.
   Trio contact_values(int configurations, std::uint64_t every) {
-    std::array<std::array<double, n_contact_bins>, 3> g{};
+    Counts counts{};
     for (int k = 0; k < configurations; ++k) {
       run(every);
       loop_->store(packing_);
-      count_pairs(g);
+      count_pairs(counts);
     }
-    Trio values;
-    for (int kinds = 0; kinds < 3; ++kinds) {
-      const double touching = kinds == 0 ? 1 : kinds == 1 ? 0.5 * (1 + ratio_) : ratio_;
-      const double pairs = static_cast<double>(n_) * n_ * (kinds == 1 ? 1 : 0.5);
-      for (int bin = 0; bin < n_contact_bins; ++bin) {
-        const double low = 1 + bin * bin_width;
-        const double shell = touching * touching * touching * shell_volume(low, low + bin_width);
-        g[kinds][bin] /= configurations * pairs * shell / volume_;
-      }
-      values[kinds] = extrapolated_to_contact(g[kinds]);
-    }
-    return values;
+    return at_contact(counts, configurations, ratio_, n_, volume_);
   }
 
+  const Packing& packing() const { return packing_; }
+
  private:
-  void count_pairs(std::array<std::array<double, n_contact_bins>, 3>& counts) const {
+  void count_pairs(Counts& counts) const {
     const auto& box = std::get<FullyPeriodicBox>(packing_.container);
     SizedGrid grid;
     grid.build(
@@ -99,12 +111,67 @@ class TwoSizeFluid {
   std::unique_ptr<TrialLoop> loop_;
 };
 
+// The brute-force twin: its own numbers and steps, and every trial looks at all spheres.
+class AllPairsFluid {
+ public:
+  AllPairsFluid(const Packing& begin, double ratio, std::uint32_t n_of_each)
+      : ratio_(ratio), n_(n_of_each), centres_(begin.centres) {
+    side_ = std::get<FullyPeriodicBox>(begin.container).width_x;
+  }
+
+  void run(std::uint64_t sweeps) {
+    for (std::uint64_t trial = 0; trial < 2 * n_ * sweeps; ++trial) {
+      const auto i = static_cast<std::uint32_t>(numbers_() % (2 * n_));
+      const Vec3 to = centres_[i] + 0.6 * Vec3{step(), step(), step()};
+      if (is_free(i, to)) centres_[i] = to;
+    }
+  }
+
+  Trio contact_values(int configurations, std::uint64_t every) {
+    Counts counts{};
+    for (int k = 0; k < configurations; ++k) {
+      run(every);
+      for (std::uint32_t i = 0; i < 2 * n_; ++i) {
+        for (std::uint32_t j = 0; j < i; ++j) {
+          const double far = std::sqrt(squared(centres_[i], centres_[j])) / touching(i, j) - 1;
+          if (far < n_contact_bins * bin_width)
+            ++counts[(i >= n_) + (j >= n_)][static_cast<int>(far / bin_width)];
+        }
+      }
+    }
+    return at_contact(counts, configurations, ratio_, n_, side_ * side_ * side_);
+  }
+
+ private:
+  double step() { return std::uniform_real_distribution<double>(-0.5, 0.5)(numbers_); }
+  double touching(std::uint32_t i, std::uint32_t j) const {
+    return 0.5 * ((i < n_ ? 1 : ratio_) + (j < n_ ? 1 : ratio_));
+  }
+  double squared(Vec3 a, Vec3 b) const {
+    Vec3 way = a - b;
+    for (double* along : {&way.x, &way.y, &way.z}) *along -= side_ * std::rint(*along / side_);
+    return norm_squared(way);
+  }
+  bool is_free(std::uint32_t i, Vec3 to) const {
+    for (std::uint32_t j = 0; j < 2 * n_; ++j) {
+      const double least = touching(i, j);
+      if (j != i && squared(to, centres_[j]) < least * least) return false;
+    }
+    return true;
+  }
+
+  double ratio_, side_ = 0;
+  std::uint32_t n_;
+  std::vector<Vec3> centres_;
+  std::mt19937_64 numbers_{2026};
+};
+
 struct Estimate {
   Trio value{}, error{};
 };
 
-Estimate measure(double ratio, double fraction, std::uint32_t n_of_each, int configurations) {
-  TwoSizeFluid fluid(ratio, fraction, n_of_each, 1970);
+template <class Fluid>
+Estimate measure(Fluid& fluid, int configurations) {
   constexpr int blocks = 20;
   constexpr std::uint64_t every = 3;
   fluid.run(every * configurations / 4);  // equilibration
@@ -127,7 +194,8 @@ Estimate measure(double ratio, double fraction, std::uint32_t n_of_each, int con
 // `most_error`: relative.
 void check_fluid(double ratio, double fraction, std::uint32_t n_of_each, int configurations,
                  double most_error) {
-  const Estimate own = measure(ratio, fraction, n_of_each, configurations);
+  TwoSizeFluid fluid(ratio, fraction, n_of_each, 1970);
+  const Estimate own = measure(fluid, configurations);
   const Trio theory = contact_values_of_theory(ratio, fraction);
   for (int k = 0; k < 3; ++k) {
     CAPTURE(ratio, fraction, k, own.value[k], own.error[k], theory[k]);
@@ -137,8 +205,25 @@ void check_fluid(double ratio, double fraction, std::uint32_t n_of_each, int con
       WARN("ratio " << ratio << ", fraction " << fraction << ", pairs " << k << ": g(contact) "
                     << own.value[k] << " +- " << own.error[k] << ", theory " << theory[k]);
     }
-    if (fraction <= 0.30)
+    // The theory of large pairs is 1.1 % low at ratio 3 and 0.30: 2.592(4) by a program that looks
+    // at all pairs, for 2.563. These are left to the twin.
+    const bool left_to_twin = ratio == 3 && fraction == 0.30 && k == 2 && most_error <= 0.01;
+    if (fraction <= 0.30 && !left_to_twin)
       CHECK(std::abs(own.value[k] - theory[k]) <= std::max(3 * own.error[k], 0.01 * theory[k]));
+  }
+}
+
+// Within three standard errors of the difference, none of which is above `most_error` of its value.
+void check_against_twin(double ratio, double fraction, std::uint32_t n_of_each, int configurations,
+                        double most_error) {
+  TwoSizeFluid fluid(ratio, fraction, n_of_each, 1970);
+  AllPairsFluid twin(fluid.packing(), ratio, n_of_each);
+  const Estimate own = measure(fluid, configurations), other = measure(twin, configurations);
+  for (int k = 0; k < 3; ++k) {
+    const double error = std::hypot(own.error[k], other.error[k]);
+    CAPTURE(ratio, fraction, k, own.value[k], own.error[k], other.value[k], other.error[k]);
+    CHECK(error < most_error * other.value[k]);
+    CHECK(std::abs(own.value[k] - other.value[k]) <= 3 * error);
   }
 }
 
@@ -152,7 +237,7 @@ TEST_CASE("the theory of mixtures has its published form") {
   CHECK(far[0] == Approx(2.693).margin(6e-4));
   CHECK(far[1] == Approx(3.188).margin(6e-4));
   CHECK(far[2] == Approx(4.908).margin(6e-4));
-  // Of equal spheres: Carnahan & Starling, (1 - x/2) / (1 - x)^3.
+  // Equal spheres have those of Carnahan & Starling, (1 - x/2) / (1 - x)^3.
   for (const double value : contact_values_of_theory(1, 0.3))
     CHECK(value == Approx(0.85 / 0.343).epsilon(1e-12));
 }
@@ -160,6 +245,15 @@ TEST_CASE("the theory of mixtures has its published form") {
 TEST_CASE("a fluid of two sizes has the contact values of theory") {
   check_fluid(1.4, 0.30, 200, 1000, 0.05);
   check_fluid(3, 0.30, 200, 1000, 0.12);
+}
+
+TEST_CASE("a fluid of two sizes has the contact values of a twin that looks at all pairs") {
+  check_against_twin(1.4, 0.30, 60, 2000, 0.10);
+  check_against_twin(3, 0.30, 60, 2000, 0.15);
+}
+
+TEST_CASE("fluids of two sizes have the contact values of a twin in long runs", "[nightly]") {
+  check_against_twin(3, 0.30, 200, 20'000, 0.03);
 }
 
 TEST_CASE("fluids of two sizes have the contact values of theory, to one in a hundred",
