@@ -169,7 +169,7 @@ constexpr auto pour_order_field = irregular(
           "random", "");
     });
 
-/// What is observed by default; some of it is defined for equal spheres alone.
+/// A mixture observes other quantities by default than equal spheres do.
 constexpr auto observe_form = list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables");
 constexpr auto observe_field = irregular(
     "observe",

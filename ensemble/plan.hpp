@@ -94,7 +94,7 @@ StreamKey stream_key(const Plan& plan, std::uint32_t realization, Purpose purpos
 /// the given packing; null for equal spheres.
 std::shared_ptr<const Sizes> sizes_of(const Plan& plan, std::uint32_t realization);
 
-/// Whether realizations may differ in the diameters of their spheres.
+/// True if realizations may differ in the diameters of their spheres.
 bool has_drawn_sizes(const Plan& plan);
 
 /// The spheres that a start places, with these sizes.

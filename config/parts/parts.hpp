@@ -15,7 +15,7 @@ bool read_value(const OneOf<Container>& form, const Reader& in, Container& into)
 Json written_value(const OneOf<Container>& form, const Container& container);
 Json value_schema(const OneOf<Container>& form, Definitions& definitions);
 
-/// What is observed of a mixture by default: what is defined for equal spheres alone is left out.
+/// The default observables of a mixture: those that are defined for several sizes.
 std::vector<Observable> default_observables(const std::vector<MixtureKind>& kinds);
 /// The number of equal spheres, or the kinds of a mixture.
 void read_spheres(const Reader& in, Scene& scene);
@@ -101,10 +101,10 @@ Scene read_scene(const Reader& in);
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
 /// Of these, what concerns its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
-/// Of these, what concerns the kinds of a mixture.
+/// Checks the kinds of a mixture, as a part of check_consistency().
 void check_kinds(const Scene& scene, std::vector<Fault>& faults);
-/// Of these, what concerns spheres whose diameters are in the range, of these kinds: parts that are
-/// defined for equal spheres alone, widths and steps.
+/// Checks widths, steps and parts that take equal spheres alone, for spheres of these kinds whose
+/// diameters are in the range.
 void check_mixture(const Scene& scene, const DiameterRange& range,
                    const std::vector<std::string>& kinds, std::vector<Fault>& faults);
 /// The sizes of a packing from a file (null: equal spheres) as a scene takes them: with the kinds

@@ -39,8 +39,8 @@ struct BedMechanics {
   DrivenBed driven;               // of a tap whose motion was watched (Dynamics::watch_motion)
 };
 
-/// What a sphere can lean on, by number: the names of the container's faces. None of a fully
-/// periodic container.
+/// The names of the faces that a sphere can lean on, by number. A fully periodic container has
+/// none.
 std::vector<std::string> wall_names(const Container& container);
 
 }  // namespace jostle::inline engine

@@ -30,7 +30,7 @@ struct Boundary : ContainerShape {
   /// periodic.
   double margin_x() const { return periodic_x ? 0 : sphere_radius; }
   double margin_y() const { return periodic_y ? 0 : sphere_radius; }
-  /// Of a tube: where its axis stands in x and in y, which is its radius.
+  /// The place of a tube's axis in x and in y, which is its radius.
   double axis() const { return 0.5 * width_x; }
 };
 
@@ -83,7 +83,7 @@ class Faces {
 /// Area of the part of the footprint that lies at least `from_sides` away from walls.
 double footprint_area(const Boundary& boundary, double from_sides);
 
-/// Whether (x, y) lies at least `from_sides` away from walls.
+/// True if (x, y) lies at least `from_sides` away from walls.
 bool in_footprint(const Boundary& boundary, Vec3 r, double from_sides);
 
 /// Brings r, any number of periods away, into the box.

@@ -10,7 +10,7 @@
 #include "engine/bed/vec3.hpp"
 #include "engine/fields.hpp"
 
-// What holds the spheres: its periods, its walls, its floor, and how large it is. A container is
+// A container holds the spheres: it has periods, walls, a floor and an extent. A container is
 // one of the structs below, and nothing else asks which: whatever is done at its sides follows from
 // its shape (engine/bed/boundary.hpp). Lengths in diameters.
 namespace jostle::inline engine {

@@ -68,7 +68,7 @@ bool clear_of_boundaries(const Box& box, Vec3 r, double radius = sphere_radius) 
   return dx * dx + dy * dy <= reach * reach;
 }
 
-/// Whether two spheres overlap (touching is no overlap). `touching` is the sum of their radii.
+/// True if two spheres overlap (touching is no overlap). `touching` is the sum of their radii.
 template <Shaped Box>
 bool overlaps(const Box& box, Vec3 a, Vec3 b, double touching = 1) {
   return norm_squared(separation(box, a, b)) < touching * touching;

@@ -101,7 +101,7 @@ Fault spread_fault(double mean, double deviation) {
   return std::nullopt;
 }
 
-/// What is wrong with the numbers of a law, apart from the diameters that they give.
+/// Finds faults of the numbers of a law, apart from the diameters that they give.
 struct NumbersFault {
   std::uint32_t count;
 

@@ -108,7 +108,7 @@ struct MixtureKind {
   std::uint32_t count = 0;
   DiameterLaw diameter = FixedDiameter{};
   double density = 1;  // relative
-  /// Of a single sphere: x and y, diameters, above which it is poured before all without a place.
+  /// x and y, diameters, above which a single sphere is poured, before all that have no place.
   std::optional<std::array<double, 2>> place = std::nullopt;
   bool operator==(const MixtureKind&) const = default;
 };

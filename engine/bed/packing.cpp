@@ -44,9 +44,8 @@ void see_boundaries(const Boundary& boundary, const Packing& packing, Deepest& d
 
 void require_equal_spheres(const Packing& packing, const char* what) {
   if (!packing.sizes) return;
-  throw std::invalid_argument(std::string(what) +
-                              " require equal spheres of diameter 1, and this packing has sizes. "
-                              "Leave the sizes out");
+  throw std::invalid_argument(
+      std::string(what) + " require equal spheres of diameter 1, and this packing is a mixture");
 }
 
 double mean_height(const Packing& packing) {

@@ -8,8 +8,8 @@
 #include "engine/bed/sizes.hpp"
 #include "engine/bed/sphere_cells.hpp"
 
-// What a poured sphere can touch. Its centre is a point; it must stay outside the balls around the
-// other centres, whose radii are the sums of both radii, inside the sides and above the floor.
+// The obstacles of a poured sphere. Its centre is a point; it must stay outside the balls around
+// the other centres, whose radii are the sums of both radii, inside the sides and above the floor.
 // Lengths in diameters.
 namespace jostle::inline engine {
 

@@ -25,7 +25,7 @@ struct Steering {
   std::vector<std::size_t> contacts;
 };
 
-// Whether a motion enters none of the obstacles, but for the slope `slack`; along their surface is
+// True if a motion enters none of the obstacles, but for the slope `slack`; along their surface is
 // no entering.
 bool opens(Vec3 motion, const std::vector<Vec3>& outwards, double slack) {
   const double speed = std::sqrt(norm_squared(motion));
@@ -107,7 +107,7 @@ std::optional<Turn> roll(const PourBed& bed, Vec3 p, const std::vector<Obstacle>
   return Turn{end.p, end.at_bottom};
 }
 
-// Whether a turn ends where it began, in front of something that p touches already.
+// True if a turn ends where it began, in front of something that p touches already.
 bool stalls(const PourBed& bed, Vec3 p, const Turn& turn) {
   const double at_once = 1e-6 * bed.unit();
   return !turn.rests && norm_squared(turn.p - p) < at_once * at_once;
@@ -160,7 +160,8 @@ Vec3 polished(Vec3 p, const std::vector<Obstacle>& contacts, double unit) {
   return p;
 }
 
-// What a centre above the floor touches. Spheres stop on the floor, and never leave it.
+// The obstacles that a centre above the floor touches. Spheres stop on the floor, and never leave
+// it.
 std::vector<Obstacle> touched(const PourBed& bed, Vec3 p) {
   const double nearly = touching * bed.unit();
   std::vector<Obstacle> near;

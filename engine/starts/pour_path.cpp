@@ -140,7 +140,7 @@ Vec3 follow(const RollingArc& arc, Vec3 p, std::span<const Obstacle> obstacles,
     if (on.s < 0 || on.h <= first.h) continue;
     const bool behind = on.h > arc.start + rounding;
     const bool touched = obstacle.kind != Obstacle::Kind::floor && gap(obstacle, p) < touching;
-    // What is touched already and not in the way is being left; the floor never is. Where the arc
+    // The arc leaves a touched obstacle that is not in the way, but never the floor. Where the arc
     // bends into what it touches, rounding may put the entry behind p.
     const bool grazed = touched && !cut->most && at_most(beside, arc.at(on.s, on.h) - p);
     if (grazed ? at_most(beside, arc.at(cut->exit.s, cut->exit.h) - p)

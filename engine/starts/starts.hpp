@@ -198,7 +198,7 @@ using StopAsked = std::function<bool()>;
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
                    RandomStream& random, const StopAsked& stop = {},
                    Packing* before_fitting = nullptr);
-/// The same with spheres of several sizes, which the packing then has. A given packing must have
+/// Makes a start of spheres of several sizes, which the packing then has. A given packing must have
 /// the same sizes.
 Packing make_start(const Start& start, const Container& container, const StartSpheres& spheres,
                    RandomStream& random, const StopAsked& stop = {},

@@ -281,7 +281,7 @@ class Point:
 
     @property
     def is_mixture(self) -> bool:
-        """Whether spheres have sizes of their own; else all have the diameter 1."""
+        """True if spheres have sizes of their own; else all have the diameter 1."""
         return self._mixture is not None
 
     @property

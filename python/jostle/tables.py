@@ -188,8 +188,8 @@ def _quantity(dataset: h5py.Dataset, axes: tuple[str, ...]) -> Quantity:
 
 
 def table_from_json(one: dict[str, Any]) -> Table:
-    """Of what the program prints with --json, where null is a number that does not exist;
-    of degrees of freedom, an infinite one."""
+    """The table that the program prints with --json, where null is a number that does not exist, or infinite degrees
+    of freedom."""
     def quantity(name: str, part: dict[str, Any]) -> Quantity:
         missing = np.inf if name.endswith("_dof") else np.nan
         values = np.array(part["values"], dtype=object)

@@ -10,7 +10,7 @@ namespace {
 // Leads the bytes of a state; counts up when they change, from a number that no older state, which
 // began with its rows, can begin with.
 constexpr std::uint32_t state_format = 0xf0000004, state_format_with_motion = 0xf0000005;
-// Of mixtures whose diameters are drawn: these follow all else.
+// States of mixtures with drawn diameters, which follow all else.
 constexpr std::uint32_t state_format_with_diameters = 0xf0000006,
                         state_format_with_motion_and_diameters = 0xf0000007;
 

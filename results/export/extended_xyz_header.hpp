@@ -48,10 +48,10 @@ double finite_number(const std::string& word);
 /// A whole number above 0, or std::invalid_argument.
 std::size_t positive_count(const std::string& word);
 
-/// Whether the sizes from `least` to `most` are the model's, but for digits that another program
+/// True if the sizes from `least` to `most` are the model's, but for digits that another program
 /// did not write.
 bool is_model_size(double least, double most, double model);
-/// Whether they are alike.
+/// True if the sizes from `least` to `most` are equal, but for rounding.
 bool are_alike(double least, double most);
 /// Throws std::invalid_argument where the sizes that `name` gives, from `least` to `most`, are not
 /// the model's.

@@ -16,7 +16,7 @@ namespace jostle::inline results {
 
 /// Attribute `jostle_format` of the root; raised when a reader of the old layout would go wrong.
 inline constexpr std::uint32_t layout_version = 1;
-/// Of files with a mixture, which a reader of layout 1 would take for equal spheres.
+/// The layout of files with a mixture, which a reader of layout 1 would take for equal spheres.
 inline constexpr std::uint32_t layout_of_mixtures = 2;
 
 /// Group of the spheres of points with a mixture, and its datasets at every point.

@@ -65,7 +65,7 @@ void require(bool sound, std::uint32_t point, const std::string& what) {
   if (!sound) throw Hdf5Error("/" + group_name(point) + " " + what + ": not written by jostle");
 }
 
-/// Of points in all, so that a small file does not fill the memory.
+/// Limits the spheres of all points together, so that a small file does not fill the memory.
 void require_few(const std::vector<StudyPoint>& earlier, std::uint32_t n_spheres) {
   std::uint64_t spheres = n_spheres;
   for (std::size_t p = 0; p < earlier.size(); ++p) {
@@ -147,7 +147,7 @@ std::shared_ptr<const PointSpheres> read_mixture(hid_t file, const std::vector<S
   mixture.kind_of = read_numbers<std::uint32_t>(group, sphere_kinds, &of_spheres);
   const bool drawn = read_number_attribute<std::uint8_t>(group, diameters_drawn) != 0;
   if (!drawn) mixture.diameters = read_numbers<double>(group, sphere_diameters, &of_spheres);
-  // Of drawn diameters, which are read later, any will do to look at the kinds.
+  // Drawn diameters are read later: any will do to look at the kinds.
   const std::vector<double> any(n_spheres, 2 * sphere_radius);
   const auto fault = sizes_fault(drawn ? any : mixture.diameters, mixture.kind_of, mixture.kinds);
   require(!fault, number, "has spheres that are none: " + fault.value_or(""));

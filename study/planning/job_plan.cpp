@@ -91,7 +91,7 @@ std::optional<JobRequest> better_layout(const SceneCost& cost, const JobRequest&
   std::optional<JobRequest> found;
   for (std::uint32_t cpus = 1; cpus <= std::min<std::uint64_t>(request.cpus, most_tried); ++cpus) {
     const std::uint64_t most_shards = std::min(all, in_all / cpus);
-    // As few shards as take as many turns as the most shards do.
+    // The fewest shards that need no more turns than the most shards do.
     const std::uint64_t turns = (all + most_shards * cpus - 1) / (most_shards * cpus);
     JobRequest other = request;
     other.cpus = cpus;

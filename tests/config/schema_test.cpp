@@ -173,7 +173,7 @@ void for_each_mutant(const PlainJson& scene, const Visit& visit) {
   }
 }
 
-/// Of every `every`-th change.
+/// Checks every `every`-th change.
 void check_changes_of_one_value(std::size_t every) {
   SchemaValidator schema;
   std::set<std::string> seen;

@@ -45,7 +45,7 @@ PANELS = {
 }
 
 
-# What legends call a curve of the tables, in this order.
+# Legends' names of the curves of tables, in this order.
 NAMES = ((r'tap = \{"lift":([0-9.]+)\}', r"lift \1"), (r'tap = \{"dilate_floor_held":0.025\}', "held dilation 1.025"),
          (r"^3001 to 4000 \(pb4-bell\)", "each from the poured bed"), (r"^Phi_c, (.*) \(pb4-hysteresis\)", r"one bed, \1"),
          (r"^(400|500)$", r"after \1 taps"), ("^Gamma = 2$", "Gamma = 2, mean"), ("^Gamma = 2, realization", "bed"),

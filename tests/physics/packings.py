@@ -1,4 +1,4 @@
-"""What the papers read off a packing and `jostle structure` does not: pores by their four centres, neighbours of all
+"""Measures of the papers that `jostle structure` does not make: pores by their four centres, neighbours of all
 spheres, heights of the peaks of n(z)."""
 import numpy as np
 from scipy import optimize, spatial, stats

@@ -68,7 +68,7 @@ def from_half_width(value, half, dof):
 
 
 def of_contrast(claim):
-    """What the contrast gives that a claim names as its source."""
+    """The estimates of the contrast that a claim names as its source."""
     name = claim.source[1:]
     return getattr(contrasts if hasattr(contrasts, name) else contrasts_of_beds, name)()
 

@@ -52,7 +52,7 @@ def origin_of(run):
 
 
 def size_of(run):
-    """What a run of paper_runs.csv computes, in a line."""
+    """A line on the size of a run of paper_runs.csv."""
     scene, beds = PAPER_RUNS[run].scene, read_table(REDUCED / run / "beds.csv")[1:]
     last = max(int(row[2]) for row in read_table(REDUCED / run / "series.csv")[1:])
     per_point = [sum(row[0] == str(point) for row in beds) for point in range(PAPER_RUNS[run].points)]
@@ -132,7 +132,7 @@ def overview_page(scores):
                                    f"{scoreboard}."), "![Overview of all statements](validation/overview.svg)",
              table(["figure", "drawn", "spheres (paper)", "taps (paper)", "M here / paper", "key statement: found",
                     "decided", "status"], rows), WORDS.strip(),
-             wrapped(f"Of {tested} statements decided by a p-value {kept} remain with the false discovery rate "
+             wrapped(f"{kept} of {tested} statements decided by a p-value remain with the false discovery rate "
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
              wrapped("The runs of most figures are no longer at hand: their reduced data are the numbers that an "

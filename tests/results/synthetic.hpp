@@ -11,7 +11,7 @@
 // their state as real ones do, so that a wrong restart gives wrong rows.
 namespace jostle::synthetic {
 
-/// What the spheres are: equal, a mixture of fixed diameters, or one whose realizations draw
+/// The spheres of a study: equal, a mixture of fixed diameters, or one whose realizations draw
 /// theirs.
 enum class StudySpheres { equal, fixed, drawn };
 

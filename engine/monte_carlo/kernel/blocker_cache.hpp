@@ -40,7 +40,7 @@ struct alignas(64) BlockerCache {
   }
 };
 
-/// The same for spheres of several sizes. A step d of a sphere that sees a blocker at b, s being
+/// The cache of spheres of several sizes. A step d of a sphere that sees a blocker at b, s being
 /// the sum of their radii, overlaps it where |b - d|^2 < s^2, that is where 2 b.d - |d|^2 > c with
 /// c = |b|^2 - s^2. A face within reach takes the last lane: as a sphere so large that it is flat.
 struct alignas(64) SizedBlockerCache {

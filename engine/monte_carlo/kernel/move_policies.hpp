@@ -39,7 +39,7 @@ concept MovePolicy = requires(Policy& move, const Policy& same, const ProposalKe
   { same.trial(t) } -> std::same_as<std::uint32_t>;
   /// Whether a displacement that is looked at rises, and may pass or not; dz of the batch.
   { same.rises(step) } -> std::same_as<bool>;
-  /// Whether it does; trial number, m g dz in units of m g d.
+  /// True if it accepts the rise; trial number, m g dz in units of m g d.
   { same.accepts_rise(std::uint64_t{}, step) } -> std::same_as<bool>;
   /// The step through a tap: what it begins with, and how it adapts (true: it changed).
   same.begin_tap(state);

@@ -62,7 +62,7 @@ class NeighbourListsOf {
   /// Row i: its length, then the spheres.
   const Index* row(Index i) const { return rows_[i]; }
   typename Rows::Place rows_place() const { return rows_.place(); }
-  /// Of equal spheres row i is rows() + i * stride().
+  /// Row i of equal spheres is rows() + i * stride().
   const Index* rows() const { return rows_.place().first; }
   std::size_t stride() const requires(!Spheres::several) { return rows_.place().stride; }
   /// Exchanges the spheres at two places of list i, counted from 0.

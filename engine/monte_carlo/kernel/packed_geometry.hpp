@@ -57,7 +57,7 @@ inline float room_between(double low, double at, double high) {
 
 }  // namespace packed_geometry
 
-// What a box is made of, each chosen by its shape. The room of a sphere is what a step has to floor
+// The parts of a box, each chosen by its shape. The room of a sphere is what a step has to floor
 // and sides, in a form that `leaves` understands: true if a step certainly ends outside.
 
 /// Along x and y. A direction that is not periodic has the period 0, which leaves it as it is.

@@ -40,7 +40,7 @@ class TableView {
   /// by its standard errors and their degrees of freedom; empty where it has neither.
   std::vector<double> half_widths(const std::string& quantity) const;
   double half_width(const std::string& quantity, std::size_t i = 0) const;
-  /// Likewise along the last axis, at one place of the first.
+  /// Half widths along the last axis, at one place of the first.
   std::vector<double> half_width_row(const std::string& quantity, std::size_t i) const;
 
   std::string units(const std::string& name) const;      // of a quantity or an axis
