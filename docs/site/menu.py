@@ -12,7 +12,7 @@ from collections.abc import Callable
 import gallery
 import python_api
 
-FIRST = (("What jostle is", "README.md"), ("All pages", "docs/README.md"), ("Gallery", gallery.PATH))
+FIRST = (("Overview", "README.md"), ("All pages", "docs/README.md"), ("Gallery", gallery.PATH))
 
 
 @dataclasses.dataclass(frozen=True)
