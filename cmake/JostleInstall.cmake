@@ -20,9 +20,10 @@ install(FILES README.md CITATION.cff report/licences.txt DESTINATION ${CMAKE_INS
 
 install(TARGETS ${libraries} EXPORT jostle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 include(PublicHeaders)
-foreach(header ${JOSTLE_PUBLIC_HEADERS})
+install(FILES ${JOSTLE_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle COMPONENT dev)
+foreach(header ${JOSTLE_INTERNAL_HEADERS})
   get_filename_component(folder ${header} DIRECTORY)
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle/${folder} COMPONENT dev)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jostle/internal/${folder} COMPONENT dev)
 endforeach()
 install(EXPORT jostle NAMESPACE jostle:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jostle
         FILE jostle-targets.cmake COMPONENT dev)

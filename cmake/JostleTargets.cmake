@@ -73,7 +73,8 @@ function(jostle_library name)
                                        $<BUILD_INTERFACE:jostle_options>)
   target_include_directories(
     jostle_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle>)
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle/internal>)
   if(arg_NOT_HOT)
     target_link_libraries(jostle_${name} PRIVATE $<BUILD_INTERFACE:jostle_not_hot>)
     jostle_precompile(jostle_${name} not_hot ${JOSTLE_COMMON_HEADERS} <filesystem> <fmt/format.h>)

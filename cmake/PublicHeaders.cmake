@@ -1,146 +1,24 @@
-# Public headers: all are installed, and another project may include them. A public header includes
-# only public headers: tests/cli/public_headers_test.py lists those that are missing here.
-set(JOSTLE_PUBLIC_HEADERS
-    config/fault.hpp
-    config/json/json.hpp
-    config/ladder.hpp
-    config/scene.hpp
-    engine/bed/bed_mechanics.hpp
-    engine/bed/container.hpp
-    engine/bed/mixture.hpp
-    engine/bed/packing.hpp
-    engine/bed/random.hpp
-    engine/bed/sizes.hpp
-    engine/bed/slab.hpp
-    engine/bed/vec3.hpp
-    engine/bed/window.hpp
-    engine/column.hpp
-    engine/discrete_element/discrete_element.hpp
-    engine/dynamics.hpp
-    engine/engines.hpp
-    engine/fields.hpp
-    engine/instruction_set.hpp
-    engine/monte_carlo/monte_carlo.hpp
-    engine/monte_carlo/moves.hpp
-    engine/monte_carlo/relaxation.hpp
-    engine/monte_carlo/stops.hpp
-    engine/monte_carlo/trial_loop.hpp
-    engine/starts/starts.hpp
-    engine/taps.hpp
-    ensemble/analysis/accuracy.hpp
-    ensemble/analysis/ageing/ageing.hpp
-    ensemble/analysis/ageing/ageing_table.hpp
-    ensemble/analysis/ageing/collapse.hpp
-    ensemble/analysis/ageing/fits.hpp
-    ensemble/analysis/ageing/law.hpp
-    ensemble/analysis/ageing/log_curves.hpp
-    ensemble/analysis/ageing/time_scaling.hpp
-    ensemble/analysis/ageing/trends.hpp
-    ensemble/analysis/analyses.hpp
-    ensemble/analysis/histogram_fit.hpp
-    ensemble/analysis/hysteresis.hpp
-    ensemble/analysis/memory/memory.hpp
-    ensemble/analysis/motion/motion_curves.hpp
-    ensemble/analysis/motion/motion_tables.hpp
-    ensemble/analysis/ordering/log_rank.hpp
-    ensemble/analysis/ordering/ordering_table.hpp
-    ensemble/analysis/ordering/times.hpp
-    ensemble/analysis/ordering/weibull.hpp
-    ensemble/analysis/spectra/ensemble_spectrum.hpp
-    ensemble/analysis/spectra/spectra.hpp
-    ensemble/analysis/steady_state.hpp
-    ensemble/analysis/structure_fits.hpp
-    ensemble/analysis/structure_tables.hpp
-    ensemble/analysis/sweeps/sweep_curve.hpp
-    ensemble/analysis/table.hpp
-    ensemble/analysis/volumes/compactivity.hpp
-    ensemble/analysis/volumes/volume_table.hpp
-    ensemble/fitting_report.hpp
-    ensemble/fold.hpp
-    ensemble/moments.hpp
-    ensemble/motion/motion.hpp
-    ensemble/motion/motion_records.hpp
-    ensemble/plan.hpp
-    ensemble/protocol_steps.hpp
-    ensemble/realization.hpp
-    ensemble/run.hpp
-    ensemble/sink.hpp
-    ensemble/statistics/autocorrelation.hpp
-    ensemble/statistics/blocking.hpp
-    ensemble/statistics/line.hpp
-    ensemble/statistics/log_estimate.hpp
-    ensemble/statistics/resampled_fit.hpp
-    ensemble/statistics/student_tests.hpp
-    ensemble/statistics/trend.hpp
-    ensemble/tap_rows.hpp
-    ensemble/target_precision.hpp
-    fitting/comparison/held_out.hpp
-    fitting/counts.hpp
-    fitting/curve.hpp
-    fitting/fit.hpp
-    fitting/intervals/diagnostics.hpp
-    fitting/intervals/memory.hpp
-    fitting/models/limit.hpp
-    fitting/models/model.hpp
-    fitting/models/models.hpp
-    fitting/report.hpp
-    fitting/solver/levenberg_marquardt.hpp
-    results/error.hpp
-    results/export/export.hpp
-    results/export/extended_xyz.hpp
-    results/export/packing_file.hpp
-    results/export/particle_columns.hpp
-    results/live_run.hpp
-    results/merge.hpp
-    results/patience.hpp
-    results/record.hpp
-    results/results_file.hpp
-    results/run_store.hpp
-    results/slurm_job.hpp
-    results/stored_realization.hpp
-    results/study.hpp
-    results/tables.hpp
-    structure/density/layers.hpp
-    structure/forces.hpp
-    structure/measure.hpp
-    structure/measurement.hpp
-    structure/observables.hpp
-    structure/order/structure_factor.hpp
-    structure/region.hpp
-    structure/voids/bernal_holes.hpp
-    structure/voids/clusters.hpp
-    structure/voids/pores.hpp
-    structure/voids/voronoi.hpp
-    study/available_cpus.hpp
-    study/bad_input.hpp
-    study/drawing/page/page.hpp
-    study/planning/cost_run.hpp
-    study/planning/cost_study.hpp
-    study/planning/job_plan.hpp
-    study/planning/pilot.hpp
-    study/planning/scene_pilot.hpp
-    study/planning/shards.hpp
-    study/provenance.hpp
-    study/results_input.hpp
-    study/running/merge.hpp
-    study/running/run.hpp
-    study/running/scene_file.hpp
-    study/running/scene_tables.hpp
-    study/running/scene_warnings.hpp
-    study/running/self_checks.hpp
-    study/seconds.hpp
-    study/tables/analyse.hpp
-    study/tables/fit_source.hpp
-    study/tables/fits.hpp
-    study/tables/laws/own_law.hpp
-    study/tables/measured/curve_columns.hpp
-    study/tables/measured/curve_file.hpp
-    study/tables/measured/delimited_text.hpp
-    study/tables/motion.hpp
-    study/tables/observable_series.hpp
-    study/tables/points/derived_value.hpp
-    study/tables/points/half_widths.hpp
-    study/tables/points/sweep.hpp
-    study/tables/structure.hpp
-    study/tables/target_precision.hpp
-    study/version.hpp)
+# The public headers are those of sdk/jostle: #include <jostle/run.hpp>. What they include, from header to
+# header, is installed under jostle/internal and may change in every version.
+file(GLOB JOSTLE_PUBLIC_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/sdk/jostle/*.hpp)
+
+# jostle_included(RESULT HEADER ...): every header of the project that these include, with the headers that it
+# includes; names from the root of the sources.
+function(jostle_included result)
+  set(waiting ${ARGN})
+  set(found)
+  while(waiting)
+    list(POP_FRONT waiting header)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+    file(STRINGS ${header} lines REGEX "^#include \"")
+    foreach(line ${lines})
+      string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" name ${line})
+      if(NOT name IN_LIST found)
+        list(APPEND found ${name})
+        list(APPEND waiting ${PROJECT_SOURCE_DIR}/${name})
+      endif()
+    endforeach()
+  endwhile()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+jostle_included(JOSTLE_INTERNAL_HEADERS ${JOSTLE_PUBLIC_HEADERS})

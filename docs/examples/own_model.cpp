@@ -1,9 +1,7 @@
 // A model of one's own: a power-law approach to the final density, fitted without a guess.
 #include <cmath>
 #include <iostream>
-
-#include "fitting/fit.hpp"
-#include "fitting/report.hpp"
+#include <jostle/fit.hpp>
 
 class PowerApproach final : public jostle::Model {
  public:

@@ -1,13 +1,11 @@
 // A scene run into memory, by a sink of one's own: no results file. Its first observable is then
 // analysed and fitted as `jostle analyse` and `jostle fit` would.
 #include <cstdio>
+#include <jostle/analyse.hpp>
+#include <jostle/scene.hpp>
+#include <jostle/sink.hpp>
 #include <map>
 #include <mutex>
-
-#include "ensemble/analysis/steady_state.hpp"
-#include "ensemble/run.hpp"
-#include "study/running/scene_file.hpp"
-#include "study/tables/fits.hpp"
 
 /// Keeps the first observable of every realization, tap after tap.
 class FirstObservable final : public jostle::Sink {

@@ -18,6 +18,7 @@ MAY_INCLUDE = {
     "results": {"engine", "structure", "ensemble", "results"},
     "bench": {"engine", "structure", "fitting", "ensemble", "config", "bench", "tests"},
     "study": {"engine", "structure", "fitting", "ensemble", "config", "results", "study"},
+    "sdk": {"engine", "structure", "fitting", "ensemble", "config", "results", "study"},
     "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "study",
             "cli"},
 }

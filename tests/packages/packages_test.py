@@ -55,7 +55,7 @@ class Packages(unittest.TestCase):
                            "share/bash-completion/completions/jostle", "share/zsh/vendor-completions/_jostle",
                            "share/jostle/scenes/quickstart.json", "share/jostle/scene.schema.json",
                            "share/doc/jostle/docs/tutorial.md", "share/doc/jostle/copyright"),
-                "libjostle-dev": ("include/jostle/study/running/run.hpp", "lib/libjostle_study.a",
+                "libjostle-dev": ("include/jostle/run.hpp", "lib/libjostle_study.a",
                                   "lib/cmake/jostle/jostle-config.cmake"),
                 "python3-jostle": ("lib/python3/dist-packages/jostle/__init__.py",)}.items():
             for file in files:

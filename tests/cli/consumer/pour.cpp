@@ -1,7 +1,6 @@
 // A program outside the project: pours a packing with the installed library and prints <Z>.
 #include <cstdio>
-
-#include "engine/starts/starts.hpp"
+#include <jostle/engine.hpp>
 
 int main() {
   jostle::RandomStream random(jostle::stream_key(1, 0, 0, jostle::Purpose::start));

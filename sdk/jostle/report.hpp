@@ -1,0 +1,5 @@
+#pragma once
+
+// Results as one HTML page.
+
+#include "study/drawing/page/page.hpp"
