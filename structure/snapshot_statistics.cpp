@@ -78,20 +78,21 @@ bool has_height_bins(const Packing& packing, double bin_width) {
 }
 
 void require_height_bins(const Packing& packing, double bin_width) {
+  n_height_bins(packing, bin_width);
+}
+
+std::size_t n_height_bins(const Packing& packing, double bin_width) {
   assert(bin_width > 0 && !packing.centres.empty());
-  if (has_height_bins(packing, bin_width)) return;
+  const double top = top_height(packing);
+  if (top / bin_width < most_height_bins(packing))
+    return static_cast<std::size_t>(top / bin_width) + 1;
   throw std::invalid_argument(
       std::to_string(packing.centres.size()) + " spheres with centres up to " +
-      std::to_string(top_height(packing)) + " diameters make more than " +
+      std::to_string(top) + " diameters make more than " +
       std::to_string(static_cast<std::uint64_t>(most_height_bins(packing))) + " bins of " +
       std::to_string(bin_width) +
       " by height, nearly all of them empty: take wider ones, and see whether a sphere lies far "
       "above the bed");
-}
-
-std::size_t n_height_bins(const Packing& packing, double bin_width) {
-  require_height_bins(packing, bin_width);
-  return static_cast<std::size_t>(top_height(packing) / bin_width) + 1;
 }
 
 std::vector<double> height_histogram(const Packing& packing, double bin_width) {
