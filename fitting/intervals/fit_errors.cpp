@@ -53,7 +53,9 @@ DependentErrors of_memory(const Curve& curve, const LinearProblem& problem, Fit&
   const auto order = in_order_of_t(curve.t);
   std::vector<double> t(curve.t);
   std::sort(t.begin(), t.end());
-  const Eigen::MatrixXd jacobian = problem.jacobian(order, Eigen::all);
+  // Eigen 3.4 and 5 have different names for all columns.
+  const auto columns = Eigen::seqN(0, problem.jacobian.cols());
+  const Eigen::MatrixXd jacobian = problem.jacobian(order, columns);
   const Eigen::VectorXd residuals = problem.residuals(order);
   MemoryErrors errors = memory_errors(t, jacobian, residuals, fit.sigma_given);
   fit.memory = errors.memory;

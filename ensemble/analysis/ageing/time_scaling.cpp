@@ -122,7 +122,7 @@ Ages of_ages(const LogCurves& all, const std::vector<std::uint64_t>& waiting_tim
     found.curves.first.push_back(rows.size());
   }
   found.curves.ln_a = all.ln_a(rows);
-  found.curves.influences = all.influences(rows, Eigen::all);
+  found.curves.influences = all.influences(rows, Eigen::seqN(0, all.influences.cols()));
   found.t_w = Eigen::Map<const Eigen::VectorXd>(t_w.data(), static_cast<Eigen::Index>(t_w.size()));
   return found;
 }
