@@ -190,7 +190,11 @@ void describe_kinds(const KeyedNumber<Part, Kind, n>& field, bool required, Obje
     one_each.push_back({{"required", Json::array({key})}});
     keys.emplace_back(key);
   }
-  out.rules.update(required ? Json{{"oneOf", one_each}} : at_most_one_of(keys));
+  if (required) {
+    out.rules["oneOf"] = one_each;
+  } else {
+    out.rules.update(at_most_one_of(keys));
+  }
 }
 template <class Part, class Kind, std::size_t n>
 void describe_field(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& out,

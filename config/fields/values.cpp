@@ -197,7 +197,9 @@ Json at_most_one_of(const std::vector<std::string>& keys) {
       pairs.push_back({{"required", Json::array({keys[j], keys[i]})}});
     }
   }
-  return {{"not", pairs.size() == 1 ? pairs.at(0) : Json{{"anyOf", pairs}}}};
+  if (pairs.size() == 1) return {{"not", pairs.at(0)}};
+  const Json any = {{"anyOf", pairs}};
+  return {{"not", any}};
 }
 
 }  // namespace jostle::inline config

@@ -81,7 +81,7 @@ Json series_json(const FigureSeries& series, Digits digits) {
 Json panel_json(const FigurePanel& panel, Digits digits) {
   Json rules = Json::array(), series = Json::array();
   for (const FigureRule& rule : panel.rules) {
-    rules.push_back(rule.x ? Json{{"x", page_number(*rule.x)}} : Json{{"y", page_number(*rule.y)}});
+    rules.push_back({{rule.x ? "x" : "y", page_number(rule.x ? *rule.x : *rule.y)}});
   }
   for (const FigureSeries& one : panel.series) series.push_back(series_json(one, digits));
   return {{"title", page_text(panel.title)},
