@@ -1,6 +1,7 @@
 #include "study/tables/fits.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

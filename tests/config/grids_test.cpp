@@ -1,5 +1,6 @@
 #include "config/grids.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 namespace jostle {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tests/hard_cases/cases.hpp"
 
 using namespace jostle;

@@ -1,5 +1,6 @@
 #include "structure/measure.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

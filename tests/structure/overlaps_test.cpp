@@ -1,4 +1,5 @@
 // What measure() makes of spheres that lie a little in one another, as those of discrete elements.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 #include "study/tables/laws/own_law.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

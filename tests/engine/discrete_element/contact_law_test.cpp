@@ -1,5 +1,6 @@
 #include "engine/discrete_element/kernel/contact_law.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "structure/order/neighbours.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
