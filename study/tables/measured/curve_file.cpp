@@ -41,8 +41,7 @@ bool has_decimal_comma(const std::string& text) {
 /// A file as it is read.
 class Reader {
  public:
-  Reader(const std::string& path, const DelimitedText& text, const ColumnRoles& roles)
-      : path_(path), text_(text), roles_(roles) {}
+  Reader(const std::string& path, const ColumnRoles& roles) : path_(path), roles_(roles) {}
 
   /// A number; NaN where the field has no value. Throws BadInput.
   double value(const DelimitedLine& line, std::size_t column) const {
@@ -93,7 +92,6 @@ class Reader {
   }
 
   const std::string& path_;
-  const DelimitedText& text_;
   const ColumnRoles& roles_;
 };
 
@@ -235,7 +233,7 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
 MeasuredCurve read_curve(const std::string& path, const CurveReading& reading) {
   const DelimitedText text = read_delimited_text(path);
   const ColumnRoles roles = column_roles(path, text, reading.columns);
-  const Reader reader(path, text, roles);
+  const Reader reader(path, roles);
   Rows rows = rows_of(reader, text, roles, reading);
   MeasuredCurve measured{{}, roles.notes};
   if (rows.without_value > 0) {

@@ -19,7 +19,7 @@ namespace jostle {
 
 class SteepestDescentTwin {
  public:
-  SteepestDescentTwin(const Packing& bed, double radius) : bed_(bed), boundary_(bed.container) {
+  SteepestDescentTwin(const Packing& bed, double radius) : boundary_(bed.container) {
     const Vec3 periods = boundary_.periods();
     for (std::size_t k = 0; k < bed.centres.size(); ++k) {
       for (int i = -1; i <= 1; ++i) {
@@ -193,7 +193,6 @@ class SteepestDescentTwin {
     return at(high);
   }
 
-  const Packing& bed_;
   Boundary boundary_;
   std::vector<Ball> balls_;
   std::vector<Face> faces_;
