@@ -22,14 +22,14 @@ ROOMS = ("bench", "cli", "cmake", "config", "docs", "engine", "ensemble", "examp
 
 # Rooms that a rule has not reached yet. Rooms are removed, never added.
 NOT_YET = {
-    "start": ("root", "bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
+    "start": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
               "results", "structure", "study", "tests"),
     "per": ("config", "docs", "engine"),
     "name": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "results", "structure", "study",
              "tests"),
     "help": (),
-    "width": ("root", "bench", "docs", "tests"),
-    "private": ("root", "bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
+    "width": ("bench", "docs", "tests"),
+    "private": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
                 "results", "structure", "study", "tests"),
 }
 
