@@ -32,7 +32,7 @@ class FirstObservable final : public jostle::Sink {
   }
 
   /// Those of one sweep point, in the order of realizations.
-  std::vector<Series> at(std::uint32_t point) const {
+  std::vector<Series> series_at(std::uint32_t point) const {
     std::vector<Series> all;
     for (const auto& [id, series] : series_) {
       if (id.point == point) all.push_back(series);
@@ -68,7 +68,7 @@ int main(int n_arguments, char** arguments) try {
   jostle::run_ensemble(loaded.plans, all, {.threads = 2}, sink, progress);
 
   for (std::uint32_t point = 0; point < loaded.plans.size(); ++point) {
-    const auto realizations = sink.at(point);
+    const auto realizations = sink.series_at(point);
     if (realizations.empty()) continue;
     jostle::SteadyStateTest test;
     for (const auto& series : realizations) {

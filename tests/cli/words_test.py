@@ -235,7 +235,8 @@ def faults():
             texts = SCANNERS[suffix](source)
         if suffix == ".md":
             for n, line in enumerate(source.splitlines(), 1):
-                if len(line) > 120 and not line.startswith("|") and " " in line[:120].strip():
+                # Tables and commands are not wrapped.
+                if len(line) > 120 and not line.startswith(("|", "    ")) and " " in line[:120].strip():
                     yield "width", name, n, f"{len(line)} characters"
         for text in texts:
             for rule, excerpt in faults_of_text(text):
