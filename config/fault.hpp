@@ -4,10 +4,11 @@
 
 namespace jostle::inline config {
 
-/// What is wrong with one value of a scene.
+/// A fault of one value of a scene.
 struct Fault {
   std::string pointer;  // JSON pointer to the value (RFC 6901); "" is the whole scene
-  std::string message;  // what, why, the allowed range or keys, and a did-you-mean
+  std::string
+      message;  // the fault, the reason, the allowed range or keys, and the closest valid name
   bool operator==(const Fault&) const = default;
 };
 

@@ -27,8 +27,8 @@ inline constexpr std::uint64_t most_snapshots_by_rule = 100'000;
 /// those that are named, and those of `every`, of which at most most_snapshots_by_rule + 1.
 std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& choice, std::uint64_t taps);
 
-/// What is followed over so many taps. Grids that are not chosen begin alike for any number of
-/// them: a run that is resumed with more taps has missed nothing.
+/// Returns the waiting times and lags for so many taps. Default grids begin alike for any number of
+/// taps, so that a run can be resumed with more.
 MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps);
 
 }  // namespace jostle::inline config

@@ -29,13 +29,13 @@ std::uint64_t raised(std::uint64_t sweeps, double factor) {
                                                     : most_sweeps;
 }
 
-/// What of an engine's settings a ladder varies.
+/// The settings of an engine that a ladder varies.
 struct Written {
   Json operator()(const MonteCarlo& engine) const { return written_part(engine.relax); }
   Json operator()(const DiscreteElement& engine) const { return written_engine(engine); }
 };
 
-/// What every ladder has.
+/// The settings of every ladder.
 class LadderMaker {
  public:
   explicit LadderMaker(const Scene& scene) : scene_(scene) {
@@ -308,9 +308,9 @@ MostComplete most_complete(const std::vector<PilotSetting>& settings) {
 
 namespace {
 
-constexpr double layer_spacing = 0.8165;  // of close-packed layers, sqrt(2/3) diameters
+constexpr double layer_spacing = 0.8165;  // spacing of close-packed layers, sqrt(2/3) diameters
 
-/// Whether a window of heights leaves room for it above the floor.
+/// Tests if a window of heights leaves room for it above the floor.
 bool can_taper(const Window& window) {
   const auto* heights = std::get_if<HeightWindow>(&window);
   return heights == nullptr || heights->low >= 0.5 * layer_spacing;

@@ -25,13 +25,13 @@ struct PilotSetting {
 /// of polar moves; of Metropolis moves the published adaptation, this project's, and none; half the
 /// spheres on half the footprint, where the start fills any; between walls the other of the two
 /// pours, fitted or direct, unless the start is relaxed. Caps on sweeps are raised with the stops.
-/// Of discrete elements: a tenfold and a hundredfold kinetic energy that counts as rest, and five
+/// For discrete elements: a tenfold and a hundredfold kinetic energy that counts as rest, and five
 /// and twenty-five times the time it is to last (of a fixed time a quarter to four times of it);
 /// time steps half, twice and four times as many; springs ten times softer and stiffer.
 std::vector<PilotSetting> ladder(const Scene& scene);
 
-/// The settings whose stops are most complete. The last is what the others are compared with; the
-/// scene's own, setting 0, stands before both.
+/// The settings whose stops are most complete. The last is the reference of all others; setting 0
+/// is the scene's own.
 struct MostComplete {
   std::size_t before = 0, last = 0;
 };

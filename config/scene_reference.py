@@ -18,7 +18,7 @@ its form" is one of those that make one of several forms of its object.
 
 
 def resolved(schema):
-    """Without $ref, and with what allOf says in the schema itself."""
+    """Resolves $ref and joins allOf into the schema."""
     while "$ref" in schema:
         name = schema["$ref"].removeprefix("#/definitions/")
         schema = {**SCHEMA["definitions"][name], **{k: v for k, v in schema.items() if k != "$ref"}}
@@ -58,7 +58,7 @@ def limits(schema):
 
 
 def elements(schema):
-    """What the elements of a list may be."""
+    """Describes the elements of a list."""
     items = schema.get("items", {})
     return [one for item in (items if isinstance(items, list) else [items]) for one in variants(resolved(item))]
 
@@ -92,10 +92,10 @@ class Reference:
 
     def __init__(self):
         self.rows = {}
-        self.described = {}  # definitions with keys of their own: the path where they stand
+        self.described = {}  # definitions with keys of their own: their path
 
     def add(self, path, schema, given=""):
-        """What stands at `path`, and all below it; `given`: "required", if it is."""
+        """Rows for the value at `path` and all below it; `given`: "required", if it is."""
         name = definition(schema)
         schema = resolved(schema)
         kinds = variants(schema)
@@ -126,7 +126,7 @@ class Reference:
             if one.get("type") == "array":
                 for element in elements(one):
                     self.add(f"{path}[]", element)
-                self.rows.pop(f"{path}[]", None)  # said by the list itself
+                self.rows.pop(f"{path}[]", None)  # described by the list itself
 
 
 def definition(schema):

@@ -20,8 +20,8 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& sweep);
 
 /// The point's identity: 0 for a point that sets nothing, else FNV-1a (64 bits, offset
 /// 0xcbf29ce484222325, prime 0x100000001b3) over the bytes of the texts `pointer=value\n`, one for
-/// every pair, value in canonical_text, the texts sorted bytewise; 1 in place of a 0. So it depends
-/// on neither the order of axes nor other points.
+/// every pair, value in canonical_text, the texts sorted bytewise; 1 in place of a 0. It therefore
+/// depends on neither the order of axes nor other points.
 std::uint64_t point_id(const SweepPoint& point);
 
 /// "/protocol/0/tap/dilate" -> "dilate"; of an element of a list with the list's name: "width/1".

@@ -72,7 +72,7 @@ class Json {
   bool boolean() const;
   double number() const;
   std::uint64_t whole_number() const;
-  std::int64_t signed_number() const;  // of an integer below 2^63
+  std::int64_t signed_number() const;  // An integer below 2^63
   const std::string& text() const;
   const std::vector<Json>& elements() const;
   const std::vector<Member>& members() const;
@@ -87,7 +87,7 @@ class Json {
   /// Throws JsonError where there is none.
   const Json& at(std::string_view key) const;
   const Json& at(std::size_t index) const;
-  /// What a JSON pointer (RFC 6901) leads to; nothing where it leads nowhere.
+  /// Returns the value at a JSON pointer (RFC 6901), or nothing.
   const Json* find_pointer(std::string_view pointer) const;
   Json* find_pointer(std::string_view pointer);
 

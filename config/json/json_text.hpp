@@ -24,7 +24,7 @@ std::string pointer_to(std::string_view pointer, std::size_t index);
 /// The parts, one after another, with `separator` between them.
 std::string joined(const std::vector<std::string>& parts, std::string_view separator);
 
-/// Whether `pointer` is `ancestor` or below it.
+/// Tests if `pointer` is `ancestor` or below it.
 bool is_within(std::string_view pointer, std::string_view ancestor);
 
 /// One text for all ways to write a value: keys sorted, no blanks, whole numbers without a point,

@@ -35,7 +35,7 @@ std::string reason(std::string_view what) {
   return std::string(what);
 }
 
-/// What other dialects allow and JSON does not, at the byte where reading ended; else empty.
+/// Describes syntax of other dialects at the byte where reading ended; otherwise empty.
 std::string_view foreign_dialect(std::string_view text, std::size_t end) {
   if (end == 0 || end > text.size()) return {};
   const char last = text[end - 1];

@@ -11,7 +11,7 @@ namespace jostle::inline config {
 
 namespace {
 
-// What the settings of a choice are when only its name is written.
+// The settings of a choice when only its name is written.
 const Json no_settings = Json::object();
 
 constexpr std::size_t longest_quote = 60;

@@ -16,8 +16,8 @@ namespace jostle::inline config {
 /// default (settings are then an empty object).
 struct Choice;
 
-/// One value of a scene with its place in the file. Whatever does not suit is noted as a fault, and
-/// what was to be read keeps its default: so reading goes on and finds the other faults.
+/// A value of a scene with its place in the file. An invalid value is recorded as a fault and keeps
+/// its default, so that reading continues and finds all faults.
 class Reader {
  public:
   Reader(const Json& value, std::string pointer, std::vector<Fault>& faults)
@@ -28,19 +28,19 @@ class Reader {
   void fault(std::string message) const { faults_->push_back({pointer_, std::move(message)}); }
   /// Notes that the value is something else than what is expected.
   void wrong_type(std::string_view expected) const;
-  /// Notes that a key is missing; `what` says what it should hold.
+  /// Notes that a key is missing; `what` describes its content.
   void missing(std::string_view key, std::string_view what) const;
-  /// Whether no fault was noted at this value or below it.
+  /// Tests if no fault was noted at this value or below it.
   bool sound() const;
 
-  /// Whether this is an object; keys other than `allowed` are faults.
+  /// Tests if this is an object; keys other than `allowed` are faults.
   bool is_object_of(const std::vector<std::string>& allowed) const;
-  /// Whether this is a list of `least` to `most` values.
+  /// Tests if this is a list of `least` to `most` values.
   bool is_list(std::size_t least, std::size_t most, std::string_view of_what) const;
   Reader element(std::size_t index) const;
   std::optional<Reader> find(const std::string& key) const;
 
-  /// The value itself; nothing, and a fault, where it is of another type or out of range. Numbers
+  /// The value itself; nothing, and a fault, where it has another type or is out of range. Numbers
   /// are read by their form (config/fields/values.hpp).
   std::optional<std::uint64_t> whole_number(std::uint64_t least, std::uint64_t most) const;
   std::optional<bool> boolean() const;
@@ -81,7 +81,7 @@ std::string described(const Json& value);
 /// "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 
-/// Whether no fault lies at `pointer` or below.
+/// Tests if no fault was noted at `pointer` or below.
 bool sound(const std::vector<Fault>& faults, std::string_view pointer);
 
 }  // namespace jostle::inline config

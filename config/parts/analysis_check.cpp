@@ -11,7 +11,7 @@ namespace jostle::inline config {
 
 namespace {
 
-constexpr std::uint64_t fewest_ageing_taps = 2;  // of the default grid
+constexpr std::uint64_t fewest_ageing_taps = 2;  // for the default grid
 
 /// Notes analyses of what the scene does not observe, or of taps that it does not have.
 class AnalysisCheck {
@@ -153,8 +153,8 @@ class AnalysisCheck {
   std::uint64_t taps_;
 };
 
-/// What a sweep can be drawn of, besides the value: the results of the scene's other analyses and
-/// fits of the observable.
+/// Quantities of a sweep besides the value: the results of the scene's other analyses and fits of
+/// the observable.
 std::vector<std::string> made_of(const Scene& scene, const std::string& observable) {
   std::vector<std::string> kinds;
   const auto add = [&](const char* kind, const auto& requests) {

@@ -6,7 +6,7 @@ namespace jostle::inline config {
 
 namespace {
 
-/// Any positive width: of one that is too narrow, the engine says why.
+/// Any positive width is accepted here: the engine reports widths that are too narrow.
 Number positive(Number form) {
   form.range = above(0, form.range.high);
   return form;

@@ -110,11 +110,11 @@ void describe_keep(ObjectSchema& out, Definitions&) {
                    {"uniqueItems", true},
                    {"items", words_schema(kept_names())}};
   out.properties["keep"] = described_as(
-      names, "What is kept",
+      names, "Kept data of a snapshot",
       "Velocities (and spins, with friction), contacts with their forces, granular_temperature by "
       "height, and forces (of floor and sides, and the force-moment tensor of the bed) are of "
       "discrete elements, which keep all of them by default; Monte Carlo keeps the first three. "
-      "Velocities and contacts stand beside positions. driven_temperature, on request, is the "
+      "Velocities and contacts require positions. driven_temperature, on request, is the "
       "granular temperature while the floor moves, of half_sine and vibration.",
       by_default.at("keep"), "");
 }
@@ -202,7 +202,7 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
           "out",
           part.name);
     if (part.beside_positions && !snapshots.positions)
-      return fmt::format("\"{}\" stands beside positions: keep positions, too", part.name);
+      return fmt::format("\"{}\" requires positions: keep positions, too", part.name);
   }
   return std::nullopt;
 }

@@ -70,8 +70,7 @@ Json written_part(const SnapshotChoice& snapshots);
 Json part_schema(std::type_identity<SnapshotChoice> type, Definitions& definitions);
 /// By default everything that the engine has is kept.
 SnapshotChoice default_snapshots(bool grains);
-/// The kept parts that only discrete elements have, and those that stand beside positions, where
-/// they cannot be kept: why.
+/// Faults of kept parts that only discrete elements have, and of those that require positions.
 std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grains);
 
 /// The form of a sweep.
@@ -99,7 +98,7 @@ Scene read_scene(const Reader& in);
 
 /// Notes what is at odds in values that are right one by one.
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);
-/// Of these, what concerns its analyses.
+/// Notes faults of its analyses.
 void check_analyses(const Scene& scene, std::vector<Fault>& faults);
 /// Checks the kinds of a mixture, as a part of check_consistency().
 void check_kinds(const Scene& scene, std::vector<Fault>& faults);
@@ -112,11 +111,11 @@ void check_mixture(const Scene& scene, const DiameterRange& range,
 /// scene does not take spheres of several sizes.
 std::shared_ptr<const Sizes> sizes_for(const std::shared_ptr<const Sizes>& of_file,
                                        const Scene& scene, const std::string& path);
-/// Of these, what concerns the motion of spheres.
+/// Notes faults of the followed motion.
 void check_motion(const Scene& scene, std::vector<Fault>& faults);
-/// Of these, what concerns the structure of its packings.
+/// Notes faults of the measured structure.
 void check_structure(const Scene& scene, std::vector<Fault>& faults);
-/// Of these, what concerns the number of realizations.
+/// Notes faults of the number of realizations.
 void check_until(const Scene& scene, std::vector<Fault>& faults);
 /// Notes analyses over the points of a sweep that does not have what they need.
 void check_sweep_analyses(const Scene& scene, std::vector<Fault>& faults);

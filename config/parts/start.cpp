@@ -27,7 +27,7 @@ std::vector<std::string> start_names() {
 }
 
 void read_pour(const Reader& in, StartChoice& into) {
-  // Of the rule before: random moves of every sphere.
+  // A setting of the former rule: random moves of every sphere.
   if (const auto fitted = in.find("fitted")) {
     for (const std::string moves : {"max_step", "max_sweeps"}) {
       if (const auto key = fitted->find(moves))

@@ -28,7 +28,7 @@ std::vector<std::uint32_t> listed_kinds(const Sizes* sizes, const Scene& scene,
     return kinds;
   }
   const std::vector<std::string> names = kind_names(*sizes);
-  std::vector<std::uint32_t> number;  // of the file's kinds, in the scene
+  std::vector<std::uint32_t> number;  // place in the scene of the file's kinds
   for (const std::string& name : names) {
     const auto found = std::ranges::find(scene.kinds, name, &MixtureKind::name);
     if (found == scene.kinds.end())

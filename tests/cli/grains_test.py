@@ -187,7 +187,7 @@ class Grains(Case):
                 ({"engine": {"monte_carlo": {}}, "protocol": []},
                  '/snapshots/keep: "velocities" is of discrete elements only: Monte Carlo has no times'),
                 ({"snapshots": {"taps": [0], "keep": ["contacts"]}},
-                 '/snapshots/keep: "contacts" stands beside positions: keep positions, too')):
+                 '/snapshots/keep: "contacts" requires positions: keep positions, too')):
             asked = {"taps": [0], "keep": ["positions", "velocities"]}
             self.write(changed(GRAINS, **{"snapshots": asked, **change}))
             self.assertIn(message, self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)

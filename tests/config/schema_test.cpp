@@ -41,7 +41,7 @@ const std::vector<std::string> cross_field_messages{
     "a tap has no meaning without gravity",
     "every relaxation would end capped",
     "is of discrete elements only",
-    "stands beside positions",
+    "requires positions",
     "is beyond the last tap",
     "zipped lists must have the same length",
     "more than 100000 points",

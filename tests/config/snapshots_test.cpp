@@ -129,7 +129,7 @@ TEST_CASE("What an engine does not have cannot be kept, nor what stands beside n
   CHECK(faults(R"("snapshots": {"keep": ["driven_temperature"]})")
             .starts_with("/snapshots/keep: \"driven_temperature\" is of discrete elements only"));
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["velocities"]})") ==
-        "/snapshots/keep: \"velocities\" stands beside positions: keep positions, too\n");
+        "/snapshots/keep: \"velocities\" requires positions: keep positions, too\n");
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["forces", "granular_temperature"]})").empty());
 }
 
