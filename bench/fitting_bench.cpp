@@ -151,7 +151,7 @@ double digits(const Eigen::VectorXd& x, const std::vector<double>& certified) {
 
 struct Measured {
   Solution solution;
-  double seconds = 0;  // of processor time, the median
+  double seconds = 0;  // seconds of processor time, the median
 };
 
 // The solvers in turn, each for about a millisecond a turn.

@@ -9,7 +9,7 @@ namespace jostle::bench {
 /// What some trials cost.
 struct Rate {
   std::uint64_t trials = 0;
-  double seconds = 0;  // of processor time of the calling thread
+  double seconds = 0;  // seconds of processor time of the calling thread
   double acceptance = 0;
   double distance_tests_per_trial = 0;
   double list_renewals_per_sweep = 0;  // a rebuild of all lists counts as a renewal of each

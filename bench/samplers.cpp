@@ -28,7 +28,7 @@ struct Course {
   std::uint32_t n_spheres;
   Tap tap;
   Move move;
-  double eta;     // of the mean height, per 100 sweeps
+  double eta;     // eta of the mean height, per 100 sweeps
   double target;  // times fewer seconds per tap; 0: reported without a target
 };
 

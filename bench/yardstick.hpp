@@ -19,7 +19,7 @@ namespace jostle::bench {
 
 enum class YardstickMove { polar, metropolis_cold, metropolis_free };
 
-/// Whether lists are sorted at a rebuild, which pays in beds and glasses, or only split into near
+/// True if lists are sorted at a rebuild, which pays in beds and glasses, or only split into near
 /// and far, which pays in fluids.
 enum class YardstickLists { sorted, split };
 

@@ -20,7 +20,7 @@ struct Column {
   std::string long_name;  // a sentence
   std::string source;     // paper, or "jostle"
   Shown shown = Shown::spread;
-  int decimals = 4;       // of Shown::mean
+  int decimals = 4;       // decimals of a mean (Shown::mean)
   std::string if_any{};   // the sentence, with {} for "3 of 60" taps or for "1.5 %"
   std::string if_none{};  // the sentence where there is none; may be empty
   bool operator==(const Column&) const = default;

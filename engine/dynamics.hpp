@@ -20,7 +20,7 @@ enum class DynamicsStatus : std::uint32_t { running = 0, settled = 1, capped = 2
 
 /// What moving the spheres took.
 struct Effort {
-  std::uint64_t units = 0;       // of the engine: trials, sphere steps
+  std::uint64_t units = 0;       // units of the engine: trials, sphere steps
   std::uint64_t pair_tests = 0;  // pair distances computed in them
 
   Effort& operator+=(const Effort& other) {
@@ -57,16 +57,16 @@ class Dynamics {
   virtual void settle(const Start& start) = 0;
   /// Excites the bed as it is, or begins to. `random` is the stream of Purpose::tap.
   virtual void tap(const Tap& tap, RandomStream& random) = 0;
-  /// Of the tap that was just begun, keeps what the bed does while the floor moves, in bins of this
-  /// height (diameters): mechanics().driven. Nothing else depends on it. An engine without time, or
-  /// a tap that moves no floor, has nothing to keep.
+  /// For the tap that was just begun, keeps what the bed does while the floor moves, in bins of
+  /// this height (diameters): mechanics().driven. Nothing else depends on it. An engine without
+  /// time, or a tap that moves no floor, has nothing to keep.
   virtual void watch_motion(double /*bin_width*/) {}
   /// Goes on for about so many units, or until the bed is at rest. At rest it does nothing. Throws
   /// std::invalid_argument where the engine's settings do not suit the container.
   virtual DynamicsStatus advance(std::uint64_t units) = 0;
   /// Gives the bed as it is: the container, and [n_spheres] centres in the order of load().
   virtual void store(Packing& bed) const = 0;
-  /// Of the last tap, along the engine's columns. To be called once the bed is at rest.
+  /// For the last tap, along the engine's columns. To be called once the bed is at rest.
   virtual std::vector<double> diagnostics() const = 0;
   /// What moves and acts in the bed, at the positions that store() gives; to be called once the bed
   /// is at rest. Nothing that follows depends on whether it was. Nothing where spheres do not move

@@ -165,12 +165,13 @@ Control control(const Tap& tap);
 /// relaxes: a dilation or a lift of strength zero.
 std::optional<std::string> tap_fault(const Tap& tap, const Container& container);
 
-/// Whether the tap moves the floor, not the spheres: what excite() cannot do.
+/// True if the tap moves the floor, not the spheres: what excite() cannot do.
 bool moves_floor(const Tap& tap);
 
 /// What a tap did beyond moving the spheres.
 struct TapReport {
-  std::uint64_t lateral_offsets_dropped = 0;  // of n_spheres; only a shake drops any
+  std::uint64_t lateral_offsets_dropped =
+      0;  // lateral offsets dropped of n_spheres; only a shake drops any
 };
 
 /// Applies the tap to every centre. Only Shake draws from `random`. Throws std::invalid_argument

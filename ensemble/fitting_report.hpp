@@ -7,7 +7,7 @@ namespace jostle::inline ensemble {
 /// What it took to fit a periodic pour between walls (FittedPour), and what that made of the bed.
 struct FittingReport {
   double spheres_moved = 0;
-  double mean_rise = 0;  // of them, diameters; 0 where none moved
+  double mean_rise = 0;  // mean rise of the moved spheres, diameters; 0 where none moved
   /// <Phi_c> of the periodic pour and of the fitted one: CorrectedFraction.
   double corrected_fraction_before = 0, corrected_fraction_after = 0;
   /// Solids fraction away from the walls, by 7 R or, if that is less, a quarter of the smaller

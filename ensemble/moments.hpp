@@ -23,7 +23,7 @@ class Moments {
  private:
   std::uint64_t count_ = 0;
   double origin_ = 0;  // the first value
-  double mean_ = 0;    // of the differences from it
+  double mean_ = 0;    // mean of the differences from it
   double sum_of_squares_ = 0;
 };
 

@@ -22,8 +22,8 @@ namespace jostle::inline ensemble {
 /// Realizations of a plan, at most.
 inline constexpr std::uint32_t most_realizations = 1'000'000;
 
-/// Of all sweep points together, at most: realizations, observables, values of the sweep, taps with
-/// snapshots.
+/// For all sweep points together, at most: realizations, observables, values of the sweep, taps
+/// with snapshots.
 inline constexpr std::uint64_t most_realizations_in_all = 10'000'000;
 inline constexpr std::uint64_t most_observables_in_all = 2'000'000;
 inline constexpr std::uint64_t most_swept_values_in_all = 2'000'000;
@@ -44,7 +44,7 @@ struct Snapshots {
   double contact_cut = 1.05;  // diameters
   bool height_histogram = true;
   double bin_width = 0.1;  // diameters
-  // Of engines that move spheres in time (BedMechanics):
+  // For engines that move spheres in time (BedMechanics):
   bool velocities = false;            // and spins; where positions are kept
   bool contacts = false;              // where positions are kept
   bool granular_temperature = false;  // in bins as those of the histogram
@@ -53,7 +53,7 @@ struct Snapshots {
   bool operator==(const Snapshots&) const = default;
 };
 
-/// Whether every sweep point draws its own random numbers, or start and tap streams are the same at
+/// True if every sweep point draws its own random numbers, or start and tap streams are the same at
 /// all points (those of point id 0), so that points are compared on paired packings. The trials
 /// after taps always draw the point's own.
 enum class Streams { independent, matched };
@@ -70,10 +70,10 @@ struct Plan {
   Streams streams = Streams::independent;
 
   Container container;
-  std::uint32_t n_spheres = 0;     // of all kinds
-  std::vector<MixtureKind> kinds;  // of a mixture whose sizes are drawn; empty: equal spheres, or
-                                   // those of a given packing
-  PourOrder pour_order = PourOrder::random;  // of a mixture
+  std::uint32_t n_spheres = 0;     // n spheres of all kinds
+  std::vector<MixtureKind> kinds;  // kinds of a mixture whose sizes are drawn; empty: equal
+                                   // spheres, or those of a given packing
+  PourOrder pour_order = PourOrder::random;  // pour order of a mixture
   Start start;
   std::vector<Stage> protocol;
   EngineSettings engine;

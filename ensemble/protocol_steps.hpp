@@ -18,7 +18,7 @@ struct StepTaps {
 };
 
 struct ProtocolSteps {
-  std::string control, units;     // of all steps
+  std::string control, units;     // units of all steps
   std::vector<double> strengths;  // [n_steps], in the order of the protocol
   std::vector<StepTaps> windows;  // [n_steps], the last taps of each
 };

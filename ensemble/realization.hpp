@@ -43,7 +43,7 @@ class Realization {
   /// Recorded taps, the start included.
   std::uint64_t rows() const { return state_.rows; }
 
-  /// Whether every tap of the plan is recorded.
+  /// True if every tap of the plan is recorded.
   bool finished() const;
 
   /// Goes on until a row is complete or for about so many units of the engine. Requires

@@ -20,7 +20,7 @@ double seconds_since(ProcessorClock::time_point began) {
   return std::chrono::duration<double>(ProcessorClock::now() - began).count();
 }
 
-// Whether `act` succeeded; if not, the outcome says why. Memory that ran out, or a state of another
+// True if `act` succeeded; if not, the outcome says why. Memory that ran out, or a state of another
 // program, is no fault of the realization: that ends the run, and the realization goes on from its
 // last checkpoint.
 template <class Act>
@@ -71,7 +71,7 @@ class EnsembleRun {
   Sink& sink_;
   Progress& progress_;
 
-  std::atomic<std::size_t> next_{0};  // of realizations_
+  std::atomic<std::size_t> next_{0};  // index of the next entry of realizations_
   std::atomic<std::uint64_t> done_{0}, failed_{0}, interrupted_{0};
   std::atomic<bool> sink_failed_{false};
   std::mutex sink_failure_mutex_;

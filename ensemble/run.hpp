@@ -17,12 +17,13 @@ struct Progress {
   std::atomic<std::uint64_t> realizations_done{0}, realizations_running{0}, realizations_failed{0};
   std::atomic<std::uint64_t> taps_done{0};
   std::atomic<std::uint64_t> units_done{0}, pair_tests{0};  // Effort of the engine
-  std::atomic<std::uint64_t> relaxing_nanoseconds{0};       // of all threads, inside relaxations
+  std::atomic<std::uint64_t> relaxing_nanoseconds{
+      0};  // relaxing nanoseconds of all threads, inside relaxations
 };
 
 struct RunOptions {
   int threads = 1;
-  /// Of each realization, at least. 0: after every slice.
+  /// Least time between checkpoints of a realization. 0: after every slice.
   std::chrono::duration<double> checkpoint_every{60.0};
   /// How many units of its engine a realization goes on for before it looks at `stop` and at the
   /// clock. By default what the engine makes in about 0.1 s.

@@ -31,7 +31,7 @@ inline constexpr const char* names_beside_series[] = {"tap",    "realization", "
 struct TapRow {
   std::uint64_t tap = 0;
   std::vector<double> observables;  // [n_observables of the plan]
-  std::vector<double> diagnostics;  // of the engine, along columns(plan.engine)
+  std::vector<double> diagnostics;  // diagnostics of the engine, along columns(plan.engine)
 };
 
 struct SnapshotRecord {
@@ -39,7 +39,7 @@ struct SnapshotRecord {
   std::vector<Vec3> centres;             // [n_spheres], or empty where not kept
   std::optional<double> coordination;    // mean number of centres within the cut
   std::vector<double> height_histogram;  // [n_bins], or empty where not kept
-  // Of engines that move spheres in time, empty where not kept. BedMechanics, GranularTemperature:
+  // For engines that move spheres in time, empty where not kept. BedMechanics, GranularTemperature:
   std::vector<Vec3> velocities{}, spins{};
   std::vector<Contact> contacts{};
   std::vector<double> temperature_lateral{}, temperature_vertical{};
@@ -52,9 +52,9 @@ struct RealizationState {
   std::uint64_t rows = 0;                 // recorded: taps 0 .. rows - 1; the next is tap `rows`
   bool relaxing = false;                  // tap `rows` was excited and is not yet at rest
   std::vector<std::byte> engine;          // Dynamics::save; empty until there is a start
-  std::uint64_t tap_stream_position = 0;  // of Purpose::tap
+  std::uint64_t tap_stream_position = 0;  // tap stream position of Purpose::tap
   std::vector<HeightWindow> observable_windows;
-  std::optional<FittingReport> fitting;  // of a fitted pour
+  std::optional<FittingReport> fitting;  // record of a fitted pour
   std::vector<Vec3> centres;
   std::optional<MotionState> motion{};  // where the plan asks for it, from tap 0 on
   std::vector<double> diameters{};      // [n_spheres], where realizations draw their own
@@ -64,8 +64,8 @@ enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 
 
 /// What a realization took: cost, not physics, so it depends on where a run was resumed.
 struct Work {
-  double seconds = 0;        // of processor time
-  double start_seconds = 0;  // of them, until tap 0 was recorded
+  double seconds = 0;        // seconds of processor time
+  double start_seconds = 0;  // seconds until tap 0 was recorded
   Effort effort{};
 
   Work& operator+=(const Work& other) {
@@ -79,7 +79,7 @@ struct Work {
 /// How a realization ended.
 struct Outcome {
   RealizationStatus status = RealizationStatus::done;
-  std::string reason;  // of a failure
+  std::string reason;  // reason of a failure
   Work work{};         // in this process
 };
 

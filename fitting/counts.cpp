@@ -14,7 +14,7 @@ namespace jostle::inline fitting {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Of a positive parameter's logarithm: beyond, it has diverged.
+// For a positive parameter's logarithm: beyond, it has diverged.
 constexpr double most_log_variance = 25;
 
 // Gauss-Legendre on [-1, 1], exact to the ninth power.

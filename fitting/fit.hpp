@@ -18,13 +18,13 @@ namespace jostle::inline fitting {
 struct FitOptions {
   /// The first start tried, [n_parameters]; without one, starts come from the data.
   std::optional<ParameterValues> start = std::nullopt;
-  /// Whether further starts from the data are tried after the first.
+  /// True if further starts from the data are tried after the first.
   bool multi_start = true;
   /// Parameters that keep a value, by name.
   std::map<std::string, double> fixed = {};
-  /// Whether intervals are computed: some hundred fits with one parameter held.
+  /// True if intervals are computed: some hundred fits with one parameter held.
   bool profiles = true;
-  /// Whether a curve without realizations may have a memory, which is then found in its residuals.
+  /// True if a curve without realizations may have a memory, which is then found in its residuals.
   /// Not for points that are known to be independent.
   bool memory = true;
   /// True if the law's limits are fitted too, and one reported where the law has reached it. Needs
@@ -69,8 +69,8 @@ struct Estimate {
   Parameter parameter;
   /// Infinite where a limit of the law that was fitted leaves none.
   double value = 0;
-  /// Of a linear problem whose points are independent; infinite without degrees of freedom, 0 for a
-  /// fixed parameter.
+  /// For a linear problem whose points are independent; infinite without degrees of freedom, 0 for
+  /// a fixed parameter.
   double standard_error = 0;
   /// The same counting dependence: from the scatter of realizations, else from the memory of the
   /// residuals. For Student's t of the fit's error_dof, which makes half the 68 % interval of it;
@@ -80,7 +80,7 @@ struct Estimate {
   Identifiability identifiability = Identifiability::not_examined;
   std::string statement;  // the same in words
 
-  /// Whether the data give it a value: fixed, or the 68 % interval is closed, or no interval was
+  /// True if the data give it a value: fixed, or the 68 % interval is closed, or no interval was
   /// looked for. What else least squares end at, as far out as the search went, is no measurement.
   bool has_value() const;
   /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
@@ -111,7 +111,7 @@ struct RestatedFit {
 struct Fit {
   std::string model, formula, source;
   std::vector<Estimate> estimates;  // [n_parameters]
-  /// Of the law's combinations of two parameters neither of which has both limits, those that have.
+  /// Finds combinations of two parameters that have both limits where neither parameter has.
   std::vector<Estimate> combinations;
   /// In the parameters of the equivalent law, where there is one and it has the curve.
   std::optional<RestatedFit> restated;
@@ -124,27 +124,28 @@ struct Fit {
 
   std::size_t n_points = 0, n_free = 0, dof = 0;
   std::size_t n_realizations = 0;  // whose scatter gives the errors; 0: the residuals do
-  double error_dof = 0;            // of errors and intervals; infinite where errors are known
-  std::size_t n_bins = 0;          // means that a long curve was fitted as; 0: its points
-  bool sigma_given = false;        // by the curve, or by its realizations
-  bool logarithmic = false;        // residuals are those of ln X
-  double residual_sum = 0;         // of squares, weighted: chi2 where errors were given
-  double reduced_chi2 = 0;         // residual_sum / dof; infinite without dof
-  double r2 = 0;                   // 1 - residual_sum / weighted sum about the weighted mean
-  double condition = 0;            // of J^T J for columns of J of unit length
-  RunsTest runs;                   // of the residuals in order of t
+  double error_dof = 0;      // error dof of errors and intervals; infinite where errors are known
+  std::size_t n_bins = 0;    // means that a long curve was fitted as; 0: its points
+  bool sigma_given = false;  // by the curve, or by its realizations
+  bool logarithmic = false;  // residuals are those of ln X
+  double residual_sum = 0;   // residual sum of squares, weighted: chi2 where errors were given
+  double reduced_chi2 = 0;   // residual_sum / dof; infinite without dof
+  double r2 = 0;             // 1 - residual_sum / weighted sum about the weighted mean
+  double condition = 0;      // condition of J^T J for columns of J of unit length
+  RunsTest runs;             // runs of the residuals in order of t
   double weighted_size = 0;  // points of equal weight that would weigh as much: (sum w)^2 / sum w^2
-  Memory memory;             // of the residuals; of realizations none is looked for
+  Memory memory;             // memory of the residuals; not sought with realizations
   double effective_size = 0;  // points that independent residuals would be worth
   double error_factor = 1;    // sqrt(n_points / effective_size): honest errors are longer
 
   std::vector<double> fitted;     // [n_points], the model at t
   std::vector<double> residuals;  // [n_points], X - fitted (ln X - ln fitted), unweighted
   EndReason reason = EndReason::not_finite;
-  /// Of the descent that won; `fallback` as in Minimum; `start` which of the starts it came from.
+  /// Diagnostics of the best minimum; `fallback` as in Minimum; `start`: the number of its start.
   int iterations = 0, evaluations = 0, jacobian_evaluations = 0, fallback = 0, start = 0;
   int starts_tried = 0;
-  long long total_evaluations = 0;   // of the law over the curve, in all descents of the fit
+  long long total_evaluations =
+      0;  // evaluations of the law over the curve, in all descents of the fit
   std::vector<std::string> remarks;  // whatever a reader must know, a sentence each
 
   ParameterValues values() const;

@@ -16,7 +16,7 @@ namespace jostle::inline fitting {
 namespace {
 
 constexpr double unnoticed = 0.01;  // rise of the cost, in variances of a residual
-constexpr double rounding = 1e-14;  // of a residual, relative to the data
+constexpr double rounding = 1e-14;  // rounding of a residual, relative to the data
 
 std::optional<std::size_t> index_of(const Model& model, const std::string& name) {
   const std::vector<Parameter>& all = model.parameters();

@@ -14,7 +14,7 @@ namespace jostle::inline fitting {
 /// A limit of a law with its own least squares over all points of a curve.
 struct LimitCandidate {
   Limit limit;
-  FitOptions options;  // of the limit's law: what is fixed there
+  FitOptions options;  // options of the limit's law: the fixed parameters
   double cost = 0;
   std::size_t dof = 0;
 };

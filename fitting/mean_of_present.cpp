@@ -16,8 +16,8 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 // A two-way layout, [n, m], 0 where there is no value.
 struct Layout {
   Rows present;            // 1 or 0
-  Eigen::VectorXd count;   // of realizations at a t, [n]
-  Eigen::MatrixXd normal;  // of the offsets, their sum held at 0, [m, m]
+  Eigen::VectorXd count;   // count of realizations at a t, [n]
+  Eigen::MatrixXd normal;  // normal matrix of the offsets, with sum 0, [m, m]
 };
 
 Layout layout_of(const Rows& present) {

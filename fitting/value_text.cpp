@@ -23,7 +23,7 @@ std::string fixed(double value, int decimals) {
   return zero && text.starts_with('-') ? text.substr(1) : text;
 }
 
-/// Of the number as it is printed with two digits: 0.00996 has its first digit where 0.010 has it.
+/// For the number as it is printed with two digits: 0.00996 has its first digit where 0.010 has it.
 int exponent_of(double number) {
   const std::string text = in_format(number, std::chars_format::scientific, 1);
   return std::atoi(text.c_str() + text.find('e') + 1);

@@ -22,13 +22,13 @@ struct LockOwner {
 };
 /// Nothing where there is no lock. Throws ResultsError where it cannot be read.
 std::optional<LockOwner> lock_owner(const std::string& results_path);
-/// Of many files: Slurm is asked once for all.
+/// For many files: Slurm is asked once for all.
 std::optional<LockOwner> lock_owner(const std::string& results_path, SlurmQueue& queue);
 
 /// A file and, where a run goes on or was killed, its parts.
 struct RunStatus {
-  RunState state = RunState::running;            // of the file
-  std::optional<LockOwner> owner;                // of a lock
+  RunState state = RunState::running;            // state of the file
+  std::optional<LockOwner> owner;                // owner of a lock
   std::vector<RealizationSummary> realizations;  // with the parts' newer checkpoints
   std::uint64_t file_bytes = 0, parts_bytes = 0;
 };

@@ -58,7 +58,7 @@ inline constexpr std::size_t n_height_profiles = std::size(height_profiles), kep
 /// What is stored of one realization but for its series and its snapshots.
 struct RealizationHead {
   RealizationStatus status = RealizationStatus::missing;
-  std::string reason;                     // of a failure
+  std::string reason;                     // reason of a failure
   Work work{};                            // over all processes that reported
   std::optional<RealizationState> state;  // where it goes on; none for missing and failed ones
 };

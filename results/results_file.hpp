@@ -68,7 +68,7 @@ struct RealizationSummary {
   RealizationId id;
   RealizationStatus status = RealizationStatus::missing;
   std::uint64_t rows = 0;  // recorded taps, the start included
-  std::string reason;      // of a failure
+  std::string reason;      // reason of a failure
   Work work{};
 
   /// Recorded taps. The start, tap 0, is none.

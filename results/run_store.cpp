@@ -52,7 +52,7 @@ bool differs(const Study& stored, const Study& study) {
   return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
 }
 
-/// Whether realizations have the same numbers in both: what parts are named by.
+/// True if realizations have equal numbers in both, by which parts are named.
 bool same_points(const Study& stored, const Study& study) {
   return std::ranges::equal(stored.points, study.points, {}, &StudyPoint::id, &StudyPoint::id);
 }
@@ -90,7 +90,7 @@ class RunStore::Impl {
   std::optional<ResultsFile> file;                       // what the parts go on from
   std::map<RealizationId, RealizationSummary> folded;    // what is in it
   std::map<RealizationId, RealizationSummary> in_parts;  // last checkpoints
-  std::mutex mutex;  // of `recorders`, `in_parts` and everything that touches HDF5
+  std::mutex mutex;  // mutex of `recorders`, `in_parts` and everything that touches HDF5
   std::map<RealizationId, std::unique_ptr<Recorder>> recorders;
   RunLock lock;
 
@@ -100,7 +100,7 @@ class RunStore::Impl {
   void check_shard_and_points() const;
   void fold_parts_of_the_stored_points();
 
-  FileIdentity opened;  // of the file that `file` reads
+  FileIdentity opened;  // stamp of the file that `file` reads
 };
 
 /// `have`: bytes of the run that are on the disk already.
@@ -158,7 +158,7 @@ void RunStore::Impl::check_shard_and_points() const {
                                    *point));
 }
 
-/// Whether nobody has put another file in the place of ours; taking ours away is nobody's loss.
+/// True if the path is still our file, or is gone.
 bool RunStore::Impl::still_ours() const {
   const FileIdentity found = identity_of(path);
   return found == opened || found == FileIdentity{};

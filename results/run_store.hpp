@@ -75,7 +75,7 @@ class RunStore : public Sink {
   /// by it, then deletes the parts. At the end of a run and at a graceful stop alike: the
   /// restart states of unfinished realizations are in the file. `progress` is told how far it is.
   void finish(const StoringProgress& progress = {});
-  /// Of the file and its parts: what finish() reads and writes about once.
+  /// For the file and its parts: what finish() reads and writes about once.
   std::uint64_t bytes_to_fold() const;
 
  private:

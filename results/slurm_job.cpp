@@ -104,7 +104,7 @@ std::optional<std::string> output_of(const std::vector<std::string>& words) {
   return text && WIFEXITED(status) && WEXITSTATUS(status) == 0 ? text : std::nullopt;
 }
 
-/// Of a job that is not in one of these, processes may run: it runs, is suspended, comes to its
+/// For a job that is not in one of these, processes may run: it runs, is suspended, comes to its
 /// end, or is in a state that other versions of Slurm have.
 bool has_no_processes(const std::string& state) {
   constexpr std::string_view states[] = {

@@ -28,7 +28,7 @@ std::optional<std::uint64_t> slurm_max_array_size();
 /// first wanted.
 class SlurmQueue {
  public:
-  /// Whether processes of a job of this user may still run. Nothing where Slurm cannot tell: it is
+  /// True if processes of a job of this user may still run. Nothing where Slurm cannot tell: it is
   /// not here, does not answer, or the job is one of another cluster.
   std::optional<bool> runs(const SlurmJob& job);
 

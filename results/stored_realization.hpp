@@ -13,7 +13,7 @@ namespace jostle::inline results {
 /// A snapshot without what of it takes room.
 struct SnapshotOutline {
   std::uint64_t tap = 0;
-  std::array<std::uint32_t, n_sphere_vectors> n_spheres{};  // of which each vector was kept
+  std::array<std::uint32_t, n_sphere_vectors> n_spheres{};  // number of spheres of each kept vector
   std::uint64_t n_contacts = 0;
   std::optional<double> coordination{};
   std::optional<BedForces> forces{};
@@ -37,7 +37,7 @@ class StoredRealization {
   virtual void read_rows(std::uint64_t first, std::span<double> rows) = 0;
   /// With ascending taps.
   virtual std::vector<SnapshotOutline> snapshots() = 0;
-  /// Of a snapshot, sphere_vectors[which] and height_profiles[which]; empty where none was kept at
+  /// For a snapshot, sphere_vectors[which] and height_profiles[which]; empty where none was kept at
   /// that tap.
   virtual std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) = 0;
   virtual std::vector<double> profile(std::uint64_t tap, std::size_t which) = 0;

@@ -104,7 +104,7 @@ std::uint64_t disk_estimate(const Study& study, const Shard& shard);
 
 /// Who computed: one of these a process that worked on the file. Never part of the digest.
 struct Provenance {
-  std::string version, git_revision;  // of jostle
+  std::string version, git_revision;  // git revision of jostle
   std::string libraries;              // "HDF5 1.10.8, ..."
   std::string host, cpu, instruction_set;
   std::string threads;

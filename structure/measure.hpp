@@ -17,12 +17,14 @@
 // means. Lengths in diameters.
 namespace jostle::inline structure {
 
-inline constexpr Range bin_width_range = between(0.001, 10);  // of heights and distances, diameters
+inline constexpr Range bin_width_range =
+    between(0.001, 10);  // bin width range of heights and distances, diameters
 
 /// Packing fraction against height, and how it thins out upwards.
 struct ProfileSettings {
   double bin_width = 0.1;
-  double smoothing = 2 * sphere_radius;  // of the smoothed profile and the gradient; 0 for none
+  double smoothing =
+      2 * sphere_radius;  // smoothing length of the profile and the gradient; 0 for none
   std::optional<HeightWindow> gradient = std::nullopt;  // absent: as gradient_range() has it
   bool operator==(const ProfileSettings&) const = default;
 
@@ -43,7 +45,7 @@ struct ProfileSettings {
 struct SidesSettings {
   double bin_width = 0.1;
   std::optional<HeightWindow> heights = std::nullopt;  // absent: as transverse_window() has it
-  double reach = 7 * sphere_radius;                    // of "lateral"
+  double reach = 7 * sphere_radius;                    // depth of "lateral" from a wall
   bool operator==(const SidesSettings&) const = default;
 
   static constexpr About about{"sides",
@@ -73,7 +75,7 @@ struct LayersSettings {
 };
 
 struct CoordinationSettings {
-  double cut = 1.05;  // of the neighbours that are counted sphere by sphere
+  double cut = 1.05;  // distance up to which neighbours of a sphere are counted
   double largest_cut = 1.5, step = 0.01;
   bool operator==(const CoordinationSettings&) const = default;
 
@@ -104,7 +106,7 @@ struct PairsSettings {
 
 /// Bond order and crystalline spheres.
 struct OrderSettings {
-  double bin_width = 1;  // of heights
+  double bin_width = 1;  // bin width of heights
   bool operator==(const OrderSettings&) const = default;
 
   static constexpr About about{"order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
@@ -118,7 +120,7 @@ struct OrderSettings {
 struct GapsSettings {
   double largest = 0.5;     // gap that is counted
   double tolerance = 1e-3;  // gap of a contact, of the single values
-  /// Of a sphere that is no rattler; absent: as least_contacts_of() has it.
+  /// For a sphere that is no rattler; absent: as least_contacts_of() has it.
   std::optional<std::uint64_t> least_contacts = std::nullopt;
   HeightWindow window{0.01, 0.2};  // gaps whose exponent is sought
   bool operator==(const GapsSettings&) const = default;
@@ -142,9 +144,9 @@ struct GapsSettings {
 };
 
 struct VoronoiSettings {
-  double least_area = 1e-3;  // of a face that counts, in surfaces of its cell
-  double bin_width = 0.02;   // of free volumes, in volumes of a sphere
-  bool cut_cells = false;    // whether cells that floor, sides or lid cut are counted too
+  double least_area = 1e-3;  // least area of a face that counts, in surfaces of its cell
+  double bin_width = 0.02;   // bin width of free volumes, in volumes of a sphere
+  bool cut_cells = false;    // true if cells that floor, sides or lid cut are counted too
   bool operator==(const VoronoiSettings&) const = default;
 
   static constexpr About about{"voronoi",
@@ -173,10 +175,10 @@ struct ClustersSettings {
 };
 
 struct PoresSettings {
-  double bin_width = 0.02, largest = 1.5;  // of xi
+  double bin_width = 0.02, largest = 1.5;  // bin width of xi
   double merge = 1e-6;                     // diameters
-  double tolerance = 0.02;                 // of tetrahedral and octahedral sites, in xi
-  double tail_from = 0.15;                 // of v: where the exponential tail begins
+  double tolerance = 0.02;                 // tolerance of tetrahedral and octahedral sites, in xi
+  double tail_from = 0.15;                 // v at which the exponential tail begins
   bool operator==(const PoresSettings&) const = default;
 
   static constexpr About about{"pores",
@@ -196,7 +198,7 @@ struct PoresSettings {
 
 /// P0(sigma).
 struct VoidSettings {
-  double largest = 2, step = 0.05;  // of sigma
+  double largest = 2, step = 0.05;  // largest sigma
   std::uint64_t points = 100'000;   // a packing
   bool operator==(const VoidSettings&) const = default;
 

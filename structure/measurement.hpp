@@ -42,11 +42,11 @@ struct MeasuredQuantity {
   /// Its value at places that only another packing has, as heights above this one's surface: 0
   /// where there is nothing to find, NaN where there is nothing to measure.
   double beyond = 0;
-  /// Whether its change since the first tap is of interest too.
+  /// True if its change since the first tap is of interest too.
   bool with_change = false;
-  /// Whether its mean over packings has an error: not so where it is itself one, or a constant.
+  /// True if its mean over packings has an error: not so where it is itself one, or a constant.
   bool with_error = true;
-  /// Whether the packings that have a value are counted: so where a packing may have none.
+  /// True if the packings that have a value are counted: so where a packing may have none.
   bool with_packings = false;
 
   double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }

@@ -14,7 +14,7 @@ namespace jostle::inline study {
 /// By its first bytes.
 bool is_results_file(const std::string& path);
 
-/// Whether two names are of one file, there already or not.
+/// True if two names are of one file, there already or not.
 bool is_same_file(const std::string& a, const std::string& b);
 
 /// What is read of a run that goes on or was killed: its file alone, or its checkpoints too.

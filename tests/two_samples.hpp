@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-// Whether two samples have one law.
+// True if two samples have one law.
 namespace jostle {
 
 /// Difference of the means of two samples in its standard errors.

@@ -66,7 +66,7 @@ std::vector<AnalysisRequest<Settings>> requests(const AnalyseArguments& argument
   return all;
 }
 
-/// Of what is read and what is written.
+/// For files that are read and written.
 void require_files(const AnalyseArguments& arguments) {
   require_text_output("--csv", arguments.output.csv, arguments.inputs, arguments.output.force);
   for (const std::string& input : arguments.inputs) {
@@ -140,7 +140,7 @@ std::vector<std::uint64_t> ascending(const char* option, std::vector<std::uint64
   throw BadInput(fmt::format("{}: {} is there twice", option, *twice));
 }
 
-/// Of a word that may name a file or a kind: what is wrong with it. Nothing, if it is a file.
+/// Describes the fault of a word that may name a file or a kind; nothing if it is a file.
 std::string file_or_kind_fault(const std::string& text) {
   std::error_code unreadable;
   if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))

@@ -23,7 +23,7 @@ struct AnalyseArguments {
   std::string point;
   TableOutput output;
   int threads = 0;
-  // Of single analyses.
+  // For single analyses.
   std::uint64_t last = 0, segment = 0;
   std::string window = "hann", detrend = "mean", band;
   std::vector<std::uint64_t> waiting_times, lags;

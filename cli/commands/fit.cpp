@@ -35,13 +35,13 @@ struct FitArguments {
   std::string input, observable, point, model, range, csv;
   std::vector<std::string> fixed;
   OwnLaw law;
-  std::vector<std::string> start, bounds;  // of the law
+  std::vector<std::string> start, bounds;  // bounds of the law
   std::string resample = "none";
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
   int threads = 0;
   bool json = false, force = false, not_stored = false;
-  MeasuredOutput measured;  // of a text file
+  MeasuredOutput measured;  // curves of a text file
   Layout layout;
   bool realizations = false;  // columns of a curve file
   std::string gaps = "use-others";
@@ -105,7 +105,7 @@ std::map<std::string, ParameterBounds> parameter_bounds(const std::vector<std::s
   return bounds;
 }
 
-/// Of --law; a parameter that is fixed begins there.
+/// Start values of --law; a fixed parameter keeps its value.
 std::unique_ptr<Model> own_law(const FitArguments& arguments) {
   OwnLaw law = arguments.law;
   law.start = named_numbers("--start", arguments.start);
@@ -252,7 +252,7 @@ int run_fits(const FitArguments& arguments) {
   const FitManner manner = manner_of(arguments);
   const Provenance by = provenance_of_this_run("");
   std::vector<Table> tables;
-  std::string csv, refusals;  // of curves without a fit
+  std::string csv, refusals;  // refusals of curves without a fit
   bool any = false;
   std::optional<FittedCurve> drawn;  // the measured curve
   Json curves = Json::array();

@@ -28,7 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_cpus = 65535;  // of a job, which has one node: Slurm counts those in 16 bits
+constexpr int most_cpus =
+    65535;  // most cpus of a job, which has one node: Slurm counts those in 16 bits
 
 struct SlurmArguments {
   std::string scene, output, folder;

@@ -7,7 +7,7 @@
 // such folder, and is called before any work is done.
 namespace jostle::inline cli {
 
-/// Whether a path is a pipe, a device, or a descriptor such as /dev/stdout: text can go there as it
+/// True if a path is a pipe, a device, or a descriptor such as /dev/stdout: text can go there as it
 /// comes, but no file in its place.
 bool is_stream(const std::string& path);
 

@@ -8,7 +8,7 @@ namespace jostle::inline cli {
 
 namespace {
 
-// Of the checks, the last that carries an offer of this kind.
+// The last of the checks with an offer of this kind.
 std::optional<std::vector<std::string>> offered(CLI::Option& option, const std::string& kind) {
   std::optional<std::vector<std::string>> found;
   try {

@@ -14,7 +14,7 @@ namespace jostle::inline cli {
 struct Offer {
   std::vector<std::string> words = {};
   bool files = false;
-  std::vector<std::string> suffixes = {};  // of those files, as "h5"; any, if empty
+  std::vector<std::string> suffixes = {};  // suffixes of those files, as "h5"; any, if empty
 };
 
 /// The parser has no place for offers: they are kept as the names of checks that find no fault, one
@@ -37,7 +37,7 @@ struct CommandText {
   std::vector<CommandText> commands;
 };
 
-/// Of a program that has been described.
+/// For a program with its description.
 CommandText text_of(CLI::App& app);
 
 }  // namespace jostle::inline cli

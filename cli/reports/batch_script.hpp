@@ -9,15 +9,15 @@ namespace jostle::inline cli {
 
 /// What a batch script must know besides.
 struct BatchScript {
-  std::string name;             // of the scene: letters, digits, dots, hyphens, underscores
+  std::string name;             // name of the scene: letters, digits, dots, hyphens, underscores
   std::string scene;            // its file
   std::string results;          // the folder of the shards' files
   std::string folder;           // where it runs, absolute
   std::string program;          // jostle, absolute
   std::string made_by;          // a command line
-  std::uint32_t cpus = 1;       // of a job
-  Seconds time_limit{0};        // of a job
-  std::uint64_t megabytes = 0;  // of a job
+  std::uint32_t cpus = 1;       // cpus of a job
+  Seconds time_limit{0};        // time limit of a job
+  std::uint64_t megabytes = 0;  // megabytes of a job
   std::string estimate;         // a line for people
 };
 

@@ -125,7 +125,7 @@ std::string shortfall_of_the_reference(const CostOfObservable& cost) {
                                             cost.remainder.realizations));
 }
 
-/// Whether more taps would change the bias of the scene's own setting.
+/// True if more taps would change the bias of the scene's own setting.
 std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& cost) {
   const std::string taps = fmt::format("tap {} of {}", study.pilot_taps(), study.taps());
   if (cost.growths.empty() || !std::isfinite(cost.growths.front().detectable) ||

@@ -16,7 +16,7 @@
 namespace jostle::inline cli {
 namespace {
 
-constexpr std::size_t drawn_rows = 8, widest = 72;  // of a drawing, in characters
+constexpr std::size_t drawn_rows = 8, widest = 72;  // drawn rows of a drawing, in characters
 constexpr std::size_t narrowest_drawing = 24;
 
 /// A braille character has two by four dots.
@@ -200,7 +200,7 @@ std::string curve_text(const std::string& name, std::span<const double> values, 
   const std::size_t margin = std::max(top.size(), bottom.size()) + 1;
   width = std::min(width, widest);
   if (n < 3 || width < margin + narrowest_drawing) return "";
-  const std::size_t columns = width - margin, first = 3;  // of tap 1
+  const std::size_t columns = width - margin, first = 3;  // columns of tap 1
   Drawing drawing(columns, drawn_rows, glyphs);
   draw(drawing, values, range, first * drawing.dots_a_column());
   std::string text = name + " over taps\n";

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct FigureOfFile {
   Figure figure;
-  std::string origin;  // of which file
+  std::string origin;  // the file that it comes from
 };
 
 constexpr const char* kinds[] = {".csv", ".json", ".py", ".svg", ".pdf"};
@@ -127,7 +127,7 @@ struct FiguresOfFiles {
 FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::string& sweep_point,
                                 const Provenance& by) {
   FiguresOfFiles all;
-  std::set<std::string> words;  // of files, where there are several
+  std::set<std::string> words;  // names of files, where there are several
   for (std::size_t i = 0; i < files.size(); ++i) {
     const ResultsFile& file = files[i];
     all.inputs.push_back(file.path());

@@ -12,7 +12,7 @@ namespace jostle::inline cli {
 struct MeasuredOutput {
   std::string page;
   FigureFolder figures;
-  int columns = 1;  // of a journal
+  int columns = 1;  // columns of a journal
 
   bool is_wanted() const { return !page.empty() || !figures.path.empty(); }
 };

@@ -8,12 +8,12 @@ namespace jostle::inline cli {
 namespace {
 
 constexpr std::size_t most_commands = 2;
-constexpr std::size_t least_points = 3;  // of a sweep curve
+constexpr std::size_t least_points = 3;  // least points of a sweep curve
 constexpr std::uint64_t least_taps_to_fit = 30;
 constexpr std::uint64_t least_taps_to_age = 300;
 constexpr std::uint32_t least_realizations_to_age = 3;
 
-/// Whether the scene asks for this itself. A resolved scene has empty lists of what it does not.
+/// True if the scene asks for this itself. A resolved scene has empty lists of what it does not.
 bool asked_for(const Json& scene, std::string_view part, std::string_view kind = "") {
   const Json* found = scene.find(part);
   if (found != nullptr && !kind.empty()) found = found->is_object() ? found->find(kind) : nullptr;

@@ -61,7 +61,7 @@ std::string who(const LockOwner& owner) {
   return owner.job ? fmt::format("job {}, {}", owner.job->name, process) : process;
 }
 
-/// Of a few shards, what there is to know of each.
+/// Lists a few shards with their states.
 std::string remark(const ShardStatus& shard) {
   if (!shard.owner) return "";
   return who(*shard.owner) + (shard.state == ShardState::dead ? ", has ended" : "");

@@ -14,7 +14,7 @@ namespace jostle::inline cli {
 struct PointSeries {
   std::vector<EnsembleSeries> columns;
   std::vector<std::uint32_t> reached;  // [n_taps]
-  std::uint32_t planned = 0;           // of the file's share
+  std::uint32_t planned = 0;           // realizations planned in the file's share
 };
 
 PointSeries point_series(const ResultsFile& file, std::uint32_t point,

@@ -252,7 +252,7 @@ class BlockText {
     return text;
   }
 
-  /// Of few columns those from the first on that have room, below one another where rows are few.
+  /// Prints the first columns that fit; below one another where rows are few.
   std::string columns(std::vector<std::string>& hidden) {
     const TextTable whole = table_of(numbers_);
     std::size_t width_of_keys = 0;
@@ -292,7 +292,7 @@ class BlockText {
   const Layout& layout_;
   std::size_t keys_;
   std::vector<const Quantity*> numbers_, said_;
-  std::vector<std::string> empty_;  // of few columns: names of those without a number
+  std::vector<std::string> empty_;  // names of columns without a number
 };
 
 /// What was found stands before how.

@@ -14,7 +14,7 @@ class TextTable {
 
   /// One cell a header.
   void add(std::vector<std::string> cells);
-  /// Of a column, in characters.
+  /// Width of a column, in characters.
   std::size_t width_of_column(std::size_t column) const;
   /// One line a row, the headers first, each ending in a newline. Columns that find no room beside
   /// the others stand below them, behind the keys again, after an empty line.

@@ -11,13 +11,13 @@ namespace jostle::inline cli {
 
 /// What standard output can show.
 struct Screen {
-  std::size_t width = 80;  // of a line: COLUMNS, else the terminal's, else 80
+  std::size_t width = 80;  // width of a line: COLUMNS, else the terminal's, else 80
   bool draws = false;      // a terminal, and not a dumb one (TERM)
   bool colours = false;    // one that draws, where NO_COLOR is not set
   bool unicode = false;    // the locale is one of UTF-8
 };
 
-/// Of this process's surroundings.
+/// Detected from the environment.
 Screen screen();
 
 /// --wide; and the layout gets the width of the screen.

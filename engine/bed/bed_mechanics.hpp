@@ -17,7 +17,7 @@ struct Contact {
   std::uint32_t second = 0;  // a later sphere, or n_spheres + w: wall w of wall_names()
   double overlap = 0;        // diameters, positive
   double normal_force = 0;   // m g; positive where they press on each other
-  Vec3 normal{};             // of length 1, from `second` to `first`
+  Vec3 normal{};             // normal of length 1, from `second` to `first`
   Vec3 tangential_force{};   // m g, along the tangent plane
   bool operator==(const Contact&) const = default;
 };
@@ -31,12 +31,12 @@ struct DrivenBed {
   std::vector<double> lateral, vertical;
 };
 
-/// Of a bed at one time: that of its positions.
+/// State of a bed at the time of its positions.
 struct BedMechanics {
   std::vector<Vec3> velocities;   // [n_spheres], diameters / s; empty where nothing has any
   std::vector<Vec3> spins;        // [n_spheres], rad / s; empty where nothing turns
   std::vector<Contact> contacts;  // with force, by (first, second)
-  DrivenBed driven;               // of a tap whose motion was watched (Dynamics::watch_motion)
+  DrivenBed driven;  // state of a tap whose motion was watched (Dynamics::watch_motion)
 };
 
 /// The names of the faces that a sphere can lean on, by number. A fully periodic container has

@@ -14,7 +14,7 @@ namespace jostle::inline engine {
 /// Where a container ends, as everything but the typed trial loops asks: made from it once, so that
 /// nobody else looks which container it is. Lengths in diameters.
 struct Boundary : ContainerShape {
-  double width_x = 0, width_y = 0;                          // of the box around the footprint
+  double width_x = 0, width_y = 0;  // width x of the box around the footprint
   double height = std::numeric_limits<double>::infinity();  // infinite under an open top
 
   explicit Boundary(const Container& container);
@@ -37,8 +37,8 @@ struct Boundary : ContainerShape {
 /// The floor or a side: a plane, or the inside of a vertical tube.
 struct Face {
   const char* name;  // "floor", "x_min", "x_max", "y_min", "y_max" or "tube"
-  Vec3 inward;       // of a plane: its unit normal into the container. Of a tube: zero
-  double place = 0;  // of a plane: the origin's distance from it. Of a tube: its radius, and where
+  Vec3 inward;       // unit normal of a plane into the container; zero for a tube
+  double place = 0;  // distance of the origin from a plane; for a tube its radius, and where
                      // its axis stands
   bool is_tube = false;
 

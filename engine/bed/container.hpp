@@ -168,7 +168,7 @@ Vec3 extent(const Container& container);
 double width_x(const Container& container);
 double width_y(const Container& container);
 
-/// Whether there is a floor to fall on: in every container but the fully periodic one.
+/// True if there is a floor to fall on: in every container but the fully periodic one.
 bool has_gravity(const Container& container);
 
 }  // namespace jostle::inline engine

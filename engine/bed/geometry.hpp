@@ -51,7 +51,7 @@ Vec3 separation(const Box& box, Vec3 a, Vec3 b) {
   return d;
 }
 
-/// Whether a sphere centred at r stays clear of the floor and the sides (touching is clear).
+/// True if a sphere centred at r stays clear of the floor and the sides (touching is clear).
 template <Shaped Box>
 bool clear_of_boundaries(const Box& box, Vec3 r, double radius = sphere_radius) {
   const ContainerShape shape = box.shape();

@@ -76,7 +76,7 @@ struct RangeOf {
 
 struct Draw {
   RandomStream& random;
-  std::size_t place;  // of the sphere in its kind
+  std::size_t place;  // place of the sphere in its kind
 
   double operator()(const FixedDiameter& law) const { return law.value; }
   double operator()(const LognormalDiameter& law) const {

@@ -17,7 +17,7 @@ struct HeightWindow {
   static constexpr Bounds form = height_bounds;
 };
 
-/// Whether both heights are numbers, the lower first.
+/// True if both heights are numbers, the lower first.
 inline bool is_window(HeightWindow window) {
   return std::isfinite(window.low) && std::isfinite(window.high) && window.low <= window.high;
 }

@@ -24,7 +24,8 @@ struct FloorMotion {
     if (!(time < duration())) return {};
     using std::numbers::pi;
     const double turns = frequency * time;
-    const double quarter = 0.5 * pi * (turns - std::floor(turns) - 0.5);  // of the angle less pi
+    const double quarter =
+        0.5 * pi * (turns - std::floor(turns) - 0.5);  // quarter of the angle, less pi
     const SineCosine angle = doubled(doubled(sine_cosine(quarter)));
     return {-amplitude * angle.sine, -amplitude * 2 * pi * frequency * angle.cosine};
   }

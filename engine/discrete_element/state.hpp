@@ -14,9 +14,9 @@ struct GrainDynamicsState {
   DynamicsStatus status = DynamicsStatus::settled;
   double quiet_since = -1;  // time of the tap since which the bed is quiet; negative: it is not
   double input = 0;         // by a displacement at the tap's begin, m g d
-  std::uint64_t dropped_offsets = 0;  // of a shake at the tap's begin
+  std::uint64_t dropped_offsets = 0;  // dropped offsets of a shake at the tap's begin
   Energies before;                    // as the tap began, after the displacement
-  DrivenSums driven;                  // of a tap whose motion is watched
+  DrivenSums driven;                  // state of a tap whose motion is watched
   GrainLoop::State loop;
 };
 

@@ -39,7 +39,7 @@ struct MonteCarlo {
   static constexpr const char *work_column = "sweeps", *work = "sweeps";
 
   Relaxation relax;                                      // after every tap
-  std::optional<Relaxation> relax_start = std::nullopt;  // of the start itself
+  std::optional<Relaxation> relax_start = std::nullopt;  // relaxation of the start itself
   bool operator==(const MonteCarlo&) const = default;
 };
 

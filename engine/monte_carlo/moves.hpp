@@ -65,7 +65,7 @@ struct StepAdaptation {
   std::uint64_t every_trials = 10'000;
   double threshold = 0.5;
   AcceptanceBase base = AcceptanceBase::all_trials;
-  bool reset_each_tap = true;  // whether the step starts anew at max_step at each tap
+  bool reset_each_tap = true;  // true if the step starts anew at max_step at each tap
   bool operator==(const StepAdaptation&) const = default;
 
   static constexpr auto fields() {

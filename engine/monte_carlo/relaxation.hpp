@@ -13,12 +13,13 @@ namespace jostle::inline engine {
 /// Everything a relaxation must remember to go on bit for bit after a checkpoint.
 struct RelaxationProgress {
   DynamicsStatus status = DynamicsStatus::running;
-  std::uint64_t trials = 0;               // since the tap
-  std::uint64_t accepted = 0;             // of them
-  bool measured = false;                  // whether last_value holds a measurement
-  double last_value = 0;                  // of <Z> or the bulk fraction
-  std::uint32_t passes = 0;               // times in a row the rule was met
-  std::vector<double> kind_heights = {};  // of a mixture, with last_value of a rule of <Z>
+  std::uint64_t trials = 0;    // since the tap
+  std::uint64_t accepted = 0;  // accepted trials
+  bool measured = false;       // true if last_value holds a measurement
+  double last_value = 0;       // last value of <Z> or the bulk fraction
+  std::uint32_t passes = 0;    // times in a row the rule was met
+  std::vector<double> kind_heights =
+      {};  // heights of a mixture's kinds, with last_value for a rule of <Z>
   bool operator==(const RelaxationProgress&) const = default;
 };
 

@@ -17,7 +17,7 @@ bool is_length(double x) {
   return std::isfinite(x) && x >= 0;
 }
 
-/// Whether trials can be made from here.
+/// True if trials can be made from here.
 bool is_possible(const MonteCarloState& state) {
   return is_length(state.move.step) && is_length(state.sampler.reference_step) &&
          is_window(state.stop_window) &&

@@ -12,12 +12,12 @@ namespace jostle::inline engine {
 
 /// What a realization by Monte Carlo goes on from, besides the centres.
 struct MonteCarloState {
-  bool tapping = false;         // whether the start is at rest: what follows is after taps
+  bool tapping = false;         // true if the start is at rest: what follows is after taps
   RelaxationProgress progress;  // settled at once in a bed at rest
   MoveState move;
   SamplerState sampler;
-  std::uint64_t dropped_offsets = 0;  // of the tap that is being relaxed
-  HeightWindow stop_window{0, 0};     // of the relaxation that is on or comes next
+  std::uint64_t dropped_offsets = 0;  // dropped offsets of the tap that is being relaxed
+  HeightWindow stop_window{0, 0};     // stop window of the relaxation that is on or comes next
   bool operator==(const MonteCarloState&) const = default;
 };
 

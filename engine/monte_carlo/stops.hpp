@@ -61,7 +61,7 @@ struct BulkFractionStop {
   double change = 1e-3;
   std::uint64_t every_trials = 1'000'000;
   std::uint32_t times = 2;
-  bool measure_start = true;  // whether the state right after the tap counts as a measurement
+  bool measure_start = true;  // true if the state right after the tap counts as a measurement
   Window window = QuantileWindow{};
   bool operator==(const BulkFractionStop&) const = default;
 

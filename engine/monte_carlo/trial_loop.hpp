@@ -19,8 +19,8 @@ struct MoveState {
   std::uint64_t next_trial = 0;     // number of the next trial of the realization: Philox's counter
   double step = 0;                  // Metropolis: the current largest displacement, diameters
   std::uint64_t window_trials = 0;  // trials counted since the last adaptation of the step
-  std::uint64_t window_base = 0;    // of them, those the share is taken of
-  std::uint64_t window_accepted = 0;  // of these, the accepted ones
+  std::uint64_t window_base = 0;    // trials of which the share is taken
+  std::uint64_t window_accepted = 0;  // accepted trials among these
   bool operator==(const MoveState&) const = default;
 };
 
@@ -39,7 +39,7 @@ enum class SphereSizes { equal, several };
 struct SamplerState {
   bool active = false;                // else every trial is looked at, as after each tap
   std::uint64_t window_trials = 0;    // looked at since it was last decided whether to be active
-  std::uint64_t window_accepted = 0;  // of them
+  std::uint64_t window_accepted = 0;  // window accepted trials
   std::uint64_t candidate = 0;        // number of the next candidate of the realization
   std::uint64_t pending = 0;          // number of the trial that it is
   double reference_step = 0;          // Metropolis: the step for which the bounds are, diameters
@@ -51,8 +51,8 @@ struct TrialTally {
   std::uint64_t trials = 0;
   std::uint64_t accepted = 0;
   std::uint64_t distance_tests = 0;
-  std::uint64_t list_builds = 0;    // of all neighbour lists at once
-  std::uint64_t list_renewals = 0;  // of one sphere's list
+  std::uint64_t list_builds = 0;    // list builds of all neighbour lists at once
+  std::uint64_t list_renewals = 0;  // list renewals of one sphere's list
   std::uint64_t candidates = 0;     // rejection-free: trials looked at while active
   std::uint64_t bound_rows = 0;     // rejection-free: makings of a sphere's bounds
 };

@@ -20,7 +20,7 @@ struct Rows {
 // Rows `spacing` apart, their number a multiple of `multiple`, that fit into a period.
 struct RowFit {
   Rows rows;
-  bool whole;              // whether they fill the period
+  bool whole;              // true if they fill the period
   double smaller, larger;  // the periods nearest below and above that they would fill
 };
 

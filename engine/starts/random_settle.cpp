@@ -68,7 +68,8 @@ std::vector<std::uint32_t> largest_first(const StartSpheres& spheres) {
 // The largest spheres are placed first, when there is most room.
 std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
                           const StartSpheres& spheres, RandomStream& random) {
-  constexpr int max_draws = 2'000'000;  // of one sphere; at 0.36 the last take 70 000 each
+  constexpr int max_draws =
+      2'000'000;  // most draws for one sphere; at 0.36 the last take 70 000 each
   const Boundary boundary(container);
   if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= densest_dilution)) {
     throw StartError("random settle: dilute_fraction is " + std::to_string(settle.dilute_fraction) +

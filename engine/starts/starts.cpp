@@ -65,7 +65,7 @@ std::optional<double> solid_volume_of(const std::shared_ptr<const Sizes>& sizes)
   return solid_volume({PeriodicBox{}, std::vector<Vec3>(sizes->size()), sizes});
 }
 
-/// Whether spheres may move before tap 0.
+/// True if spheres may move before tap 0.
 struct MayMove {
   bool operator()(const SteepestDescentPour&) const { return false; }
   bool operator()(const FittedPour&) const { return true; }

@@ -49,7 +49,7 @@ inline constexpr double highest_drop = 1000;  // diameters
 /// first, then a relaxation without a tap (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
-  double drop_height = 0;        // of the column's foot above the floor, diameters
+  double drop_height = 0;        // drop height of the column's foot above the floor, diameters
   bool operator==(const RandomSettle&) const = default;
 
   static constexpr About about{
@@ -149,7 +149,7 @@ struct PlacedSphere {
 struct StartSpheres {
   std::uint32_t n = 0;
   std::shared_ptr<const Sizes> sizes = nullptr;  // null: equal spheres; else of n spheres
-  PourOrder order = PourOrder::random;           // of spheres with sizes
+  PourOrder order = PourOrder::random;           // order of spheres with sizes
   std::vector<PlacedSphere> placed{};            // in the order in which they are poured
 };
 
@@ -188,7 +188,7 @@ class StartStopped : public std::exception {
   const char* what() const noexcept override { return "the start was stopped"; }
 };
 
-/// Whether a start under way is to stop; empty: never.
+/// True if a start under way is to stop; empty: never.
 using StopAsked = std::function<bool()>;
 
 /// Builds the starting packing, before any relaxation. Throws StartError where the start does not

@@ -20,7 +20,7 @@ double variance(const Moments& moments) {
   return error * error * static_cast<double>(moments.count());
 }
 
-// Of steps that go on to shrink alike; NaN where they do not shrink.
+// For steps that go on to shrink alike; NaN where they do not shrink.
 double rest_of_steps(double step, double step_before) {
   constexpr double slowest = 0.9;
   const double ratio = step / step_before;
@@ -45,7 +45,7 @@ double root_mean_square(std::span<const SettingCost> settings,
   return std::sqrt(squares / n);
 }
 
-// Of Student's t of so many pairs, exceeded once in five times.
+// For Student's t of so many pairs, exceeded once in five times.
 double limit_of_t(std::size_t pairs) {
   return pairs < 2 ? std::numeric_limits<double>::infinity()
                    : student_two_sided(0.6, static_cast<double>(pairs - 1));
@@ -107,7 +107,7 @@ bool is_seen(const PairedBias& bias) {
 
 Remainder remainder(std::span<const double> two_before, std::span<const double> before,
                     std::span<const double> last) {
-  std::vector<double> steps, steps_before;  // of realizations that all three have
+  std::vector<double> steps, steps_before;  // from realizations that all three have
   for (std::size_t r = 0; r < last.size(); ++r) {
     const double step = last[r] - before[r], step_before = before[r] - two_before[r];
     if (std::isnan(step) || std::isnan(step_before)) continue;
@@ -131,7 +131,7 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
 
 double sigma_limit(std::size_t n_values) {
   if (n_values < 2) return std::numeric_limits<double>::infinity();
-  constexpr double share = 0.8;  // of cases in which chi2 is above what is sought
+  constexpr double share = 0.8;  // share of cases in which chi2 is above what is sought
   const auto dof = static_cast<double>(n_values - 1);
   double low = 0, high = dof;  // the median is below dof
   for (int i = 0; i < 60; ++i) {

@@ -25,9 +25,9 @@ struct PairedBias {
 /// values and reference: one a realization, NaN where it is missing.
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference);
 
-/// Whether a bias still grows with taps: its change from an earlier tap to a later one.
+/// True if a bias still grows with taps: its change from an earlier tap to a later one.
 struct Growth {
-  PairedBias change;      // of the bias, in pairs
+  PairedBias change;      // change of the bias, in pairs
   double tails = 1;       // probability of such a change by chance (Student's t)
   double detectable = 0;  // a change that would be found at 5 % with power 0.8
   bool is_seen() const { return tails < significance_level; }
@@ -38,7 +38,7 @@ struct Growth {
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
                    std::span<const double> values, std::span<const double> reference);
 
-/// Whether it is told from noise: by Student's t over pairs, at 5 %.
+/// True if it is significant: Student's t over pairs, at 5 %.
 bool is_seen(const PairedBias& bias);
 
 /// What a ladder's last setting still lacks.
@@ -56,9 +56,9 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
 
 /// A setting as a choice.
 struct SettingCost {
-  double bias = 0, bias_error = 0;  // of the observable
+  double bias = 0, bias_error = 0;  // bias of the observable
   double sigma = 0;                 // deviation between realizations
-  double realization_seconds = 0;   // of a whole one, on one core
+  double realization_seconds = 0;   // seconds of a whole realization, on one core
   std::size_t values = 0;           // realizations that it has, of which sigma is
   std::size_t pairs = 0;            // those that the reference has too, of which the bias is
 };
@@ -80,7 +80,7 @@ double sigma_limit(std::size_t n_values);
 
 /// What beside its settings a pilot has to say of them.
 struct Pilot {
-  std::size_t reference = 0;            // of settings: the most complete, of which biases are
+  std::size_t reference = 0;  // reference of settings: the most complete, of which biases are
   PairedBias last_step, step_before;    // to the reference, and to the setting before it
   std::vector<std::uint64_t> has_beds;  // [n_settings], 1: has the beds of the reference
 };
@@ -98,7 +98,7 @@ void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot);
 /// series has no end. bias_error is 0.
 std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot);
 
-/// Whether no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
+/// True if no other setting has both a smaller |bias| + error and a smaller time, [n_settings].
 std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings);
 
 }  // namespace jostle::inline ensemble

@@ -59,7 +59,7 @@ struct SpectrumSettings {
   std::optional<std::uint64_t> segment = std::nullopt;  // absent: about a quarter of `last`
   Taper window = Taper::hann;
   Detrending detrending = Detrending::mean;
-  /// Of the slope, in 1/taps; absent: from the first sound line to 1/2.
+  /// Band of the slope, in 1/taps; absent: from the first unbiased line to 1/2.
   std::optional<Band> band = std::nullopt;
   bool operator==(const SpectrumSettings&) const = default;
 
@@ -111,7 +111,8 @@ struct OrderingSettings {
   double threshold = 0;
   std::uint64_t hold = 10;  // taps running at or above the threshold
   std::string equilibrium;  // observable whose last taps are compared; empty: the same
-  std::optional<std::uint64_t> last = std::nullopt;  // of these taps; absent: the last quarter
+  std::optional<std::uint64_t> last =
+      std::nullopt;  // number of last taps; absent: the last quarter
   bool operator==(const OrderingSettings&) const = default;
 
   static constexpr About about{"ordering",
@@ -136,8 +137,9 @@ struct SweepSettings {
   /// "value": the mean of the last taps; else what another analysis ("steady/sigma") or a fit
   /// ("kww/rho_inf") of the same observable found.
   std::string quantity = "value";
-  std::optional<std::uint64_t> last = std::nullopt;  // of "value"; absent: the last quarter
-  std::string against;                               // JSON pointer; empty: the first of the sweep
+  std::optional<std::uint64_t> last =
+      std::nullopt;     // number of last taps of "value"; absent: the last quarter
+  std::string against;  // JSON pointer; empty: the first of the sweep
   /// The point, on the axis as drawn, that all others are compared with; absent: neighbours.
   std::optional<double> reference = std::nullopt;
   bool operator==(const SweepSettings&) const = default;

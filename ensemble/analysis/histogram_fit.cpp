@@ -13,8 +13,9 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double least_expected = 5;            // of a bin, for chi2
-constexpr double least_scatter = 0.01;          // of counts, in Poisson's: less is none of counts
+constexpr double least_expected = 5;  // least expected of a bin, for chi2
+constexpr double least_scatter =
+    0.01;  // least scatter of counts, in Poisson's: less is none of counts
 constexpr double doubted = significance_level;  // p below which the law is called wrong
 
 struct Groups {

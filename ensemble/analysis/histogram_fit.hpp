@@ -25,7 +25,7 @@ struct HistogramFit {
   /// joined until 5 are expected, over what the counts of realizations scatter by (F test). With
   /// one realization counts are taken for Poisson's, as if all that is counted were independent.
   double p;
-  /// Whether the law holds, with p; or why there is no fit.
+  /// True if the law holds, with p; or why there is no fit.
   std::string status;
 };
 

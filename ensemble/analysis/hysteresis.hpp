@@ -23,16 +23,16 @@ struct Loop {
   double lowest = 0, highest = 0;      // strengths
   double area = 0;                     // mean over realizations; NaN without any
   ErrorOf error{};                     // over realizations, Student's; none below two
-  double p = 1, corrected = 1;         // of no area: by itself, and for all loops (Holm 1979)
-  double detectable = 0;               // area that would have been found with probability 0.8
-  std::size_t realizations = 0;        // that have all steps of both branches
+  double p = 1, corrected = 1;   // p-value for no area: by itself, and for all loops (Holm 1979)
+  double detectable = 0;         // area that would have been found with probability 0.8
+  std::size_t realizations = 0;  // that have all steps of both branches
 
   static constexpr double level = significance_level;  // false alarms, all loops together
   /// "encloses an area" or "cannot decide", with the test and what would have refuted it.
   std::string statement() const;
 };
 
-/// Of every branch and the next. values: [n_steps, n_realizations], NaN where there is none.
+/// For every branch and the next. values: [n_steps, n_realizations], NaN where there is none.
 std::vector<Loop> loops(std::span<const double> strengths, std::span<const double> values,
                         std::uint32_t realizations);
 

@@ -38,17 +38,18 @@ std::string reasons_for_doubt(const SteadyState& state) {
   return reasons;
 }
 
-// Of a Gaussian process: Bartlett 1946.
+// For a Gaussian process: Bartlett 1946.
 double sigma_error(const SteadyState& state) {
   const auto n = static_cast<double>(state.n_taps * state.realizations);
   return state.sigma * std::sqrt((1 + 2 * state.autocorrelation.squares) / (2 * n));
 }
 
-// Of the mean of one series, by the memory that is likeliest; none where that leaves fewer than ten
-// independent values.
+// For the mean of one series, by the memory that is likeliest; none where that leaves fewer than
+// ten independent values.
 ErrorOf error_of_one(const std::vector<double>& values) {
   constexpr double fewest = 10;
-  constexpr double evidence = 2;  // of a memory: a mean is not lost by one that is not there
+  constexpr double evidence =
+      2;  // evidence required for a memory: a mean is not lost by a memory that does not exist
   const auto n = static_cast<Eigen::Index>(values.size());
   std::vector<double> places(values.size());
   std::iota(places.begin(), places.end(), 0.0);

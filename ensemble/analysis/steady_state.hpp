@@ -12,7 +12,7 @@
 
 namespace jostle::inline ensemble {
 
-/// Whether the state is steady. "Cannot decide" where no drift was found, but the taps and the
+/// True if the state is steady. "Cannot decide" where no drift was found, but the taps and the
 /// realizations would not have shown one that matters.
 enum class Verdict { reached, not_reached, cannot_decide };
 

@@ -17,7 +17,8 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double least_depth = 2;  // of bed between the layers at the floor and the surface
+constexpr double least_depth =
+    2;  // least depth of bed between the layers at the floor and the surface
 
 /// What a law gave at one tap.
 struct FoundLaw {
@@ -25,14 +26,14 @@ struct FoundLaw {
   std::uint32_t realizations = 0;
 };
 
-using Packings = std::vector<const Measurement*>;  // of one tap, [n_realizations]
+using Packings = std::vector<const Measurement*>;  // Packings of one tap, [n_realizations]
 
 /// A law, what it is fitted to, and how.
 struct FittedLaw {
   std::string quantity;  // what the law is of
-  std::string prefix;    // of the parameters' names in the table
+  std::string prefix;    // prefix of the names of parameters in the table
   std::string model;
-  std::vector<std::string> units;  // of its parameters; empty: one that says nothing, left out
+  std::vector<std::string> units;  // units of the parameters; empty: left out
   std::function<FoundLaw(const Model&, const Packings&)> found;
   bool of_counts = false;
   std::string variable = "";  // what t of the formula is, where it is not the quantity's place

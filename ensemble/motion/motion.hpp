@@ -13,7 +13,7 @@
 // positions are kept of other taps.
 namespace jostle::inline ensemble {
 
-/// Of a scene, at most.
+/// Most analyses of a scene.
 inline constexpr std::size_t most_motion_taps = 1000, most_overlap_lengths = 20;
 inline constexpr std::uint32_t most_motion_layers = 1000;
 inline constexpr std::uint64_t most_motion_bytes = std::uint64_t{1} << 30;    // a realization
@@ -24,7 +24,7 @@ struct MotionSettings {
   std::vector<std::uint64_t> origins;   // waiting times t_W, ascending; tap 0 is the start
   std::vector<std::uint64_t> lags;      // taps, ascending, at least 1
   std::vector<double> overlap_lengths;  // a, diameters, ascending, above 0
-  std::uint32_t layers = 0;  // of equal numbers of spheres, by their height at the origin
+  std::uint32_t layers = 0;  // layers of equal numbers of spheres, by their height at the origin
   bool operator==(const MotionSettings&) const = default;
 };
 
@@ -74,7 +74,7 @@ inline constexpr MotionQuantity motion_quantities[] = {
 
 /// Values of a quantity at one origin and lag.
 std::size_t n_places(MotionPlaces places, const MotionSettings& settings);
-/// Of all quantities, one after another.
+/// Concatenates all quantities.
 std::size_t n_motion_values(const MotionSettings& settings);
 /// Lags of an origin that the first `rows` taps, the start included, have reached.
 std::size_t lags_reached(const MotionSettings& settings, std::uint64_t origin, std::uint64_t rows);
@@ -109,7 +109,7 @@ void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint
 /// Heights in the container of unwrapped centres: within its period where it is periodic in z.
 std::vector<double> heights_of(std::span<const Vec3> centres, const Container& container);
 
-/// Of every sphere the layer, 0 the lowest, by its height: ranks r of n spheres with
+/// For every sphere the layer, 0 the lowest, by its height: ranks r of n spheres with
 /// floor(r n_layers / n) equal make a layer. Equal heights are ranked by their numbers.
 std::vector<std::uint32_t> layers_of(std::span<const double> heights, std::uint32_t n_layers);
 

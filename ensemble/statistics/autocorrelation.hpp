@@ -12,7 +12,7 @@ struct AutocorrelationTime {
   double time = 0;         // taps
   double error = 0;        // standard error
   std::size_t window = 0;  // lags summed; 0 where no window was found: the time is a lower bound
-  double variance = 0;     // of single taps about the true mean
+  double variance = 0;     // variance of single taps about the true mean
   double squares = 0;      // sum of the squared correlation over lags 1 .. window
 
   bool found() const { return window > 0; }

@@ -10,9 +10,9 @@ namespace jostle::inline ensemble {
 /// Series cut into blocks of one length, whose means are taken for independent.
 struct BlockingLevel {
   std::size_t block_length = 1;  // taps, a power of two
-  std::size_t n_blocks = 0;      // of all realizations
-  double variance = 0;           // of block means about their realization's mean
-  double error = 0;              // of the mean of everything
+  std::size_t n_blocks = 0;      // n blocks of all realizations
+  double variance = 0;           // variance of block means about their realization's mean
+  double error = 0;              // error of the mean of everything
   double error_error = 0;        // its own standard error, for independent Gaussian blocks
 };
 
@@ -39,7 +39,7 @@ class Blocking {
 
  private:
   struct Pool {
-    std::size_t n_blocks = 0;  // of one realization
+    std::size_t n_blocks = 0;  // n blocks of one realization
     double squares = 0;
   };
   std::size_t n_ = 0, realizations_ = 0;

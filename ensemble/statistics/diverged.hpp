@@ -6,9 +6,10 @@
 
 namespace jostle::inline ensemble {
 
-/// Whether the least squares have carried a free parameter away from all that the data could say of
-/// it: overflown, or with a standard error over 100 times a positive parameter, or a level over 100
-/// times the largest value of the curve. Such a number is neither stored nor printed.
+/// True if the least squares have moved a free parameter away from all that the data could
+/// constrain of it: overflown, or with a standard error over 100 times a positive parameter, or a
+/// level over 100 times the largest value of the curve. Such a number is neither stored nor
+/// printed.
 bool has_diverged(const Fit& fit, std::size_t parameter);
 
 /// "the data do not limit b, tau: ...", or nothing.

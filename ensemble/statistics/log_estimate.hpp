@@ -21,7 +21,8 @@ LogEstimate log_estimate(double value, const ErrorOf& of_logarithm);
 /// Where there is no estimate at all.
 LogEstimate no_estimate();
 
-/// Whether its 95 % interval has both ends: what has not is neither stored nor printed.
+/// True if both limits of its 95 % interval are finite: other parameters are neither stored nor
+/// printed.
 bool is_limited(const LogEstimate& estimate);
 
 /// ln of the mean of values, none negative, with each left out in turn: for the jackknife. Empty

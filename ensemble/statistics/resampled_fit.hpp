@@ -17,7 +17,7 @@ enum class Resampling {
 
 struct ResamplingOptions {
   Resampling kind = Resampling::jackknife;
-  std::uint32_t count = 1000;  // of bootstrap resamples
+  std::uint32_t count = 1000;  // count of bootstrap resamples
   std::uint64_t seed = 1;
   int threads = 1;
 };
@@ -25,10 +25,10 @@ struct ResamplingOptions {
 /// One value a parameter each, [n_parameters].
 struct ResampledErrors {
   std::vector<double> errors;     // standard errors
-  std::vector<Interval> middle;   // of a bootstrap, the central 68 % of parameters; else empty
+  std::vector<Interval> middle;   // central 68 % of parameters in a bootstrap; else empty
   std::vector<Interval> central;  // likewise 95 %
   std::uint32_t resamples = 0;    // refitted
-  std::uint32_t failed = 0;       // of which without a settled fit: not counted in the errors
+  std::uint32_t failed = 0;       // resamples without a settled fit: not counted in the errors
 };
 
 /// The realizations behind a mean curve.

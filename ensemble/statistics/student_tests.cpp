@@ -36,7 +36,7 @@ double normal_below(double z) {
   return 0.5 * std::erfc(-z / std::sqrt(2.0));
 }
 
-// Of |N(effect, 1)| > critical s, where s^2 is chi squared over its dof degrees of freedom.
+// For |N(effect, 1)| > critical s, where s^2 is chi squared over its dof degrees of freedom.
 double power_at(double effect, double critical, double dof) {
   if (dof >= many) return normal_below(effect - critical) + normal_below(-effect - critical);
   const double half = 0.5 * dof;

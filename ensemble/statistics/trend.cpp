@@ -17,7 +17,7 @@ namespace {
 constexpr double times_of_a_block = 5;  // autocorrelation times
 constexpr double rounding = 1e-12;      // what is left of a change is no memory
 constexpr std::size_t fewest_blocks_of_series = 4;
-constexpr double enough_freedom = 20;  // of an error within series
+constexpr double enough_freedom = 20;  // degrees of freedom sufficient for an error within series
 constexpr double doubted = 0.25;       // p of realizations that differ by more than they change
 
 // Sum of (i - center)^2.
@@ -25,7 +25,7 @@ double leverage(double n) {
   return n * (n * n - 1) / 12;
 }
 
-// Of block means about their line, [n_blocks] in `means`.
+// For block means about their line, [n_blocks] in `means`.
 double squares_about_line(const std::vector<double>& means) {
   const Line line = fit_line(means);
   double squares = 0;
@@ -74,7 +74,7 @@ void TrendTest::add(std::span<const double> series) {
     level.squares += squares_about_line(block_means(series, level.length));
 }
 
-// Of the mean slope, by the longest blocks that leave freedom enough: a slower part of the memory,
+// For the mean slope, by the longest blocks that leave freedom enough: a slower part of the memory,
 // which the autocorrelation time does not show, is seen by no shorter ones. Block means are
 // independent but for about T / length of their variance, T the autocorrelation time, which their
 // neighbours have.

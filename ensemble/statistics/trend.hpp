@@ -25,17 +25,17 @@ struct Change {
   const ErrorOf& error() const { return over.known() ? over : within; }
 };
 
-/// Whether the last taps drift: Student's tests of the slope of a straight line and of the
+/// Tests if the last taps drift: Student's tests of the slope of a straight line and of the
 /// difference between the halves, each with both errors where they are known. The smallest p-value
 /// counts, times the number of tests (Bonferroni).
 struct Trend {
   Change line;                 // change of a straight line over the taps: slope times their number
   Change halves;               // mean of the second half of the taps less that of the first
-  double share = 0;            // of the total variance in time that the line explains, 0 .. 1
+  double share = 0;            // share of the total variance in time that the line explains, 0 .. 1
   double sigma = 0;            // deviation of single taps about the line of their realization
   AutocorrelationTime memory;  // about these lines
   std::size_t tests = 0;       // made; 0: one series, too short for its memory
-  double p = 1;                // of all tests together
+  double p = 1;                // p-value of all tests together
   std::string decisive;        // the test with the smallest p-value: "slope over realizations"
   double decisive_dof = 0;
   /// The smallest true change of the line that one of the tests would have found with probability

@@ -14,7 +14,7 @@ namespace {
 
 // Fitted curves whose distance is below this share of the residuals are one curve.
 constexpr double same_curve = 1e-8;
-constexpr double rounding = 1e-20;  // of squares, relative to those of X
+constexpr double rounding = 1e-20;  // rounding of squares, relative to the squares of X
 
 // Realizations with the weights that all fits share: squares are in units of the variance of one
 // realization.
@@ -88,8 +88,8 @@ struct Predictions {
   std::string model;
   Eigen::ArrayXd fitted;     // [n_points], to the mean of all realizations
   Eigen::ArrayXXd held_out;  // [n_points, n_realizations], to the mean of the others
-  double residual_sum = 0;   // of the mean of all realizations
-  double dof = 0;            // of errors from the scatter of realizations
+  double residual_sum = 0;   // sum of squares of the mean of all realizations
+  double dof = 0;            // dof of errors from the scatter of realizations
   double squared_error = 0;  // sum over points
 };
 

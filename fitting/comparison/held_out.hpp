@@ -15,9 +15,9 @@ struct HeldOutLaw {
   std::string model;
   /// Mean squared error of prediction, less what the error of the law's own fit adds.
   double squared_error = 0;
-  double difference = 0;  // of squared_error, from the leading law; 0 for that law
+  double difference = 0;  // squared_error less that of the leading law; 0 for that law
   double error = 0;       // standard error of the difference
-  double dof = 0;         // of Student's t for the error: M - 1, fewer with gaps
+  double dof = 0;         // dof of Student's t for the error: M - 1, fewer with gaps
   double t = 0;           // difference / error
   /// p-value of the hypothesis that this law comes at least as close to the mean curve as the
   /// leading law, for as many laws as are compared (Bonferroni); 1 for the leading law.
@@ -35,7 +35,7 @@ struct LawComparison {
   static constexpr std::size_t least_realizations = 3;
 
   std::vector<HeldOutLaw> laws;  // in the order of the fits; empty where nothing was compared
-  std::size_t leading = 0;       // of the least squared_error
+  std::size_t leading = 0;       // law with the least squared_error
   std::size_t n_realizations = 0;
   std::string cannot_decide;          // why nothing was compared, a sentence; or empty
   std::vector<std::string> left_out;  // laws that were not compared and why, a sentence each

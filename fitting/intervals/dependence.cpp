@@ -13,7 +13,8 @@ namespace {
 constexpr double least_inflation =
     1e-12;  // realizations that agree in a variable, but for rounding
 
-constexpr double constant_tolerance = 1e-6;  // of a constant's squared length, outside the tangent
+constexpr double constant_tolerance =
+    1e-6;  // tolerance for a constant's squared length, outside the tangent
 constexpr double least_level_weight = 1e-6;
 
 // What least squares makes of residuals: an orthonormal basis Q of the Jacobian's columns, and for

@@ -18,7 +18,7 @@ struct DependentErrors {
   Eigen::VectorXd inflation;
   /// The weight of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
   double level_weight = 1;
-  /// Of Student's t; infinite where the errors are known.
+  /// For Student's t; infinite where the errors are known.
   double dof = std::numeric_limits<double>::infinity();
 };
 
@@ -40,7 +40,7 @@ DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
 double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& jacobian,
                     const Eigen::MatrixXd& deviations);
 
-/// Of one curve alone, whose residuals have a memory; Student's t of effective_size - n_variables
+/// For one curve alone, whose residuals have a memory; Student's t of effective_size - n_variables
 /// degrees of freedom, which may be negative where the memory is as long as the curve. t:
 /// [n_points], ascending; jacobian, residuals: [n_points], weighted alike. `sigma_given`: the
 /// variance of a residual is 1, and only their correlation is taken from them, where they are no

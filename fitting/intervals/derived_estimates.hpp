@@ -16,7 +16,7 @@ struct FittedCurveOf {
   const ParameterValues& values;  // [n_parameters], at the minimum of `searched`
   const std::vector<bool>& free;  // [n_parameters]
   double cost = 0;                // at that minimum
-  bool has_intervals = false;     // whether intervals are profiled
+  bool has_intervals = false;     // true if intervals are profiled
   const FitOptions& options;
 };
 

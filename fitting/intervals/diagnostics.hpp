@@ -11,7 +11,7 @@ struct RunsTest {
   std::size_t runs = 0;
   double expected = 0;
   double z = 0;  // deviation in standard errors; negative where residuals are correlated
-  double p = 1;  // of so large a |z|; 1 where all signs are alike and nothing can be said
+  double p = 1;  // p-value of |z|; 1 where all signs are alike and there is no test
 };
 RunsTest runs_test(const std::vector<double>& residuals);
 

@@ -28,7 +28,7 @@ void fill_covariance(const LinearProblem& problem, const std::vector<bool>& free
 DependentErrors dependent_errors(const Curve& curve, const LinearProblem& problem, bool memory,
                                  Fit& fit);
 
-/// Whether a curve alone remembers for so long that its errors would be a guess.
+/// True if the memory of a single curve is too long for reliable errors.
 bool too_short_for_errors(const Fit& fit);
 
 }  // namespace jostle::inline fitting

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double edge = 1e-3;      // how near two parameters in order come, relatively
 constexpr double far_away = 100;   // in largest values of X
-constexpr double rounding = 1e-6;  // of a value, in errors of the curve, that is not felt
+constexpr double rounding = 1e-6;  // negligible rounding of a value, in errors of the curve
 
 double largest_size(const Curve& curve) {
   const auto [low, high] = std::minmax_element(curve.x.begin(), curve.x.end());
@@ -163,7 +163,7 @@ HeldFit HeldFits::in_order(HeldFit point) const {
   return {point.distance, infinite, false, point.p};
 }
 
-// Whether no term of the model is so large that the curve is its rounding.
+// True if no term of the model is so large that the curve is its rounding.
 bool HeldFits::has_digits(const ParameterValues& p) const {
   for (std::size_t j = 0; j < p.size(); ++j) {
     const Parameter& parameter = problem_.model.parameters()[j];

@@ -85,7 +85,7 @@ class HeldFits {
   double centre_;
   std::vector<bool> free_;  // with this parameter held
   double largest_;
-  bool ordered_;  // whether the minimum is in the law's order
+  bool ordered_;  // true if the minimum is in the law's order
   double noticeable_;
   std::optional<ParameterValues> better_;
 };

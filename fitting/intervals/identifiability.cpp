@@ -17,8 +17,9 @@ constexpr double few_points_share = 0.1;
 // chi2 is itself an estimate, hence the smaller level.
 constexpr double runs_level = 0.01;
 constexpr double chi2_level = 0.001;
-constexpr double wide_factor = 2;     // of a positive parameter
-constexpr double wide_share = 0.125;  // of the curve, for a place or a level
+constexpr double wide_factor = 2;  // ratio of limits of a wide positive parameter
+constexpr double wide_share =
+    0.125;  // share of the curve's range for a wide parameter, for a place or a level
 
 // Where the curvature of the least squares is rounding and a minimum lies absurdly far from all
 // that was measured, whatever closed its interval was not the data.

@@ -11,8 +11,8 @@ namespace jostle::inline fitting {
 /// share exp(-|t - t'| / time) between different points.
 struct Memory {
   double time = 0;            // in units of t; 0 where the points are independent
-  double share = 0;           // of the variance that has a memory
-  double variance = 0;        // of a residual
+  double share = 0;           // share of the variance that has a memory
+  double variance = 0;        // variance of a residual
   double effective_size = 0;  // independent points whose mean would be known as well
 };
 

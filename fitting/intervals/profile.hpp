@@ -13,7 +13,7 @@ struct ProfileProblem {
   ParameterValues minimum;        // [n_parameters]
   std::vector<bool> free;         // [n_parameters]
   double cost = 0;                // at the minimum
-  double variance = 0;            // of a residual: 1 where errors were given
+  double variance = 0;            // variance of a residual: 1 where errors were given
   double thresholds[2] = {0, 0};  // sqrt of how much cost / variance may rise, ascending
   SolverOptions solver;
   double level_weight = 1;  // DependentErrors::level_weight, on which the thresholds rest

@@ -23,7 +23,7 @@ struct Parameter {
   bool linear = false;  // the model is linear in it (plus what does not depend on it)
 };
 
-/// Of two parameters: kept * other^power, by their indices.
+/// For two parameters: kept * other^power, by their indices.
 struct Combination {
   std::string name;     // B/tau
   std::string meaning;  // "first slope of the logarithm"
@@ -32,7 +32,7 @@ struct Combination {
   int power = 1;
 };
 
-/// Whether residuals are differences of X, or of ln X with sigma / X for errors.
+/// True if residuals are differences of X, or of ln X with sigma / X for errors.
 enum class ResidualScale { linear, logarithmic };
 
 /// A starting point, or candidates for the nonlinear parameters: [n_parameters] values.

@@ -24,7 +24,7 @@ std::pair<double, double> positive_range(const Curve& curve) {
   return last > 0 ? std::pair{first, last} : std::pair{1.0, 1.0};
 }
 
-// Of the inverse logs with strength number `b` and time number `tau`. What a curve determines is
+// For the inverse logs with strength number `b` and time number `tau`. What a curve determines is
 // how far the logarithm has grown at its end, B ln(1 + last/tau): from hardly out of the linear
 // regime to saturated; and whether tau is below its first time, among its times, or beyond.
 Grid log_grid(const Curve& curve, std::span<const double> fixed, std::size_t b, std::size_t tau) {
@@ -107,7 +107,7 @@ double InverseLog::value(double t, const double* p) const {
 
 double InverseLog::value_and_gradient(double t, const double* p, double* gradient) const {
   const double log = std::log1p(t / p[3]);
-  const double share = 1 / (1 + p[2] * log);  // of dX that remains
+  const double share = 1 / (1 + p[2] * log);  // share of dX that remains
   const double by_strength = p[1] * share * share;
   gradient[0] = 1;
   gradient[1] = -share;

@@ -50,14 +50,14 @@ struct OrthonormalBasis {
   Eigen::MatrixXd basis;     // Q, [n, m]
   Eigen::MatrixXd triangle;  // R, [m, m]
 };
-/// Of a: [n, m], n >= m.
+/// For a: [n, m], n >= m.
 OrthonormalBasis orthonormal_basis(const Eigen::MatrixXd& a);
 
 struct SingularValues {
   Eigen::VectorXd values;   // [m], descending
   Eigen::MatrixXd vectors;  // V, [m, m], a vector a column
 };
-/// Of a: [m, m], by Jacobi's method.
+/// For a: [m, m], by Jacobi's method.
 SingularValues singular_values(const Eigen::MatrixXd& a);
 
 struct SymmetricSolution {

@@ -11,8 +11,9 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double hopeless = 10;       // times the least cost on a grid, however coarse
-constexpr double most_work = 1.2e7;   // of a grid: places times points times parameters squared
+constexpr double hopeless = 10;  // times the least cost on a grid, however coarse
+constexpr double most_work =
+    1.2e7;  // most work of a grid: places times points times parameters squared
 constexpr std::size_t sampled = 128;  // points of a curve, by Model::starts()
 
 // Leaves each axis of a linear or fixed parameter its one value, and the last axes of a grid that
@@ -35,14 +36,14 @@ class Landscape {
   Landscape(const Model& model, const Curve& curve, std::span<const double> fixed,
             const Grid& grid);
 
-  /// Whether no neighbour, diagonal ones included, is better.
+  /// True if no neighbour, diagonal ones included, is better.
   bool is_valley(std::size_t index) const;
 
   std::vector<double> costs;  // infinite where there is nothing
   std::vector<ParameterValues> parameters;
 
  private:
-  std::vector<std::size_t> lengths_, strides_;  // of axes with more than one value
+  std::vector<std::size_t> lengths_, strides_;  // strides of axes with more than one value
 };
 
 Landscape::Landscape(const Model& model, const Curve& curve, std::span<const double> fixed,

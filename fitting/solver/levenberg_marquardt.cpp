@@ -48,7 +48,7 @@ class Descent {
   Eigen::VectorXd trial_r_;
   Eigen::VectorXd scale_;
   double radius_ = 0;
-  bool stepped_ = false;  // whether the last try_step moved
+  bool stepped_ = false;  // true if the last try_step moved
 };
 
 bool Descent::evaluate_all(const Eigen::VectorXd& x) {

@@ -59,7 +59,7 @@ struct SolverOptions {
   bool geodesic_acceleration = true;
   /// Where steps lead nowhere or to infinity: begin again from the given x with other scalings.
   bool fallbacks = true;
-  /// Whether a minimum is refined until its gradient is rounding: 10 digits instead of 7.
+  /// True if a minimum is refined until its gradient is rounding: 10 digits instead of 7.
   bool polish = true;
 };
 
@@ -84,8 +84,8 @@ struct Minimum {
   double cost = 0;           // |r|^2
   EndReason reason = EndReason::not_finite;
   int iterations = 0;            // Jacobians factorised
-  int evaluations = 0;           // of r, those with a Jacobian included
-  int jacobian_evaluations = 0;  // of J
+  int evaluations = 0;           // evaluations of r, including those with a Jacobian
+  int jacobian_evaluations = 0;  // jacobian evaluations of J
   int fallback = 0;              // 0: the first attempt; else which of the other scalings
 };
 

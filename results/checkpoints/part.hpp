@@ -66,7 +66,7 @@ struct PiecePlaces {
 struct PartOutline {
   PartState part;  // without its tail
   PiecePlaces tail;
-  std::string stamp;  // of its file: another checkpoint may replace it
+  std::string stamp;  // stamp of its file, which another checkpoint may replace
 };
 
 std::string parts_folder(const std::string& results_path);

@@ -21,7 +21,7 @@ struct ExportedFile {
   std::string path, text;
 };
 
-/// Of a format that is text, as all but H5MD are (write_h5md):
+/// For a format that is text, as all but H5MD are (write_h5md):
 /// what the frames are written to: `path`, with all of them; only VTK's format keeps a frame a
 /// file, so that several go to STEM_tapT.vtp beside `path`, which becomes STEM.pvd, their list.
 /// Requires a frame.

@@ -114,7 +114,8 @@ class MixtureReader {
   const ExtendedXyzHeader& header_;
   std::vector<SphereKind> kinds_;
   std::vector<std::uint32_t> kind_of_;
-  std::vector<std::vector<double>> diameters_;  // of every column of sizes, [n_spheres] or empty
+  std::vector<std::vector<double>>
+      diameters_;  // diameters of every column of sizes, [n_spheres] or empty
 };
 
 double coordinate(const std::string& word) {

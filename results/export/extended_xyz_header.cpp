@@ -217,7 +217,7 @@ std::optional<SizeColumns> size_named(const std::string& name) {
 void require_model_keys(const Keys& keys) {
   for (const auto& [key, value] : keys) {
     const auto size = size_named(key);
-    static constexpr std::array anything = {"size", "r", "d", "sigma"};  // of a frame
+    static constexpr std::array anything = {"size", "r", "d", "sigma"};  // true if a frame has any
     if (size && std::ranges::find(anything, key) == anything.end()) {
       for (const std::string& entry : entries_of(value)) {
         const double given = finite_number(entry);

@@ -26,7 +26,7 @@ struct SizeColumns {
 
 struct ExtendedXyzHeader {
   Container container;
-  Vec3 origin;  // of the container's corner, diameters
+  Vec3 origin;  // origin of the container's corner, diameters
   std::size_t positions = 1;
   std::size_t n_columns = 4;
   std::vector<SizeColumns> sizes;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t piece = 1u << 16;
 constexpr std::size_t longest_line = 64u << 20;
-constexpr std::size_t longest_text = 256u << 20;  // of a scene with 100 000 points and more
+constexpr std::size_t longest_text = 256u
+                                     << 20;  // longest text of a scene with 100 000 points and more
 
 /// Without waiting for one who writes to a pipe where none may be.
 Descriptor opened(const std::string& path, Pipes pipes) {

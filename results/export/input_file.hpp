@@ -10,7 +10,7 @@
 
 namespace jostle::inline results {
 
-/// Whether a file that is read may be a pipe or a device, as of `fit <(command)`.
+/// True if an input may be a pipe or a device, as in `fit <(command)`.
 enum class Pipes { refused, allowed };
 
 /// A file that is read from its beginning, and in which a failed read is never taken for its end.

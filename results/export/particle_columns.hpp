@@ -19,7 +19,7 @@ struct ParticleColumn {
 /// A vector a sphere, under the names that each format knows it by.
 struct VectorColumn {
   const char *name, *xyz_name;
-  std::array<const char*, 3> components;  // of LAMMPS
+  std::array<const char*, 3> components;  // components in LAMMPS' order
   std::vector<Vec3> values;               // [n_spheres]
 };
 

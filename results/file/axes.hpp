@@ -17,7 +17,7 @@ std::uint64_t rows_a_block(std::uint32_t n_realizations, std::size_t n_columns);
 Hdf5Handle write_tap_axis(hid_t group, std::uint64_t n_taps);
 Hdf5Handle write_realization_axis(hid_t group, std::uint32_t n_realizations);
 
-/// Of the numbers 0 .. n - 1.
+/// For the numbers 0 .. n - 1.
 Hdf5Handle write_counting_axis(hid_t group, const char* name, std::uint64_t n,
                                const char* long_name);
 

@@ -127,7 +127,7 @@ ContactNetwork::ContactNetwork(hid_t group, std::uint32_t n_spheres, const Conta
   for (const char* name : {"second", "overlap", "normal_force"}) require_shape(contacts, name, all);
   for (const char* name : {"normal", "tangential_force"})
     require_shape(contacts, name, {all[0], 3});
-  // Of each frame where it ends: where the next begins.
+  // For each frame where it ends: where the next begins.
   ends_.push_back(all[0]);
   if (ends_.front() != 0 || !std::ranges::is_sorted(ends_))
     throw Hdf5Error("offset does not ascend from 0 to the number of contacts");

@@ -29,7 +29,7 @@ class ContentWalk {
 
  private:
   void add_members(hid_t group, const std::string& path);
-  using Paths = std::unordered_map<haddr_t, std::string>;  // of a group's members, by address
+  using Paths = std::unordered_map<haddr_t, std::string>;  // Paths of a group's members, by address
 
   void add_object(hid_t parent, const Member& member, const std::string& path, const Paths& paths);
   void add_dataset(hid_t dataset, const std::string& path);

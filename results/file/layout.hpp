@@ -34,8 +34,8 @@ inline std::string particles_name(RealizationId id) {
   return point_name(id.point) + "_" + realization_name(id.realization);
 }
 
-/// Of a sweep point that keeps the same as an earlier one: the number of that one, which alone has
-/// the datasets of /sweep/P. So a point of a long sweep takes some hundred bytes.
+/// For a sweep point with the contents of an earlier one: the number of the earlier point, which
+/// alone has the datasets of /sweep/P. So a point of a long sweep takes some hundred bytes.
 inline constexpr const char* keeps_what_point_keeps = "keeps_what_point_keeps";
 
 /// The columns of the engine are named in the file where they are not those of Monte Carlo, which

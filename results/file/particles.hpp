@@ -12,7 +12,7 @@
 
 namespace jostle::inline results {
 
-/// Of H5MD's box: its dimension and which directions are periodic.
+/// For H5MD's box: its dimension and which directions are periodic.
 void write_boundary(const Hdf5Handle& box, const Container& container);
 
 /// Writes one group of H5MD's /particles, of the snapshots that keep positions: box, and for each

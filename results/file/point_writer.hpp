@@ -47,7 +47,7 @@ class PointWriter {
   const StudyPoint& point_;
   std::uint32_t number_;
   std::uint32_t n_realizations_;
-  bool begun_ = false;  // whether the point's groups are there
+  bool begun_ = false;  // true if the point's groups are there
   std::vector<Column> labels_;
   std::vector<std::unique_ptr<StoredRealization>> realizations_;  // added
   std::vector<std::uint8_t> statuses_;
@@ -56,8 +56,8 @@ class PointWriter {
   std::vector<Work> work_;
   std::vector<std::optional<FittingReport>> fittings_;  // [n_realizations]
   std::optional<MotionRecords> motion_;                 // where it is followed
-  std::optional<DrawnDiameters> diameters_;             // of mixtures that draw them
-  SnapshotStatistics statistics_;                       // of snapshots
+  std::optional<DrawnDiameters> diameters_;             // diameters of mixtures that draw them
+  SnapshotStatistics statistics_;                       // statistics of snapshots
 };
 
 }  // namespace jostle::inline results

@@ -55,7 +55,7 @@ class ResultsFile::Impl {
     return shape[0];
   }
 
-  /// Whether the file has the groups of a point: not before one of its realizations has begun.
+  /// True if the file has the groups of a point: not before one of its realizations has begun.
   bool has_point(std::uint32_t point) const {
     return exists(file(), "observables/" + point_name(point));
   }
@@ -128,7 +128,8 @@ class ResultsFile::Impl {
 
  private:
   std::optional<PointTables> cached_;
-  using Block = std::pair<std::uint32_t, std::uint64_t>;  // of a point, from a row or a snapshot on
+  using Block =
+      std::pair<std::uint32_t, std::uint64_t>;  // block of a point, from a row or a snapshot on
   // Two, as what is written from them comes in other blocks where it has more realizations.
   RecentlyUsed<Block, std::vector<std::vector<double>>, 2> row_blocks_;
   std::array<RecentlyUsed<Block, std::vector<double>, 2>, n_height_profiles> profile_blocks_;

@@ -15,8 +15,8 @@ void write_provenance(hid_t file, const FileContent& content, RunState state);
 
 /// The same read back. Throw Hdf5Error.
 Study read_study(hid_t file);
-/// Whether that would give this study. Only the scenes are compared, so that it says no where they
-/// do not tell all: of starts from files.
+/// True if that would give this study. Only the scenes are compared, so that the answer is no where
+/// they do not tell all: of starts from files.
 bool has_study(hid_t file, const Study& study);
 struct FileProvenance {
   std::string run_id;

@@ -19,7 +19,7 @@ namespace {
 // to.
 constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
-constexpr std::size_t longest_label = 1u << 24;  // of values that can be whole protocols
+constexpr std::size_t longest_label = 1u << 24;  // longest label; values can be whole protocols
 
 void require(bool sound, const std::string& what) {
   if (!sound) throw Hdf5Error(printable(what) + ": not written by jostle");

@@ -16,7 +16,7 @@ void validate(const Study& study, const FileProvenance& provenance);
 /// What a realization goes on from.
 void validate(const RealizationState& state, const StudyPoint& point);
 
-/// Whether squares of the coordinates are numbers: a bed that is tapped before it has fallen back
+/// True if squares of the coordinates are numbers: a bed that is tapped before it has fallen back
 /// grows without end.
 bool is_position(const Vec3& centre);
 

@@ -9,7 +9,7 @@
 // reads. https://support.hdfgroup.org/documentation/hdf5/latest/group___h5_d_s.html
 namespace jostle::inline results {
 
-/// Whether a dataset is an axis.
+/// True if a dataset is an axis.
 bool is_axis(hid_t dataset);
 
 /// Where in the file the axes of a dataset lie: for every dimension the addresses of its axes;

@@ -47,7 +47,7 @@ std::string outcome_of(const std::function<std::string()>& work) {
 /// needs less.
 void limit_memory() {
   constexpr rlim_t enough = rlim_t{3} << 29;  // 1.5 GB
-  std::uint64_t pages = 0;                    // of this process; unknown where there is no /proc
+  std::uint64_t pages = 0;  // pages of this process; unknown where there is no /proc
   if (!(std::ifstream("/proc/self/statm") >> pages)) return;
   struct rlimit limit;
   if (::getrlimit(RLIMIT_AS, &limit) != 0) return;

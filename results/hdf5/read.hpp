@@ -15,7 +15,7 @@ Hdf5Handle open_to_read(const std::string& path);
 
 Hdf5Handle open_group(hid_t parent, const std::string& name);
 Hdf5Handle open_dataset(hid_t parent, const std::string& name);
-/// Whether the path exists, intermediate groups included.
+/// True if the path exists, intermediate groups included.
 bool exists(hid_t parent, const std::string& path);
 
 Shape shape_of(hid_t dataset);
@@ -24,7 +24,7 @@ Shape shape_of_space(hid_t space);
 /// Throws unless the dataset `name` of a group has that shape.
 void require_shape(hid_t parent, const std::string& name, const Shape& shape);
 
-/// Of any shape, or of the given one.
+/// For any shape, or of the given one.
 template <class Number>
 std::vector<Number> read_numbers(hid_t parent, const std::string& name,
                                  const Shape* expected = nullptr) {
@@ -52,7 +52,7 @@ std::string read_text(hid_t parent, const std::string& name);
 std::vector<std::string> read_texts_attribute(hid_t object, const std::string& name);
 std::vector<std::string> texts_of_attribute(hid_t attribute, const std::string& name);
 std::string read_text_attribute(hid_t object, const std::string& name);
-/// Of a length that its type fixes, as HDF5's own attributes have.
+/// For a length that its type fixes, as HDF5's own attributes have.
 std::string read_fixed_text_attribute(hid_t object, const std::string& name);
 /// Throws Hdf5Error for another kind of number, or one with a sign where there is none: HDF5 would
 /// convert it in silence, -1 to 0.

@@ -28,7 +28,7 @@ struct DriverFile {
   int descriptor;
   int* error;
   haddr_t allocated;  // HDF5's end of the address space
-  haddr_t size;       // of the file, waiting bytes included
+  haddr_t size;       // size of the file, waiting bytes included
   haddr_t waiting_at;
   std::vector<std::byte> waiting;  // written by HDF5, not yet by us
 };

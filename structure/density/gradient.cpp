@@ -11,7 +11,7 @@ namespace jostle::inline structure {
 
 namespace {
 
-// Of sums over the bins below each edge, the value at a place between edges.
+// For sums over the bins below each edge, the value at a place between edges.
 double interpolate(const Profile& profile, const std::vector<double>& sums, double place) {
   const auto& edges = profile.edges;
   if (place <= edges.front()) return 0;

@@ -12,7 +12,7 @@ namespace jostle::inline structure {
 
 namespace {
 
-const double spacing = std::sqrt(2.0 / 3);   // of layers
+const double spacing = std::sqrt(2.0 / 3);   // spacing of layers
 const double row = std::numbers::sqrt3 / 2;  // spacing of the rows of a layer
 
 constexpr double rounding = 1e-9;
@@ -85,7 +85,7 @@ double layer_by_area(const Container& container) {
   return std::max(1.0, footprint_area(Boundary(container), sphere_radius) / row);
 }
 
-// Of ascending heights those in [low, high).
+// For ascending heights those in [low, high).
 std::span<const double> between(const std::vector<double>& heights, double low, double high) {
   const auto first = std::ranges::lower_bound(heights, low);
   const auto last = std::ranges::lower_bound(heights, high);

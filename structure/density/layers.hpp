@@ -40,13 +40,13 @@ struct LayerRule {
 /// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are
 /// a little farther apart within them: so each is sought from the one found below it.
 struct Layer {
-  double height = 0;  // of hcp
+  double height = 0;  // height of a layer of hcp
   double found = 0;   // mean height of the centres near the place that the layer below points to
   /// Number of centres between mid-planes over that of a full layer: 2/sqrt(3) per unit of area of
   /// a periodic footprint. Between walls the most places of a close-packed layer with rows along a
   /// wall; in a tube the most over places of its axis in the layer.
   double filling = 0;
-  double share = 0;  // of them within the tolerance of `found`; 0 of none
+  double share = 0;  // share within the tolerance of `found`; 0 without spheres
 };
 
 /// All layers up to the highest centre. Throws std::invalid_argument for a fully periodic box,

@@ -112,7 +112,8 @@ std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
 Profile wall_profile(const Packing& packing, std::span<const double> edges, HeightWindow window) {
   const Boundary box = walls_of(packing);
   require_window(window);
-  constexpr double beyond = 1;  // of a sphere's middle: all of it, also where it meets a seam
+  constexpr double beyond =
+      1;  // distance from a sphere's middle that contains all of it, also at a seam
   const bool x = box.planes_x(), y = box.planes_y();
   const double deepest = 0.5 * (x && y ? std::min(box.width_x, box.width_y)
                                 : x    ? box.width_x

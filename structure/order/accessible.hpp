@@ -35,7 +35,7 @@ class AccessibleFootprint {
 
   Boundary boundary_;
   double low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
-  double radius_ = 0;  // of a cylinder's
+  double radius_ = 0;  // radius of a cylinder
   double area_ = 0;
 };
 

@@ -29,7 +29,7 @@ struct BondOrder {
   double q4 = 0, q6 = 0, w4 = 0, w6 = 0;
 };
 
-/// Of every sphere, [n], each bond weighing the same.
+/// For every sphere, [n], each bond weighing the same.
 std::vector<BondOrder> bond_order(const NeighbourTable& neighbours);
 
 }  // namespace jostle::inline structure

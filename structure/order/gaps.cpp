@@ -105,7 +105,7 @@ double gap_exponent(std::span<const double> gaps, double low, double high,
   constexpr double one_size = 1e-6;  // as in a crystal: these have no law
   if (n < fewest || most - least < one_size) return std::numeric_limits<double>::quiet_NaN();
   const double mean = sum / all - 0.5;
-  // Of ln h the density is as h^(1 - gamma) (1 + h)^2.
+  // For ln h the density is as h^(1 - gamma) (1 + h)^2.
   constexpr double steepest = 1e4;
   double below = -steepest, above = steepest;
   for (int turn = 0; turn < 100; ++turn) {

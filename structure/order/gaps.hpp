@@ -11,8 +11,9 @@ namespace jostle::inline structure {
 
 /// What a sphere touches within a tolerance, once rattlers are taken away.
 struct Backbone {
-  std::vector<bool> rattler;       // [n]
-  std::vector<unsigned> contacts;  // of the others, with each other, floor and walls; [n]
+  std::vector<bool> rattler;  // [n]
+  std::vector<unsigned>
+      contacts;  // contacts of the other spheres with each other, floor and walls; [n]
 };
 
 /// Two spheres touch where their centres are at most 1 + `tolerance` apart, a sphere and the floor

@@ -8,7 +8,7 @@ namespace jostle::inline structure {
 namespace {
 
 constexpr double height_step = 0.04;
-constexpr long kernel_steps = 25;  // of its half-width
+constexpr long kernel_steps = 25;  // steps per half-width of the kernel
 static_assert(kernel_steps * height_step == HeightPairs::reach_beyond);
 
 std::vector<double> triangular() {

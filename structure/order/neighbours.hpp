@@ -16,7 +16,7 @@ namespace jostle::inline structure {
 /// its own, also where the box is narrower than the cut.
 class NeighbourFinder {
  public:
-  /// Of wrapped centres; cut > 0. Copies what it needs of the packing.
+  /// For wrapped centres; cut > 0. Copies what it needs of the packing.
   NeighbourFinder(const Packing& packing, double cut);
 
   /// Calls visit(j, way, distance squared) for every centre at most `cut` away from centre i but

@@ -20,12 +20,12 @@
 namespace jostle::inline structure {
 namespace {
 
-constexpr double least_share = 0.25;  // of central spheres that can make a displacement
+constexpr double least_share = 0.25;  // least share of central spheres that can make a displacement
 
 struct Heights {
-  HeightWindow centres;     // of central spheres
-  HeightWindow accessible;  // of centres that shells reach
-  HeightWindow all;         // of all centres that partners may be
+  HeightWindow centres;     // centres of central spheres
+  HeightWindow accessible;  // true for centres that shells reach
+  HeightWindow all;         // all centres that may be partners
 };
 
 Heights heights_of(const Packing& packing, const PairCorrelationSettings& settings) {
@@ -122,7 +122,7 @@ class Displacements {
   }
 
   struct Use {
-    double even_share = 0;   // of central spheres that have that place in the region, evenly
+    double even_share = 0;   // share of central spheres with that place in the region, evenly
                              // spread spheres counted along
     double grown_share = 0;  // that share, of a region grown beyond floor and surface
     double pairs = 0;        // per volume of displacements, of an uncorrelated packing
@@ -184,7 +184,8 @@ class Displacements {
   FootprintShares shares_;
   StepTable upright_;
   HeightPairs uncorrelated_;
-  double half_height_ = 0, pairs_per_height_ = 0;  // of a box that is periodic upwards
+  double half_height_ = 0,
+         pairs_per_height_ = 0;  // half the height of a box that is periodic upwards
 };
 
 double shell_volume(double low, double high) {

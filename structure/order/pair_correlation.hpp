@@ -13,7 +13,7 @@ namespace jostle::inline structure {
 struct PairCorrelationSettings {
   double r_max = 4;
   double bin_width = 0.02;
-  std::optional<HeightWindow> heights = std::nullopt;  // of the central spheres; by default
+  std::optional<HeightWindow> heights = std::nullopt;  // heights of the central spheres; by default
                                                        // bulk_heights
 };
 

@@ -13,7 +13,7 @@ namespace jostle::inline structure {
 struct StructureFactorSettings {
   double k_max = 8;
   double bin_width = 0.25;
-  std::uint64_t modes = 200;  // of a bin, at most: evenly spread among all
+  std::uint64_t modes = 200;  // most modes of a bin, evenly spread among all
   double fit_to = 3;          // up to which k lines are drawn to k = 0
   bool operator==(const StructureFactorSettings&) const = default;
 

@@ -28,7 +28,7 @@ enum class HoleKind : std::uint8_t {
 struct CanonicalHole {
   const char* name;
   std::uint32_t n_spheres;
-  double volume;  // of the regular one, diameters cubed
+  double volume;  // volume of the regular hole, diameters cubed
   double xi;      // radius / R of the sphere in the middle of the regular one
   double number_fraction, volume_fraction;
 };
@@ -87,10 +87,10 @@ struct HoleTable {
   std::uint64_t unclassified = 0;  // tetrahedra
   double unclassified_volume = 0;
 
-  /// Of the classified holes, as table I; NaN where there is none.
+  /// For the classified holes, as table I; NaN where there is none.
   double number_fraction(HoleKind kind) const;
   double volume_fraction(HoleKind kind) const;
-  /// Of the volume of all.
+  /// Share of the whole volume.
   double unclassified_fraction() const;
   double volume() const;
 };

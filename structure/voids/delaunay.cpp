@@ -79,7 +79,7 @@ std::vector<DelaunayTetrahedron> from_first_cells(const Packing& packing,
   return found;
 }
 
-// Whether each tetrahedron is seen from all of its four cells, and nothing else from any cell: not
+// True if each tetrahedron is seen from all of its four cells, and nothing else from any cell: not
 // so where five centres are so near a common sphere that cells differ in what meets there.
 bool all_agree(const VoronoiCells& cells, const std::vector<DelaunayTetrahedron>& found) {
   std::vector<std::size_t> first(cells.size() + 1, 0);  // of those with a sphere as first

@@ -42,7 +42,7 @@ class BondGraph {
     return {bonded_.data() + first_[i], bonded_.data() + first_[i + 1]};
   }
 
-  std::vector<std::uint32_t> first_;   // of `bonded_`, [n_spheres + 1]
+  std::vector<std::uint32_t> first_;   // first entries in `bonded_`, [n_spheres + 1]
   std::vector<std::uint32_t> bonded_;  // to each sphere, ascending
 };
 

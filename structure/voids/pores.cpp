@@ -73,7 +73,8 @@ double squared_distance(const Boundary& boundary, Vec3 a, Vec3 b) {
 double filled_by(const Boundary& boundary, const Region& region, Vec3 r) {
   const bool x = boundary.planes_x(), y = boundary.planes_y();
   if (x || y) {
-    constexpr double beyond = 1;  // of a sphere's middle: all of it, also where it meets a seam
+    constexpr double beyond =
+        1;  // distance from a sphere's middle that contains all of it, also at a seam
     const Vec3 low{x ? region.from_sides : r.x - beyond, y ? region.from_sides : r.y - beyond,
                    region.low};
     const Vec3 high{x ? boundary.width_x - region.from_sides : r.x + beyond,

@@ -170,7 +170,7 @@ VoronoiCells cells_at_scale(const Packing& packing, const Boundary& box, double 
 // Cells with a face that is not as large from the other side. Faces of a cell with its own image
 // or twice with one neighbour, in narrow periodic boxes, are summed.
 std::uint32_t count_inconsistent(const VoronoiCells& cells) {
-  constexpr double tolerance = 1e-6;  // of a cell's surface
+  constexpr double tolerance = 1e-6;  // tolerance of a cell's surface
   const auto area_towards = [&](std::uint32_t i, std::uint32_t j) {
     double area = 0;
     for (const VoronoiFace& face : cells.faces_of(i)) {

@@ -22,7 +22,7 @@ struct VoronoiFace {
 /// A corner of a cell, and the spheres that meet there besides the cell's own.
 struct VoronoiVertex {
   Vec3 position;               // beside the cell's centre: not wrapped
-  std::uint32_t first = 0;     // of `owners`
+  std::uint32_t first = 0;     // first entries in `owners`
   std::uint32_t n_owners = 0;  // 3, or more where cells are degenerate
   bool on_boundary = false;    // a face of the vertex is cut by floor, lid or sides
 };
@@ -35,7 +35,7 @@ struct VoronoiCells {
   std::vector<std::uint32_t> first_face, first_vertex;  // [n + 1]
   std::vector<VoronoiFace> faces;
   std::vector<VoronoiVertex> vertices;
-  std::vector<std::uint32_t> owners;  // of all vertices
+  std::vector<std::uint32_t> owners;  // owners of all vertices
   /// Cells with a face that is larger or smaller from the other side: 0, unless voro++ cannot make
   /// out a nearly degenerate packing at any of three scales.
   std::uint32_t inconsistent = 0;

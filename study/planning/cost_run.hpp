@@ -16,7 +16,7 @@ struct CostPilot {
   Scene scene;  // at that point
   std::vector<PilotSetting> settings;
   LoadedScene pilot;       // a sweep over the settings, cut to a few taps
-  std::uint64_t taps = 0;  // of the whole scene
+  std::uint64_t taps = 0;  // taps of the whole scene
 };
 
 /// `point`: its number, or "pointer=value" of the sweep; empty: the first. `pilot_taps`: at most so
@@ -44,7 +44,7 @@ class CostRun {
   CostRun(CostPilot& pilot, const CostBudget& budget, const RunSettings& settings,
           RunObserver& observer);
 
-  /// Whether the replicates were completed, not stopped. Throws ResultsError.
+  /// True if the replicates were completed, not stopped. Throws ResultsError.
   bool run();
   /// Ends the run and reads what it found. Nothing but the destructor may be called after.
   CostStudy study();

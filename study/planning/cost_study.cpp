@@ -112,7 +112,7 @@ void CostStudy::read_times(const ResultsFile& file) {
     work[one.id.point] += one.work;
     ++done[one.id.point];
   }
-  const std::uint64_t first = pilot_taps_ / 2 + 1;  // of the second half
+  const std::uint64_t first = pilot_taps_ / 2 + 1;  // first tap of the second half
   for (std::uint32_t p = 0; p < settings_.size(); ++p) {
     const std::vector<double> work_by_tap = file.block(
         p, work_column(settings_[p].engine), {1, pilot_taps_ + 1}, {0, file.study().realizations});

@@ -14,8 +14,8 @@ namespace jostle::inline study {
 /// What a setting takes, on one core.
 struct SettingTime {
   double start_seconds = 0,
-         tap_seconds = 0;  // of one realization; a tap of the pilot's second half
-  double work = 0;         // of such a tap: sweeps, or simulated seconds
+         tap_seconds = 0;  // tap seconds of one realization; a tap of the pilot's second half
+  double work = 0;         // work of such a tap: sweeps, or simulated seconds
 };
 
 /// A bulk fraction read through another window less itself: at the scene's own setting, on the same
@@ -36,7 +36,7 @@ struct CostOfObservable {
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_settings, n_taps], taps 1 .. n_taps
   /// [n_settings]: since tap n_taps / 2; empty of a pilot of one tap.
   std::vector<Growth> growths;
-  std::vector<WindowEffect> windows;  // of a bulk fraction
+  std::vector<WindowEffect> windows;  // windows of a bulk fraction
 };
 
 /// A pilot over the settings of a ladder, as far as its replicates (realizations) are complete.

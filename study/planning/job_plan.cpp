@@ -21,7 +21,8 @@ constexpr double most_of_the_limit = 0.25;
 /// Realizations of share `index` of `count` (Shard), each on the CPU that is free first.
 Seconds shard_time(const SceneCost& cost, const JobRequest& request, std::uint64_t index) {
   const std::uint64_t points = cost.realization.size(), all = points * cost.realizations;
-  std::priority_queue<double, std::vector<double>, std::greater<>> ends;  // of the CPUs, seconds
+  std::priority_queue<double, std::vector<double>, std::greater<>>
+      ends;  // times at which CPUs become free, seconds
   const std::uint64_t most_busy = (all + request.shards - 1) / request.shards;
   for (std::uint64_t cpu = 0; cpu < std::min<std::uint64_t>(request.cpus, most_busy); ++cpu)
     ends.push(0);

@@ -12,30 +12,30 @@ namespace jostle::inline study {
 
 /// What a batch system is asked for.
 struct JobRequest {
-  Seconds time_limit{0};   // of a job
-  std::uint32_t cpus = 1;  // of a job
+  Seconds time_limit{0};   // time limit of a job
+  std::uint32_t cpus = 1;  // cpus of a job
   std::uint32_t shards = 1;
-  std::uint32_t most_tasks = 1000;  // of one array of jobs
+  std::uint32_t most_tasks = 1000;  // most tasks of one array of jobs
 };
 
 /// What the scene takes.
 struct SceneCost {
   std::vector<Seconds> realization;  // [n_points], of one on one core
-  std::uint32_t realizations = 1;    // of every point
+  std::uint32_t realizations = 1;    // realizations of every point
   Seconds start{0};                  // the longest; one that is stopped is made anew
-  std::uint64_t bytes_on_disk = 0;   // of all realizations
+  std::uint64_t bytes_on_disk = 0;   // bytes on disk for all realizations
 };
 
 struct JobPlan {
   std::uint32_t shards = 1;
   std::uint32_t shards_a_task = 1;      // one after another
-  std::uint32_t tasks = 1;              // of the array
-  std::uint64_t most_realizations = 0;  // of a shard
-  Seconds core_time{0};                 // of everything
+  std::uint32_t tasks = 1;              // tasks of the array
+  std::uint64_t most_realizations = 0;  // most realizations of a shard
+  Seconds core_time{0};                 // core time of everything
   Seconds longest_task{0};              // with its CPUs
   double efficiency = 1;                // core_time over the time for which CPUs are reserved
   Seconds notice{0};                    // before the end of the time limit it is told to stop
-  std::uint64_t starts = 1;             // of the longest task until it is done, the first included
+  std::uint64_t starts = 1;  // starts of the longest task until it is done, the first included
 };
 
 /// Every CPU takes the next realization of its shard when it has ended one. Throws BadInput where

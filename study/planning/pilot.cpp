@@ -36,7 +36,7 @@ double cut_width(double width, double factor, double unit, double least_width) {
   return width * std::min(whole, std::ceil(least / unit)) / whole;
 }
 
-/// Of the lattice along x and y, what a footprint is a whole number of; 0: of nothing.
+/// Periods of the lattice along x and y; 0: none.
 struct LatticeUnits {
   double x = 0, y = 0;
 };
@@ -74,7 +74,7 @@ struct TapCost {
   Seconds time{0};
   double sweeps = 0;
 };
-/// Of one kind of tap, by strength.
+/// For one kind of tap, by strength.
 using CostsByStrength = std::map<double, TapCost>;
 
 TapCost between(const CostsByStrength& costs, double strength) {
@@ -97,7 +97,7 @@ class ShortDynamics final : public Dynamics {
     left_ = units;
     settled_ = true;
   }
-  /// Whether the bed was at rest when it counted as such.
+  /// True if the bed was at rest when it counted as such.
   bool settled() const { return settled_; }
 
   DynamicsStatus advance(std::uint64_t units) override {
@@ -222,7 +222,7 @@ class Pilot {
   const CutBed& bed_;
   const Plan short_;
   std::uint64_t left_;
-  ShortDynamics* dynamics_ = nullptr;  // of the realization
+  ShortDynamics* dynamics_ = nullptr;  // dynamics of the realization
   std::optional<Realization> realization_;
   Seconds moving_time_{0};
   bool settled_ = true;

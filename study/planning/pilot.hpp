@@ -11,14 +11,14 @@ namespace jostle::inline study {
 
 /// What a short trial of a sweep point measured, and what it makes of a realization.
 struct PilotEstimate {
-  std::uint32_t n_spheres = 0;  // of the pilot's packing: a large one is cut down
-  std::size_t n_strengths = 0;  // of taps that were tried
-  std::uint64_t units = 0;      // of the engine, made by the pilot
+  std::uint32_t n_spheres = 0;  // n spheres of the pilot's packing: a large one is cut down
+  std::size_t n_strengths = 0;  // n strengths of taps that were tried
+  std::uint64_t units = 0;      // units of the engine, made by the pilot
   double units_per_second = 0;  // on one core
   double rounds_per_tap = 0;    // units / spheres, mean over the protocol; a lower bound where
                                 // `settled` is false
-  bool settled = false;         // whether start and taps met their stop rules within the budget
-  Seconds start{0};             // of that, until tap 0 is recorded
+  bool settled = false;         // true if start and taps met their stop rules within the budget
+  Seconds start{0};             // seconds until tap 0 is recorded
   Seconds realization{0};       // a whole one on one core; a lower bound likewise
   std::size_t bytes = 0;        // held by one running realization
 };
@@ -34,7 +34,7 @@ struct CutBed {
   Container container;
   std::uint32_t n_spheres = 0;
   bool as_deep = true;               // false where the least footprint still holds too many spheres
-  std::vector<MixtureKind> kinds{};  // of a mixture, at least one sphere of each
+  std::vector<MixtureKind> kinds{};  // kinds of a mixture, at least one sphere of each
 };
 
 /// A bed of about `max_spheres` spheres on a smaller footprint, as deep as the plan's: relaxations

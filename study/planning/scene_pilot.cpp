@@ -15,10 +15,10 @@ namespace {
 
 constexpr double process_bytes = 40e6;  // libraries and bookkeeping
 
-/// Of the pilots of a scene.
+/// For the pilots of a scene.
 struct PilotLimits {
   std::uint64_t units;    // shared by the points tried
-  std::uint32_t spheres;  // of a bed, beyond which it is cut down
+  std::uint32_t spheres;  // most spheres of a bed that is not cut down
 };
 
 /// A few seconds of Monte Carlo. A bed of grains comes to rest only after 1e5 to 1e6 time steps

@@ -27,11 +27,11 @@ class ScenePilot {
   double scatter() const { return scatter_; }
   static constexpr double busy = 0.2;
 
-  /// Whether all met their stop rules: else times are lower bounds.
+  /// True if all met their stop rules: else times are lower bounds.
   bool settled() const { return settled_; }
-  /// Of a realization on one core: the mean over the points that were tried.
+  /// Time of a realization on one core: the mean over the points that were tried.
   Seconds mean_realization() const;
-  /// Of a realization of this sweep point: between two that were tried, on a straight line.
+  /// Time of a realization of this sweep point, interpolated linearly between two that were tried.
   Seconds realization(std::size_t point) const;
   /// The longest start. One that is stopped is made anew.
   Seconds start() const { return start_; }
@@ -40,10 +40,11 @@ class ScenePilot {
 
  private:
   std::vector<std::size_t> points_;  // that were tried, ascending
-  std::vector<Seconds> times_;       // of a realization of each
+  std::vector<Seconds> times_;       // times of a realization of each point
   Seconds start_{0};
-  std::size_t bytes_ = 0;         // of a realization
-  std::size_t motion_bytes_ = 0;  // of all realizations of a point, when a run has ended
+  std::size_t bytes_ = 0;  // bytes of a realization
+  std::size_t motion_bytes_ =
+      0;  // motion bytes of all realizations of a point, when a run has ended
   bool settled_ = true;
   double scatter_ = 0;
 };

@@ -245,7 +245,7 @@ std::vector<std::uint32_t> ShardsStatus::indices(ShardState state) const {
 Overview overview_of(std::span<const std::string> files) {
   Overview overview;
   KnownStudies studies;
-  const ResultsFile* last = nullptr;  // of the study that the next file probably has
+  const ResultsFile* last = nullptr;  // last entry of the study that the next file probably has
   SlurmQueue queue;
   for (const std::string& path : files) {
     try {

@@ -27,7 +27,7 @@ struct ShardStatus {
   std::uint32_t index = 1;
   ShardState state = ShardState::missing;
   std::string path{};                // empty where it is missing
-  std::optional<LockOwner> owner{};  // of a lock
+  std::optional<LockOwner> owner{};  // owner of a lock
   std::uint64_t done = 0, failed = 0, realizations = 0;
   std::uint64_t taps = 0, all_taps = 0;  // recorded and to record; a start is none
   std::string command{};                 // that worked on it last
@@ -37,7 +37,7 @@ struct ShardStatus {
 struct ShardsStatus {
   std::string scene;                // its name
   std::vector<ShardStatus> shards;  // [count], by their indices
-  Seconds used{0};                  // of processors
+  Seconds used{0};                  // used processors
   std::optional<Seconds> left;      // estimated of what was done; nothing before the first tap
   std::vector<std::string> twice;   // files that hold a share another file holds
   std::vector<std::string> unread;  // files that cannot be read: each may hold any missing share

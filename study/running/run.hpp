@@ -25,7 +25,7 @@ struct RunSettings {
   Existing existing = Existing::keep;
   bool take_over = false;     // the lock of another host
   Patience patience = {};     // with another process that works on the file
-  bool retry_failed = false;  // of a file that is resumed, once
+  bool retry_failed = false;  // repeats failed realizations of a resumed file, once
   Shard shard = {};
   int threads = 1;
   Seconds checkpoint_every{60};
@@ -76,7 +76,7 @@ class OtherShard : public BadInput {
 /// What lies ahead when realizations begin to be computed.
 struct WorkAhead {
   std::uint64_t realizations = 0;
-  std::uint64_t taps = 0;       // of all of them, without the starts
+  std::uint64_t taps = 0;       // taps of all realizations, without the starts
   std::string unit = "trials";  // what the engine's work is counted in; empty of several engines
 };
 
@@ -119,7 +119,7 @@ class SceneRun {
   /// Every (point, realization), with checkpoints that are newer than the file.
   std::vector<RealizationSummary> realizations() const { return store_->realizations(); }
   const Progress& progress() const { return progress_; }
-  /// Whether a stop left what was computed in the parts, because to fold it would take long.
+  /// True if a stop left results in the parts, because folding would take long.
   bool left_in_parts() const { return left_in_parts_; }
   /// Realizations of this run so far.
   const RunSummary& summary() const { return summary_; }
@@ -143,7 +143,7 @@ class SceneRun {
   Study study_;
   std::unique_ptr<RunStore> store_;
   std::vector<std::string> tables_before_;
-  std::uint64_t taps_recorded_ = 0;  // of pending realizations, by earlier processes
+  std::uint64_t taps_recorded_ = 0;  // taps recorded of pending realizations, by earlier processes
   bool left_in_parts_ = false;
   bool retry_failed_ = false;  // those that failed are tried once, before others are added
   Progress progress_;

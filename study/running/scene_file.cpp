@@ -35,7 +35,7 @@ std::string named(const Container& container) {
   return fmt::format("{}, {} x {}{}", name_of(container), size.x, size.y, height);
 }
 
-/// Of one kind and of the same widths, but for digits that another program did not write.
+/// For one kind and of the same widths, but for digits that another program did not write.
 bool alike(const Container& a, const Container& b) {
   constexpr double rounding = 1e-6;
   const auto near = [](double x, double y) { return std::abs(x - y) <= rounding * y; };

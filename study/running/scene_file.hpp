@@ -12,7 +12,7 @@ namespace jostle::inline study {
 /// A scene file, read, with all that is needed to run it.
 struct LoadedScene {
   Scene scene;
-  std::vector<Scene> points;  // of its sweep points
+  std::vector<Scene> points;  // number of its sweep points
   std::string text;           // the file, word for word
   std::string resolved;       // with every default written out
   std::vector<Plan> plans;

@@ -34,7 +34,7 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
 /// few for it.
 std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps);
 
-/// Whether the table holds an analysis, and no refusal.
+/// True if the table holds an analysis, and no refusal.
 bool is_made(const Table& table);
 
 }  // namespace jostle::inline study

@@ -14,7 +14,7 @@ namespace jostle::inline study {
 /// A curve to fit, and where it comes from.
 struct FitSource {
   std::string title;              // for people
-  std::string observable, label;  // of a results file
+  std::string observable, label;  // label of a results file
   std::optional<std::uint32_t> point;
   Curve curve;                          // with its realizations, where there are two or more
   std::vector<std::string> notes = {};  // on how a measured curve was read, a sentence each

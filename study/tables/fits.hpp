@@ -22,7 +22,8 @@ namespace jostle::inline study {
 /// How curves are fitted and how the errors of resampled realizations are made.
 struct FitManner {
   std::map<std::string, double> fixed = {};  // parameters that keep a value
-  bool memory = true;  // of a curve alone, looked for in its residuals: not of independent points
+  bool memory =
+      true;  // memory of a single curve, sought in its residuals; not for independent points
   bool resampled = false;
   ResamplingOptions resampling = {};
 };

@@ -13,7 +13,7 @@ namespace jostle::inline study {
 /// layers, of those whose scene asks for it. Throws BadInput where none does.
 std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint32_t> points);
 
-/// Whether a sweep point of the file follows the motion.
+/// True if a sweep point of the file follows the motion.
 bool follows_motion(const ResultsFile& file);
 
 }  // namespace jostle::inline study

@@ -13,7 +13,7 @@ namespace jostle {
 struct RecordedRealization {
   std::vector<TapRow> rows;
   std::vector<SnapshotRecord> snapshots;
-  std::optional<RealizationState> state;  // of the last checkpoint or the end
+  std::optional<RealizationState> state;  // state of the last checkpoint or the end
   std::optional<Outcome> outcome;
   unsigned checkpoints = 0;
 

@@ -49,7 +49,7 @@ TEST_CASE("Moments keep the digits of NIST's cancellation sets") {
   struct Set {
     std::string name;
     std::vector<double> values;
-    double deviation;  // of the stored doubles, in exact rational arithmetic
+    double deviation;  // deviation of the stored doubles, in exact rational arithmetic
   };
   const std::vector<Set> sets = {
       {"NumAcc1", {10000001, 10000003, 10000002}, 1},

@@ -100,7 +100,7 @@ class Sinking final : public Dynamics {
   StreamKey key_;
   RandomStream random_;
   DynamicsStatus status_ = DynamicsStatus::running;
-  std::uint64_t steps_ = 0;  // of this tap
+  std::uint64_t steps_ = 0;  // steps of this tap
   Effort effort_;
 };
 

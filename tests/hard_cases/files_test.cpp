@@ -23,7 +23,7 @@ void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Whether a file is read; where not, the message names it and says more.
+/// True if a file is read; otherwise the message names it and the reason.
 template <class Refusal>
 bool is_read(const std::string& path, const std::function<void()>& read) {
   try {

@@ -212,7 +212,7 @@ TEST_CASE("Rosato et al.: a lift orders the floor, a held dilation of the same e
 }
 
 TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too", "[statistics]") {
-  // Of refs. 33 and 37, which say little or nothing of the upper part: so it is after ten taps.
+  // As in refs. 33 and 37, which report little or nothing of the upper part: tested after ten taps.
   const Plan plan = short_plan(
       "rosato-dybenko-2010/shake-lateral.json",
       {{"container", {{"width", 5}}},

@@ -56,7 +56,7 @@ double middle_fraction(const Packing& packing) {
   return wall_profile({walls, packing.centres}, edges, {1, 10}).values.at(0);
 }
 
-// Whether the mean is `reference`, known to half a unit of its last digit, within 3 errors.
+// True if the mean is `reference`, known to half a unit of its last digit, within 3 errors.
 void check_mean(const Moments& run, double reference, double reference_error) {
   CAPTURE(run.mean(), run.standard_error(), reference, reference_error);
   const double error = std::hypot(run.standard_error(), reference_error);

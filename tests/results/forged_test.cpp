@@ -19,7 +19,7 @@ using namespace jostle::synthetic;
 
 namespace {
 
-constexpr int few = 12, many = 400;  // of a kind
+constexpr int few = 12, many = 400;  // few spheres of a kind
 
 /// Half of the files unfinished, so that resuming them goes on.
 void write_file(const std::string& path, bool finished) {

@@ -39,7 +39,7 @@ Paths all_objects(hid_t file) {
 struct Place {
   hid_t file;
   Paths objects;
-  std::string path;  // of one of them
+  std::string path;  // path of one file
   Choices& choices;
 
   std::string folder() const {

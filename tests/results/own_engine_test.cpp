@@ -17,7 +17,7 @@ Study sinking_study(const Plan& plan) {
   return study;
 }
 
-// Of every realization some slices, or all that are left.
+// For every realization some slices, or all that are left.
 void go_on(RunStore& store, const Plan& plan, int slices) {
   for (const RealizationId id : store.pending()) {
     Realization realization(plan, id.realization, sinking(plan, id.realization), store.begin(id));

@@ -43,7 +43,7 @@ double processor_seconds(const std::function<void()>& work) {
 }
 
 constexpr std::uint32_t times = 4;
-constexpr double most_growth = 2.5 * 2.5;  // of two doublings
+constexpr double most_growth = 2.5 * 2.5;  // most growth of two doublings
 
 /// Work of a size, and what it is called.
 template <class Size>

@@ -90,7 +90,7 @@ struct alignas(64) SizedBlockerCache {
 template <class Spheres>
 using BlockerCacheOf = std::conditional_t<Spheres::several, SizedBlockerCache, BlockerCache>;
 
-/// Whether the cache rejects a step, diameters.
+/// True if the cache rejects a step, diameters.
 template <class Box>
 [[gnu::always_inline]] inline bool certainly_rejects(const BlockerCache& cache, float dx, float dy,
                                                      float dz) {

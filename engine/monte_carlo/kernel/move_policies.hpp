@@ -27,17 +27,17 @@ template <class Policy>
 concept MovePolicy = requires(Policy& move, const Policy& same, const ProposalKernels& kernels,
                               const BatchOrigin& origin, ProposalBatch& batch, MoveState& state,
                               const TrialCounts& counts, double step, std::uint32_t t) {
-  /// Whether floor, sides and neighbours alone decide: then blocker caches serve.
+  /// True if floor, sides and neighbours alone decide: then blocker caches serve.
   { Policy::geometry_decides } -> std::convertible_to<bool>;
   { same.max_step() } -> std::same_as<double>;
   move.propose(kernels, origin, batch);
   /// Diameters a unit of the batch's displacements.
   { same.unit(step) } -> std::same_as<double>;
   { same.reach(step) } -> std::same_as<Reach>;
-  /// Of trials t .. of the batch, those that are looked at; the others rise, and are rejected.
+  /// Marks the trials t .. of the batch that are tested; the others rise, and are rejected.
   { same.looked_at(t, t) } -> std::same_as<TrialRange>;
   { same.trial(t) } -> std::same_as<std::uint32_t>;
-  /// Whether a displacement that is looked at rises, and may pass or not; dz of the batch.
+  /// True if a displacement that is looked at rises, and may pass or not; dz of the batch.
   { same.rises(step) } -> std::same_as<bool>;
   /// True if it accepts the rise; trial number, m g dz in units of m g d.
   { same.accepts_rise(std::uint64_t{}, step) } -> std::same_as<bool>;
@@ -78,7 +78,7 @@ class Polar : public GeometryDecides {
  private:
   static constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
   static constexpr double rounding_up = 1.000001;
-  static constexpr double mean_dz = -0.43;  // of max_step, at theta0 = pi/4
+  static constexpr double mean_dz = -0.43;  // mean descent in units of max_step, at theta0 = pi/4
 
   PolarMove move_;
   std::vector<double> theta_table_;

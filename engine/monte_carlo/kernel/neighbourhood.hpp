@@ -18,7 +18,7 @@ struct Reach {
   double drift = 0;    // mean dz of the trials that geometry decides
 };
 
-/// Whether trials are first held against blocker caches. They pay where few trials are accepted:
+/// True if trials are first tested against blocker caches. They pay where few trials are accepted:
 /// every move brings those up to date that show the sphere.
 enum class BlockerCaching { off, on };
 
@@ -142,14 +142,14 @@ class NeighbourhoodView {
     return box_.wrapped({from.xy + lateral, from.z + dz, Spheres::several ? from.radius : 0});
   }
 
-  /// Whether the cache alone rejects the step: then rejects() would. False decides nothing.
+  /// True if the cache alone rejects the step: then rejects() would. False decides nothing.
   [[gnu::always_inline]] bool certainly_rejects(Index i, double dx, double dy, double dz) const
       requires(caching == BlockerCaching::on) {
     return jostle::certainly_rejects<Box>(caches_[i], static_cast<float>(dx),
                                           static_cast<float>(dy), static_cast<float>(dz));
   }
 
-  /// Whether floor, sides or another sphere reject sphere i at r, a target.
+  /// True if floor, sides or another sphere reject sphere i at r, a target.
   [[gnu::always_inline]] bool rejects(Index i, const PackedCentre& r) {
     if (!box_.clear_of_boundaries(r)) return true;
     if constexpr (caching == BlockerCaching::on) return blocked_beyond_cache(i, r);

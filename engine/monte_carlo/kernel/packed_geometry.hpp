@@ -179,7 +179,7 @@ struct PackedFaces<PackedSides::floor_and_planes, Spheres> {
 template <class Spheres>
 struct PackedFaces<PackedSides::floor_and_tube, Spheres> {
   Pair axis;
-  double reach;  // of centres from the axis, but for what is unknown of the radius
+  double reach;  // reach of centres from the axis, but for what is unknown of the radius
   PackedFaces(ContainerShape, Vec3 extent)
       : axis{0.5 * extent.x, 0.5 * extent.x}, reach(0.5 * extent.x - Spheres::known_radius) {}
   bool clear_of_boundaries(const PackedCentre& r) const {

@@ -78,7 +78,7 @@ class BoundTables {
   const Row& row(Index i) const { return rows_[i]; }
   std::uint64_t rows_made() const { return rows_made_; }
 
-  /// Whether another sphere overlaps sphere i placed at `target`, one step away from its centre.
+  /// True if another sphere overlaps sphere i placed at `target`, one step away from its centre.
   bool blocked(Index i, Vec3 step, const PackedCentre& target, std::uint64_t& tests) const {
     tests += *(lists_.rows() + i * lists_.stride());
     const StepOutcome outcome = try_step_(sight_, surroundings(), i, step.x, step.y, step.z);
@@ -102,7 +102,7 @@ class BoundTables {
  private:
   // How far a sphere may be from where its list was made.
   static constexpr double spare = 0.06;
-  // Of numbers near 1 in single precision, after a few operations.
+  // For numbers near 1 in single precision, after a few operations.
   static constexpr double rounding = 2e-6;
 
   // In double precision, which decides.
@@ -149,7 +149,7 @@ class BoundTables {
                  {0, 0, -0.43 * bins_.longest});
   }
 
-  // Of the stale spheres.
+  // For the stale spheres.
   void make_rows() {
     made_.resize(stale_.size());
     for (std::size_t k = 0; k < stale_.size(); ++k) {

@@ -69,7 +69,7 @@ class CandidateSampler {
     return accepted;
   }
 
-  /// Of another loop, or after a restore: no candidate of this batch is known.
+  /// For another loop, or after a restore: no candidate of this batch is known.
   void forget_batch() { batch_valid_ = false; }
 
   const std::vector<PackedCentre>& centres() const { return tables_.centres(); }

@@ -17,7 +17,7 @@
 // how probability grows with length, and when candidates alone are worth drawing.
 namespace jostle::inline engine {
 
-/// Of the polar move: along a direction the length is uniform.
+/// For the polar move: along a direction the length is uniform.
 class PolarDirections {
  public:
   using Policy = Polar;
@@ -50,15 +50,15 @@ class PolarDirections {
     return batch.length[0][t];
   }
   SineCosine angle(int ring, double u) const { return polar_angle(theta_table_, ring, u); }
-  /// Whether trials of a step reach a displacement within the bounds.
+  /// True if trials of a step reach a displacement within the bounds.
   static bool proposes(Vec3, double /*step*/) { return true; }
 
  private:
   std::vector<double> theta_table_;
 };
 
-/// Of the Metropolis move at zero temperature: uniform in the lower half of a cube, so that along a
-/// direction the cube of the length is uniform.
+/// For the Metropolis move at zero temperature: uniform in the lower half of a cube, so that along
+/// a direction the cube of the length is uniform.
 class CubicDirections {
  public:
   using Policy = ZeroTemperature;

@@ -23,7 +23,7 @@ inline constexpr int n_ring_parts = 128;
 template <int n_sectors>
 struct DirectionBins {
   static constexpr int sectors = n_sectors;
-  alignas(64) float cosine[n_sectors], sine[n_sectors];  // of the azimuth of a sector's middle
+  alignas(64) float cosine[n_sectors], sine[n_sectors];  // sine of the azimuth of a sector's middle
   alignas(32) float across[n_rings];                     // sin(theta) cos(alpha) of a ring's middle
   alignas(32) float down[n_rings];                       // cos(theta) cos(alpha)
   alignas(32) float spread[n_rings];                     // sin(alpha), rounded up
@@ -44,7 +44,7 @@ struct alignas(16) GridPlace {
 /// How a sphere sees the others: what differences of places mean, and which of them count.
 struct alignas(16) Sight {
   float unit[4];   // diameters a step of the grid; negative in z, which counts downward
-  float margin;    // of |r|^2 near 1, for the grid and for rounding in single precision
+  float margin;    // margin of |r|^2 near 1, for the grid and for rounding in single precision
   float doubt;     // the same after a step; infinite where the grid is too small for steps
   float highest;   // whatever is higher than that is left out
   float farthest;  // and what has a greater |r|^2 - 1
@@ -92,9 +92,10 @@ struct Bounded {
 /// The random words of consecutive candidates.
 struct CandidateBatch {
   static constexpr std::uint32_t size = 128;
-  alignas(64) double waiting[size];             // exponential law of mean 1
-  alignas(64) std::uint64_t choice[size];       // of sphere and bin
-  alignas(64) double sine[size], cosine[size];  // of the azimuth from the beginning of its sector
+  alignas(64) double waiting[size];        // exponential law of mean 1
+  alignas(64) std::uint64_t choice[size];  // choice of sphere and bin
+  alignas(64) double sine[size],
+      cosine[size];  // cosine of the azimuth from the beginning of its sector
   alignas(64) std::uint32_t theta[size], length[3][size];
 };
 
@@ -115,7 +116,7 @@ struct RejectionFreeKernels {
   /// `former`. Returns how many; `seeing` has room for 3 more than are listed.
   std::uint32_t (*seen_by)(const Sight& sight, const Surroundings& around, std::uint32_t i,
                            const GridPlace& former, std::uint32_t* seeing);
-  /// Whether the spheres in its list leave sphere i where a step leads it; of the step z is up.
+  /// True if the spheres in its list leave sphere i where a step leads it; of the step z is up.
   StepOutcome (*try_step)(const Sight& sight, const Surroundings& around, std::uint32_t i,
                           double dx, double dy, double dz);
   /// Candidates first .. first + CandidateBatch::size - 1 of a stream, where azimuths are cut into

@@ -80,7 +80,7 @@ class WeightTree {
  private:
   static constexpr std::size_t fan = 8;
 
-  // Of every child the sum of the weights below those before it.
+  // For every child, the sum of the weights of all children before it.
   struct alignas(64) Node {
     std::uint64_t before[fan];
   };

@@ -20,11 +20,11 @@ struct AgeingLaw {
   /// are scales of which only ratios between waiting times mean something.
   bool b_is_held = false;
 
-  /// Whether all parameters have limits on both sides (or B is held).
+  /// True if all parameters have limits on both sides (or B is held).
   bool is_determined() const;
 };
 
-/// Of realizations that reached every tap asked for, the same for all waiting times.
+/// For realizations that reached every tap asked for, the same for all waiting times.
 struct AgeingFits {
   std::vector<AgeingLaw> own;  // [n_waiting_times], each with a B of its own
   /// [n_waiting_times], all with the same B. Nothing is to be scaled by a law that the data do not
@@ -33,10 +33,11 @@ struct AgeingFits {
   /// Relative standard errors of A / A_inf at equal t / tau of the shared laws, those of A_inf and
   /// tau included: [n_waiting_times, n_lags].
   std::vector<double> scaled_error;
-  AgeTrend ageing;        // of A at equal lag
-  AgeTrend fluctuations;  // of V at equal lag, from four realizations on
-  AgeTrend collapse;      // of B: where there is one, no scales lay the curves on one another
-  TimeScaling a_scaling, v_scaling;  // of A and V, each as one function of a variable
+  AgeTrend ageing;        // change of A at equal lag
+  AgeTrend fluctuations;  // change of V at equal lag, from four realizations on
+  AgeTrend
+      collapse;  // change of B: where there is one, no scales bring the curves onto one another
+  TimeScaling a_scaling, v_scaling;  // scaling of A and V, each as one function of a variable
   std::uint64_t realizations = 0;
 };
 

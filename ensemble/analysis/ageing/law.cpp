@@ -12,8 +12,8 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-constexpr double step = 0.2;    // of the grid, in ln B, ln tau and ln A_inf
-constexpr double farthest = 7;  // of ln A_inf from its best, to either side: a factor 1100
+constexpr double step = 0.2;    // step of the grid, in ln B, ln tau and ln A_inf
+constexpr double farthest = 7;  // largest distance of ln A_inf from its best value: a factor 1100
 constexpr double ln_b_range[] = {-6.91, 6.91};
 
 std::vector<double> places(double low, double high) {
@@ -96,7 +96,7 @@ Eigen::VectorXd AgeingLeastSquares::on_grid(std::optional<std::size_t> held, dou
         std::ranges::min_element(grid, {}, [&](double x) { return std::abs(x - value); }) -
         grid.begin());
   };
-  // Of the curve whose parameter is held, with B at a place.
+  // For the curve whose parameter is held, with B at a place.
   const auto own_tau = [&](std::size_t i) -> std::pair<std::size_t, double> {
     if (holds_tau) {
       const std::size_t tau = nearest(ln_tau_);

@@ -31,7 +31,7 @@ class AgeingLeastSquares {
   const LogCurves& curves() const { return curves_; }
   const Eigen::VectorXd& best() const { return best_; }
   bool b_is_held() const { return ln_b_.size() == 1; }
-  /// Whether the law can be that of the curves. Not where the squares still fall at the best point,
+  /// True if the law can be that of the curves. Not where the squares still fall at the best point,
   /// along a tau or B, by more than chance (Student's t, 5 %): curves that rise faster than the
   /// lag, or steepen, want a B or a 1/tau below 0. The best point then stands on the edge of the
   /// search, or on a ridge that leads there, so flat that rounding stops it.
@@ -51,7 +51,7 @@ class AgeingLeastSquares {
  private:
   /// The shape of eq. 6 at one place of the grid against one curve.
   struct Cell {
-    double mean, squares;  // of ln A less the shape; squares about the mean, summed
+    double mean, squares;  // sum of squares about the mean of ln A less the shape
   };
   const Cell& cell(std::size_t curve, std::size_t b, std::size_t tau) const;
   void fill_cells();
@@ -59,7 +59,7 @@ class AgeingLeastSquares {
   Eigen::VectorXd on_grid(std::optional<std::size_t> held, double value) const;
   Eigen::VectorXd refined(Eigen::VectorXd at, std::optional<std::size_t> held) const;
   bool describes_curves() const;
-  /// Of the points in the slope of the squares along a parameter, the others fitted.
+  /// For the points in the slope of the squares along a parameter, the others fitted.
   Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& at) const;
   /// Student's t of a value of a parameter.
   double t_of(std::size_t parameter, double value) const;
@@ -72,7 +72,7 @@ class AgeingLeastSquares {
   bool describes_ = true;
 };
 
-/// Of the values that a column takes beyond what the other columns make up for: residuals of its
+/// For the values that a column takes beyond what the other columns make up for: residuals of its
 /// least squares on them.
 Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others);
 

@@ -27,7 +27,7 @@ struct LogCurves {
 /// (ensemble/analysis/ageing/ageing.hpp).
 enum class Changes { mean_square, variance };
 
-/// Of some realizations without a gap: the waiting times with enough lags for a law, without the
+/// For some realizations without a gap: the waiting times with enough lags for a law, without the
 /// lags over which fewer than two realizations change.
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
                      const std::vector<std::uint32_t>& realizations,

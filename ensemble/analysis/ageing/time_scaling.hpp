@@ -6,7 +6,7 @@
 
 #include "ensemble/analysis/ageing/trends.hpp"
 
-// Whether curves of all ages are one function of one variable made of lag and age. The function is
+// Tests if curves of all ages are one function of one variable made of lag and age. The function is
 // not given: cubic splines of ln A, a knot a decade of the variable, by least squares over all lags
 // alike. What is said of errors rests on realizations alone.
 namespace jostle::inline ensemble {
@@ -15,11 +15,12 @@ namespace jostle::inline ensemble {
 /// only time scale. After Struik 1978 (Physical Aging in Amorphous Polymers and Other Materials)
 /// and Bouchaud, Cugliandolo, Kurchan & Mezard 1998, arXiv:cond-mat/9702070.
 struct AgeingExponent {
-  double mu, error;        // of least squares, with its jackknife error
+  double mu, error;        // jackknife error of the least-squares estimate
   double low_68, high_68;  // values that the slope of the squares does not refute, Student's t
   double low_95, high_95;
   std::string verdict;
-  /// Of A at equal t / t_W^mu: where it changes with age, no mu lays the curves on one another.
+  /// Change with age of A at equal t / t_W^mu: if there is one, no mu brings the curves onto one
+  /// another.
   AgeTrend collapse;
 };
 

@@ -17,7 +17,7 @@ constexpr double significant = significance_level;
 constexpr double decisive = 10;         // a factor that a test should find
 constexpr double largest_factor = 1e6;  // a factor beyond which nothing is stored
 
-// Of a logarithm that the weights times `values` estimate, over the sum of their squares.
+// For a logarithm that the weights times `values` estimate, over the sum of their squares.
 AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
                const Eigen::VectorXd& values) {
   const double squares = weights.squaredNorm();

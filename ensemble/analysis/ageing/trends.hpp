@@ -10,7 +10,7 @@ namespace jostle::inline ensemble {
 /// equal steps from one waiting time to the next, by Student's t over realizations.
 struct AgeTrend {
   LogEstimate factor;
-  double p;           // of no change
+  double p;           // p-value for no change
   double detectable;  // the factor, up or down, that is found at 5 % with power 0.8
   std::string verdict;
 };
@@ -29,20 +29,20 @@ struct TestedChange {
 AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
                        const Eigen::VectorXd& values, const TestedChange& words);
 
-/// Of two tests of one change what the stricter one says, without a factor; nothing is decided
-/// where only one finds it.
+/// Returns the result of the stricter of two tests of one change, without a factor; nothing is
+/// decided where only one finds it.
 AgeTrend agreed(const AgeTrend& one, const AgeTrend& other, std::size_t realizations,
                 const TestedChange& words);
 
 /// -1/2 for the first waiting time to 1/2 for the last.
 double place_of(std::size_t curve, const LogCurves& curves);
 
-/// Of what the curves are of, `name` ("a"), at equal lags, over lags that at least two waiting
+/// Change of the quantity `name` ("a") at equal lags, over lags that at least two waiting
 /// times have.
 AgeTrend trend_with_age(const LogCurves& curves, const std::string& name);
 
-/// Of B, about a fit with one B that is not held. Scaled curves, A / A_inf against t / tau, lie on
-/// one another only where there is none.
+/// Change of B, about a fit with one B that is not held. Scaled curves, A / A_inf against t / tau,
+/// are on one another only where there is none.
 AgeTrend trend_of_b(const AgeingLeastSquares& fit);
 
 }  // namespace jostle::inline ensemble

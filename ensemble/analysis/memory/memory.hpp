@@ -10,7 +10,7 @@
 #include "ensemble/statistics/student_tests.hpp"
 #include "structure/observables.hpp"
 
-// Whether the packing fraction alone is the state: one value reached in several ways, then one
+// Tests if the packing fraction alone is the state: one value reached in several ways, then one
 // common way of tapping (Josserand, Tkachenko, Mueth & Jaeger 2000,
 // doi:10.1103/PhysRevLett.85.3632). If it is, what comes after does not depend on the way.
 namespace jostle::inline ensemble {
@@ -28,7 +28,7 @@ std::vector<LagWindow> lag_windows(std::span<const std::uint64_t> ends);
 
 /// One way of reaching the common value.
 struct History {
-  double strength = 0;            // of its last taps before the switch
+  double strength = 0;            // strength of the last taps before the switch
   std::uint64_t switch_tap = 0;   // the last of them
   std::vector<double> at_switch;  // [realizations]
   std::vector<double> after;      // [n_windows, realizations]
@@ -40,9 +40,10 @@ struct AlignedDifference {
   /// At equal value at the switch: the intercept of the straight line through the differences of
   /// the responses against those at the switch, realization by realization; second less first.
   double value = 0;
-  ErrorOf error{};  // of that line, M - 2 degrees of freedom; none below three realizations
-  double p = 1, corrected = 1;  // of no difference: by itself, and for all together (Holm 1979)
-  double detectable = 0;        // difference that would have been found with probability 0.8
+  ErrorOf error{};  // error of that line, M - 2 degrees of freedom; none below three realizations
+  double p = 1,
+         corrected = 1;   // p-value for no difference: by itself, and for all together (Holm 1979)
+  double detectable = 0;  // difference that would have been found with probability 0.8
 };
 
 struct MemoryTest {

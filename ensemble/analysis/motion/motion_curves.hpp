@@ -13,7 +13,7 @@
 // where it has none, which is left out.
 namespace jostle::inline ensemble {
 
-/// Of a row, with its standard error (NaN below two realizations).
+/// Mean of a row, with its standard error (NaN below two realizations).
 struct MeanEstimate {
   double value, error, dof;
 };

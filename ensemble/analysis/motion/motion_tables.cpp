@@ -131,7 +131,7 @@ std::vector<double> copy(std::span<const double> row) {
   return {row.begin(), row.end()};
 }
 
-/// Whether steps through periodic sides were short enough to be told from others.
+/// True if steps through periodic sides were short enough to be unambiguous.
 void add_unwrapping(const MotionRecords& records, Table& table) {
   constexpr double sure = 0.25;
   double largest = 0;
@@ -153,7 +153,7 @@ void add_unwrapping(const MotionRecords& records, Table& table) {
                           "other way; a wider container is safe");
 }
 
-/// Of the last waiting time that can be compared, over its longest lag.
+/// Uses the last waiting time that can be compared, over its longest lag.
 void add_age(const MotionRecords& records, Table& table) {
   const auto &origins = records.settings.origins, &lags = records.settings.lags;
   for (std::size_t o = origins.size(); o-- > 1;)

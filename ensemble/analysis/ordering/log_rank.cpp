@@ -74,7 +74,7 @@ double p_of_sharing_out(std::vector<double> scores, std::size_t n_first) {
   return ways.share();
 }
 
-/// Of the sum of differences, each of either sign.
+/// p-value of the sum of differences, with all signs.
 double p_of_signs(std::span<const double> differences) {
   Ways ways(std::accumulate(differences.begin(), differences.end(), 0.0));
   const std::size_t n = differences.size();

@@ -11,10 +11,10 @@
 // Which of several ensembles orders first.
 namespace jostle::inline ensemble {
 
-/// Of each time among all of them, [n]: 1 if it ordered, 0 if not, less Nelson & Aalen's cumulative
-/// hazard up to and with its tap. The scores of a group add up to its events observed less those
-/// expected, the log-rank statistic (Mantel 1966; Peto & Peto 1972, doi:10.2307/2344317). Early
-/// times score high.
+/// For each time among all of them, [n]: 1 if it ordered, 0 if not, less Nelson & Aalen's
+/// cumulative hazard up to and with its tap. The scores of a group add up to its events observed
+/// less those expected, the log-rank statistic (Mantel 1966; Peto & Peto 1972,
+/// doi:10.2307/2344317). Early times score high.
 std::vector<double> log_rank_scores(std::span<const OrderingTime> times);
 
 /// The times of one ensemble by realization, absent where one failed, and the tap at which they are
@@ -42,10 +42,10 @@ inline constexpr std::size_t most_ways = 10'000;
 /// k - 1 (multiple comparisons with the best, Hsu 1996; Bonferroni): the truly best one is among
 /// those that may be with at least 1 - `level`, whichever it is.
 struct Candidates {
-  std::vector<double> p;      // of the likeliest to beat it, times k - 1, at most 1; [k]
+  std::vector<double> p;      // p-value against the most likely winner, times k - 1, at most 1; [k]
   std::vector<bool> may_be;   // [k]
   bool could_decide = false;  // realizations are enough for any pair to differ at the level
-  static constexpr double level = significance_level / 2;  // of two such questions
+  static constexpr double level = significance_level / 2;  // level of two such questions
 };
 /// The earliest; k >= 2.
 Candidates may_order_first(std::span<const OrderingTimes> all, Streams streams);

@@ -41,8 +41,8 @@ struct OrderingPoint {
   std::string label;  // "lift=0.25"
   OrderingTimes times;
   std::vector<double>
-      last_values{};                // of the last taps, by number of realization, NaN if it failed
-  std::optional<Verdict> steady{};  // of these taps; absent: too few to say
+      last_values{};  // means of the last taps, by number of realization, NaN if it failed
+  std::optional<Verdict> steady{};  // steadiness of these taps; absent: too few taps
 };
 
 /// What of the last taps is compared: its name and units, and which taps.

@@ -12,7 +12,7 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-// Of at least k of n, each with probability p: the incomplete beta function I_p(k, n - k + 1).
+// For at least k of n, each with probability p: the incomplete beta function I_p(k, n - k + 1).
 double at_least(std::uint64_t k, std::uint64_t n, double p) {
   if (k == 0) return 1;
   if (p <= 0) return 0;

@@ -40,7 +40,7 @@ struct Survival {
   std::vector<std::uint64_t> taps;     // 0, those at which a realization ordered, the last
   std::vector<std::uint64_t> ordered;  // realizations so far, [n_taps]
   std::vector<double> share, error;    // S and Greenwood's error, [n_taps]
-  std::vector<Limits> limits;          // of S, 95 %, [n_taps]
+  std::vector<Limits> limits;          // limits of S, 95 %, [n_taps]
 };
 /// times: [M], M >= 1; `last`: at which they are censored.
 Survival survival(std::span<const OrderingTime> times, std::uint64_t last);

@@ -16,7 +16,7 @@ struct LogTimes {
   std::vector<double> ended, censored;
 };
 
-/// Of the largest t^shape as unit: sums of t^shape and of t^shape ln t over all.
+/// For the largest t^shape as unit: sums of t^shape and of t^shape ln t over all.
 struct PowerSums {
   double power = 0, with_log = 0, unit = 0;
 };

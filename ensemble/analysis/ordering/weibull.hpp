@@ -16,7 +16,7 @@ struct WeibullFit {
   double memoryless_p = 1;  // two-sided, of shape = 1
 };
 
-/// Of few times the best shape is too large and its likelihood no guide. Intervals and p come from
+/// For few times the best shape is too large and its likelihood no guide. Intervals and p come from
 /// the law of (best shape)/(true shape), which has no parameters where all order (Thoman, Bain &
 /// Antle 1969, Technometrics 11, 445) and where the end of a run censors the one of
 /// its place: from random samples that end at `last`, in units of the fitted law, always the same.

@@ -12,7 +12,7 @@
 namespace jostle::inline ensemble {
 
 enum class Taper { boxcar, hann };  // the window: engine/bed/window.hpp has another Window
-enum class Detrending { none, mean, linear };  // of every segment, before the window
+enum class Detrending { none, mean, linear };  // detrending of every segment, before the window
 inline constexpr NameTable<Taper, 2> taper_names{
     {{"hann", Taper::hann}, {"boxcar", Taper::boxcar}}};
 inline constexpr NameTable<Detrending, 3> detrending_names{

@@ -54,7 +54,7 @@ std::string drift_verdict(const Trend& trend, Detrending detrending) {
 struct AutoregressiveSlope {
   double slope = 0;
   ErrorOf error{};  // from that of the time
-  double p = 1;     // of the measured slope being this one
+  double p = 1;     // p-value for this value of the measured slope
 };
 
 AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,

@@ -31,7 +31,7 @@ double value_of(const Combination& combination, const std::vector<double>& y) {
 
 /// A polynomial fitted to points first .. first + points - 1.
 struct LinearFit {
-  double origin = 0, scale = 1;             // of the powers
+  double origin = 0, scale = 1;             // origin of the powers
   std::vector<Combination> coefficients{};  // [coefficients][n_points]
 };
 

@@ -75,9 +75,9 @@ LogEstimate variance_of(const SteadyVolumes& state);
 /// 1/X of the second state less that of the first, in 1/(volumes of a sphere), by two estimators.
 struct CompactivityStep {
   std::size_t from = 0, to = 0;  // states
-  double separation = 0;         // of the mean volumes, in deviations
+  double separation = 0;         // separation of the mean volumes, in deviations
   double overlap = 0;            // sum over bins of the smaller share: 1 of equal histograms
-  /// Whether there is enough of it, whichever realization is left out, for histograms to compare.
+  /// True if the overlap is sufficient for histograms without any single realization.
   bool overlaps = false;
   /// -(V_2 - V_1) / (s_1 s_2), s^2 the variance: the integral of -dV / var(V) (Nowak et al. 1998,
   /// doi:10.1103/PhysRevE.57.1971) with the mean of 1/var taken geometrically, which is exact where
@@ -87,8 +87,8 @@ struct CompactivityStep {
   /// doi:10.1103/PhysRevLett.90.198301), a straight line fitted to the counts by maximum
   /// likelihood (logistic regression).
   Replicates histograms{};
-  /// Of a parabola fitted to ln[P_1 / P_2] likewise: what its slope changes by over a deviation, in
-  /// the units of 1/X. 0 where one density of states serves both.
+  /// For a parabola fitted to ln[P_1 / P_2] likewise: what its slope changes by over a deviation,
+  /// in the units of 1/X. 0 where one density of states serves both.
   Replicates curvature{};
 };
 
@@ -97,8 +97,8 @@ struct CompactivityVerdict {
   double difference_p = 1, curvature_p = 1;  // smallest over the steps, corrected (Holm 1979)
   double detectable = 0;  // largest over the steps: disagreement or curvature, over the largest
                           // step of 1/X, that would have been found with probability 0.8
-  double separation = 0;  // of the widest step that overlaps
-  double drift_p = 1;     // of no drift of all states together; NaN of one realization
+  double separation = 0;  // separation at the widest step that overlaps
+  double drift_p = 1;     // p-value for no drift of all states together; NaN for one realization
   std::string statement;  // "agree", "disagree" or "cannot decide", and why
 
   static constexpr double level = significance_level;  // false alarms, all tests together

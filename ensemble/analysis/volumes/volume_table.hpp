@@ -26,7 +26,7 @@ struct VolumeOf {
 struct VolumeState {
   double strength = 0;
   std::uint64_t first_tap = 0, last_tap = 0;
-  SteadyState steady{};        // of the observable
+  SteadyState steady{};        // steadiness of the observable
   SteadyVolumes observable{};  // the same statistics of the observable itself
   SteadyVolumes volumes{};     // counted
   bool used() const { return steady.verdict() != Verdict::not_reached; }

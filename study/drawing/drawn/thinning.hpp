@@ -36,9 +36,9 @@ std::vector<std::size_t> joined(std::vector<std::size_t> some,
 
 /// How much of a table's axes is kept.
 struct TableThinning {
-  std::size_t most_taps = 24;     // of the axis `tap`: evenly spread
-  std::size_t most_places = 400;  // of any other, but for `t`
-  std::size_t per_decade = 24;    // of `t`, the taps of a fitted curve
+  std::size_t most_taps = 24;     // most taps of the axis `tap`: evenly spread
+  std::size_t most_places = 400;  // most places of any other axis except `t`
+  std::size_t per_decade = 24;    // places per decade of `t`, the taps of a fitted curve
 };
 
 /// The table with its axes thinned, all quantities along them likewise. The places where a quantity

@@ -6,7 +6,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/drawing/figures/builders.hpp"
 
-// Of ordering, volumes and memory: what state beds are in, and when they get there.
+// Figures of ordering, volumes and memory.
 namespace jostle::inline study {
 namespace {
 

@@ -18,7 +18,7 @@ class TableView {
     return drawn_->group == group && path_.front() == kind;
   }
   bool is_refused() const { return !note("refused").empty(); }
-  /// Of "point_0003/ageing/mean_height"; nothing where it is of all points.
+  /// For "point_0003/ageing/mean_height"; nothing where it is of all points.
   std::optional<std::uint32_t> point() const { return point_; }
   const std::vector<std::string>& path() const { return path_; }  // {"ageing", "mean_height"}
   const std::string& name() const { return drawn_->table.name; }
@@ -43,7 +43,7 @@ class TableView {
   /// Half widths along the last axis, at one place of the first.
   std::vector<double> half_width_row(const std::string& quantity, std::size_t i) const;
 
-  std::string units(const std::string& name) const;      // of a quantity or an axis
+  std::string units(const std::string& name) const;      // name of a quantity or an axis
   std::string long_name(const std::string& name) const;  // likewise
   std::string source(const std::string& quantity) const;
   std::string note(const std::string& key) const;

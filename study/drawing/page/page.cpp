@@ -8,7 +8,8 @@
 namespace jostle::inline study {
 namespace {
 
-constexpr std::size_t packing_bytes = 4'000'000;  // of a page of one file; several share it
+constexpr std::size_t packing_bytes =
+    4'000'000;  // packing bytes of a page of one file; several share it
 
 /// The template with each mark, which stands in it once, replaced.
 std::string filled_template(const std::string& title, const std::string& data) {

@@ -12,7 +12,7 @@ namespace jostle::inline study {
 /// What of one file has room in a page.
 struct PageRoom {
   DrawnRoom drawn;
-  std::size_t packing_bytes = 0;  // of text
+  std::size_t packing_bytes = 0;  // bytes of text
 };
 
 /// The data that a page shows of a results file: what was run, the figures of the catalogue,

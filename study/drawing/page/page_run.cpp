@@ -23,7 +23,7 @@ Json page_container(const Container& container) {
           {"width_y", page_number(width_y(container))}};
 }
 
-/// Of the realizations of a sweep point, or of all.
+/// For the realizations of a sweep point, or of all.
 struct Tally {
   std::uint64_t done = 0, unfinished = 0, failed = 0, missing = 0, taps = 0;
   Work work;

@@ -35,7 +35,7 @@ std::vector<Probe> probes(const ParameterValues& start, const std::vector<Parame
   return all;
 }
 
-// Whether f(a + b) - f(a) - f(b) + f is nothing but rounding, for a step along each of two
+// True if f(a + b) - f(a) - f(b) + f is nothing but rounding, for a step along each of two
 // parameters, or twice along one.
 bool no_second_difference(const LawValue& law, const Probe& at, std::size_t j, std::size_t k) {
   const auto value = [&](double along_j, double along_k) {

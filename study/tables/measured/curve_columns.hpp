@@ -22,7 +22,7 @@ struct ColumnRoles {
   std::optional<std::size_t> sigma;
   std::size_t n_columns = 0;
   std::vector<std::string> names;  // [n_columns], of the heading, else "t", "X", "sigma", "X1", ...
-  std::size_t first_row = 0;       // of the text's lines
+  std::size_t first_row = 0;       // first row of the text's lines
   std::vector<std::string> notes;  // on columns that are not used, a sentence each
 };
 

@@ -18,7 +18,7 @@ enum class Gaps {
 struct CurveReading {
   CurveColumns columns = CurveColumns::errors;
   Gaps gaps = Gaps::use_others;
-  double first = -std::numeric_limits<double>::infinity();  // of t; others are left out
+  double first = -std::numeric_limits<double>::infinity();  // first value of t; others are left out
   double last = std::numeric_limits<double>::infinity();
 };
 

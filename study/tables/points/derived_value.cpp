@@ -52,8 +52,8 @@ std::string text_at(const Quantity* quantity, std::size_t place) {
   return texts && place < texts->size() ? (*texts)[place] : "";
 }
 
-/// Of three realizations and fewer too many points have no closed interval, and those that have one
-/// scatter less than they should: their errors are no basis of a curve's.
+/// For three realizations and fewer too many points have no closed interval, and those that have
+/// one scatter less than they should: their errors are no basis of a curve's.
 constexpr double fewest_dof_of_a_point = 3;
 
 /// The error of which Student's t makes the longer side of the 68 % interval of the fit.

@@ -44,7 +44,7 @@ std::string mean_text(const EnsembleSeries& series, std::size_t tap) {
 Table with_half_widths(Table table) {
   HalfWidths half;
   std::vector<std::string> used;
-  std::string bare;  // of which there are standard errors alone
+  std::string bare;  // quantities with standard errors alone
   for (Quantity& quantity : table.quantities) {
     if (!quantity.name.ends_with(error_suffix)) continue;
     const std::string stem = quantity.name.substr(0, quantity.name.size() - error_suffix.size());

@@ -10,7 +10,7 @@
 
 namespace jostle::inline study {
 
-/// Of all taps of every realization. Throws BadInput where there are fewer than `hold`.
+/// For all taps of every realization. Throws BadInput where there are fewer than `hold`.
 OrderingAnalysis ordering_of(const ObservableSeries& series, const OrderingSettings& settings);
 
 /// Throws BadArgument where a point has no observable of the name that the settings compare.

@@ -23,7 +23,7 @@ class PointScenes {
   /// The value that a JSON pointer leads to in the scene of a point; nothing where it leads
   /// nowhere.
   std::optional<Json> value_at(std::uint32_t point, const std::string& pointer) const;
-  /// Whether two pointers are swept together, zipped: where one is known, so is the other.
+  /// True if two pointers are swept together, zipped: where one is known, so is the other.
   bool vary_together(const std::string& a, const std::string& b) const;
 
  private:

@@ -34,14 +34,15 @@ struct Member {
   ReachedTaps reached;
   double x = not_a_number;
   SweptValue swept;
-  std::string others;                // values of the sweep that do not vary with x
-  std::vector<double> realizations;  // of the value, by number; empty for other quantities
+  std::string others;  // values of the sweep that do not vary with x
+  std::vector<double>
+      realizations;  // realizations with the value, by number; empty for other quantities
   double y = not_a_number;
   ErrorOf y_error;
   Column label;
   std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
   std::string taps;                                // whose mean the value is: "151 to 200"
-  std::optional<Verdict> steady;                   // whether these taps are; none of too few
+  std::optional<Verdict> steady;                   // verdict on these taps; none for too few
   std::string no_value;                            // why it has none, where that is known
   bool error_is_no_basis = false;                  // a fit's, of too few realizations
 };

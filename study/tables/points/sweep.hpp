@@ -16,7 +16,7 @@ class PointScenes;
 /// Where a sweep point stands on a curve.
 struct SweptPlace {
   double x = 0;
-  std::string name, units;  // of x: a strength of taps as its control parameter
+  std::string name, units;  // units of x: a strength of taps as its control parameter
   std::string others;       // values of the sweep that do not vary with it
 };
 

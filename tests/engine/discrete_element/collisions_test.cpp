@@ -207,7 +207,7 @@ TEST_CASE("collisions go as those of LAMMPS, that stick and that slide") {
   units.law = GrainLaw::linear;
   units.gravity = 0;
   units.time_step = contact_time / 200'000;
-  const auto of_mass = [&](double mass) {  // of the two together: LAMMPS' gamma is a rate
+  const auto of_mass = [&](double mass) {  // reduced mass: LAMMPS' gamma is a rate
     LawConstants law;
     law.stiffness = stiffness;
     law.tangential = tangential;

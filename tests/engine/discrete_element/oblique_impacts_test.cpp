@@ -163,7 +163,7 @@ TEST_CASE("two spheres of opposite spin part as mirror images, none made to slid
       CHECK(rubbed[0].spin.y == Approx(rubbed[1].spin.y).epsilon(1e-12));
       CHECK(rubbed[0].spin.y < spin);
       // What slides throughout still slides the same way; what sticks swings back by less.
-      const double before = -spin;  // of the upper surface along x, less the lower
+      const double before = -spin;  // velocity of the upper surface along x, less that of the lower
       const double after =
           rubbed[0].velocity.x - rubbed[1].velocity.x - 0.5 * (rubbed[0].spin.y + rubbed[1].spin.y);
       CHECK(std::abs(after) < std::abs(before));

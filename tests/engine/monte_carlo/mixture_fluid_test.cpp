@@ -15,7 +15,7 @@ using namespace jostle;
 
 namespace {
 
-constexpr double bin_width = 0.005;  // of the sum of radii
+constexpr double bin_width = 0.005;  // bin width of the sum of radii
 
 // Pairs of small spheres, of unlike ones, of large ones.
 using Trio = std::array<double, 3>;

@@ -42,7 +42,7 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
   return found;
 }
 
-/// Whether forces along the contacts, none of them pulling, can carry the sphere's weight: some
+/// True if forces along the contacts, none of them pulling, can carry the sphere's weight: some
 /// three of them enclose the vertical, so that the centre's projection lies inside their triangle.
 /// Beside a tube two contacts may do, in one plane with the vertical.
 inline bool carried(const std::vector<Vec3>& contacts) {

@@ -150,7 +150,7 @@ namespace {
 /// Stops of five grades, the last the reference and the third the scene's own, and six other
 /// settings about as complete as these, all from the same beds.
 struct MadeLadder {
-  double roughest = 0.01, ratio = 0.45;        // of the bias, from stop to stop
+  double roughest = 0.01, ratio = 0.45;        // largest ratio of biases, from stop to stop
   double beds = 0.001, noise_of_a_tap = 5e-4;  // deviations
   static constexpr std::size_t before = 3, reference = 4, own = 2;
 
@@ -236,7 +236,7 @@ TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
               .has_beds = {1, 1, 1}};
   CHECK_FALSE(cheapest(at_limits(settings, pilot), 1));
   pilot.step_before.bias = 0.01;
-  const double t = 0.854192;  // of 29 degrees of freedom, once in five times
+  const double t = 0.854192;  // Student's t for 29 degrees of freedom, once in five times
   const double step = 0.002 + t * 1e-4, ratio = step / (0.01 - t * 1e-4);
   CHECK(at_limits(settings, pilot)[2].bias == Approx(step));  // ratios below a half
   pilot.step_before.bias = 0.003;

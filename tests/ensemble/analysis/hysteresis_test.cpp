@@ -109,7 +109,7 @@ TEST_CASE("Branches that do not differ are called different at the level of the 
       different += any;
     }
     CAPTURE(realizations, different);
-    // Of 5 %, 3 deviations.
+    // The limit is 3 deviations of 5 %.
     CHECK(different <= 0.05 * ensembles + 3 * std::sqrt(0.05 * 0.95 * ensembles));
   }
 }

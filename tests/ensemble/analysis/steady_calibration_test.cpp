@@ -22,7 +22,7 @@ struct Setting {
   double rho;
 };
 
-/// Of `ensembles` steady ones, and of the same with a drift added.
+/// For `ensembles` steady ones, and of the same with a drift added.
 struct Counts {
   std::size_t ensembles = 0;
   std::size_t false_alarms = 0, reached = 0;           // steady
@@ -131,7 +131,8 @@ void check_two_time_scales(std::size_t n_taps, std::size_t ensembles) {
       const double alarms = unsteady(noise, m, n_taps, ensembles);
       fmt::print(" {:5.1f}", 100 * alarms);
       CAPTURE(m, noise.slow, noise.taps, n_taps);
-      // Of one series a memory as long as it is no different from a drift, and it says so.
+      // In one series a memory as long as the series cannot be distinguished from a drift; the
+      // verdict reports it.
       if (m == 1) continue;
       const double most = m == 2 ? 0.1 : m == 3 ? 0.05 : 0.02;
       CHECK(alarms <= most + 3 * deviation(most, ensembles));

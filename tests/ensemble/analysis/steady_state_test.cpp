@@ -80,7 +80,7 @@ TEST_CASE("Blocking agrees with pyblock, and tells that its series has no platea
 TEST_CASE("Series of odd length lose their last value, no series has levels it cannot have") {
   const BlockingResult result = blocked({1, 2, 4, 7, 100});
   REQUIRE(result.levels.size() == 2);
-  CHECK(result.levels[1].error == Approx(2).epsilon(1e-14));  // of 1.5 and 5.5
+  CHECK(result.levels[1].error == Approx(2).epsilon(1e-14));  // error of the values 1.5 and 5.5
   CHECK(std::isnan(blocked({1}).error()));
   const BlockingResult constant = blocked(std::vector<double>(64, 0.1));
   CHECK(constant.plateau == std::size_t{0});

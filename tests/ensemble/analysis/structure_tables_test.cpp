@@ -135,10 +135,10 @@ TEST_CASE("Averages over packings of unequal height, with the errors of realizat
   CHECK(numbers(table, "n") == std::vector<double>{2, 4, 1.5, 2, 0, 0});
   const std::vector<double>& share = numbers(table, "share");
   CHECK(share[1] == 4);
-  CHECK(share[2] == 3);  // of the one packing that is so high
+  CHECK(share[2] == 3);  // share of the one packing that is so high
   CHECK(share[3] == 2);
   CHECK(std::isnan(share[4]));
-  // Of 1 and 3: deviation sqrt 2, over sqrt 2; of 1, 2 and 3: 1 over sqrt 3; of one value: none.
+  // 1 and 3: deviation sqrt 2, over sqrt 2. 1, 2 and 3: 1 over sqrt 3. One value: none.
   CHECK(numbers(table, "n_error")[0] == Approx(1).epsilon(1e-14));
   CHECK(numbers(table, "n_error")[3] == Approx(1 / std::sqrt(3.0)).epsilon(1e-14));
   CHECK(std::isnan(numbers(table, "share_error")[2]));
@@ -182,7 +182,8 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   // Curves that differ by a factor: so do Phi_0 and alpha, and z* not at all.
   CHECK(numbers(table, "eq7_phi_0_error")[0] == Approx(0.61 * 0.01 / std::sqrt(3.0)).epsilon(1e-4));
   CHECK(numbers(table, "eq7_z_star_error")[0] < 1e-6);
-  // Of a bed that ends 1.5 d above the layers at the floor nothing but its surface would be fitted.
+  // For a bed that ends 1.5 d above the layers at the floor nothing but its surface would be
+  // fitted.
   std::vector<double> shallow;
   for (const double height : at) {
     const double truth[] = {0.61, 0.001, 2, 2 * (GradientRange{}.low + 1.5)};
@@ -213,7 +214,7 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   CHECK(numbers(table, "tail_a_low_95")[0] == Approx(4e4 - 4.30265 * error).epsilon(1e-6));
   CHECK(numbers(table, "tail_a_high_95")[0] == Approx(4e4 + 4.30265 * error).epsilon(1e-6));
   CHECK(numbers(table, "tail_p")[0] > 0.99);
-  // Of amplitudes that differ by their own size the interval ends where amplitudes do.
+  // For amplitudes that differ by their own size the interval ends where amplitudes do.
   const Table scattered =
       structure_tables("", three_curves("pores", "xi", "rho_xi", xi, rho, nullptr, 0, 0.8),
                        settings)

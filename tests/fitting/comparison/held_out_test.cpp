@@ -36,7 +36,7 @@ const std::vector<Truth>& truths() {
 }
 
 struct Noises {
-  double deviation;  // of a realization at a tap
+  double deviation;  // deviation of a realization at a tap
   double rho = 0;    // from tap to tap
   double level = 0;  // deviation of a realization's own level
 };
@@ -203,7 +203,7 @@ TEST_CASE("A constant and a line compare as the algebra of linear laws has it") 
   const LawComparison found = constant_against_line(curve);
   REQUIRE(found.laws.size() == 2);
   CHECK(found.laws[found.leading].model == "terms_2");
-  const double mean = 4 / std::sqrt(2.0), variance = 7.0 / 2;  // of the three along u
+  const double mean = 4 / std::sqrt(2.0), variance = 7.0 / 2;  // mean of the three values along u
   double pooled = 0;                                           // variance of one realization
   for (std::size_t i = 0; i < 9; ++i) pooled += std::pow(values[i] - curve.x[i / 3], 2) / 6;
   const HeldOutLaw& worse = found.laws[0];

@@ -65,7 +65,7 @@ Curve ensemble(const Model& model, const Law& law, int n_realizations, double rh
 struct Coverage {
   int examined = 0;         // intervals, of all parameters
   int covered[2] = {0, 0};  // at interval_levels; an open side holds everything beyond it
-  int closed = 0;           // of the 95 % intervals
+  int closed = 0;           // number of closed 95 % intervals
   double share(int level) const { return static_cast<double>(covered[level]) / examined; }
 };
 

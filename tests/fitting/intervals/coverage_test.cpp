@@ -14,7 +14,7 @@ struct Study {
   const char* model;
   ParameterValues truth;
   std::vector<double> t;
-  double noise;  // of X, or relative to it for the power law
+  double noise;  // noise of X, or relative to it for the power law
 };
 
 // Noise as in ensemble averages; every profile closes.

@@ -19,7 +19,7 @@ struct Law {
   const char* model;
   ParameterValues truth;
   double noise;     // deviation of a realization
-  double step = 2;  // of 200 values of t that begin at `first`
+  double step = 2;  // step of 200 values of t that begin at `first`
   double first = 1;
 };
 

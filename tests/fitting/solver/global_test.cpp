@@ -12,7 +12,7 @@ namespace jostle {
 namespace {
 
 constexpr double sigma = 2.5e-3;
-constexpr double limit_95 = 3.841;  // of chi2 above its least
+constexpr double limit_95 = 3.841;  // 95 % limit of chi2 above its minimum
 
 /// Least chi2 of X = sum of c_k columns_k, every sigma the same.
 double linear_chi2(const Eigen::MatrixXd& columns, const Eigen::VectorXd& x) {

@@ -19,7 +19,7 @@ inline Packing poured(const Container& container, std::uint32_t n, std::uint64_t
   return make_start(SteepestDescentPour{}, container, n, random);
 }
 
-/// Whether a point lies within a sphere.
+/// True if a point lies within a sphere.
 inline bool is_solid(const Packing& packing, Vec3 point) {
   return std::visit(
       [&](const auto& box) {

@@ -46,7 +46,7 @@ std::vector<double> drawn_gaps(double gamma, double low, double high, int n, Ran
   return gaps;
 }
 
-/// Of jammed spheres in mean field, Charbonneau et al. 2014, doi:10.1038/ncomms4725.
+/// For jammed spheres in mean field, Charbonneau et al. 2014, doi:10.1038/ncomms4725.
 constexpr double jammed = 0.41269;
 
 /// A box of `n` touching spheres in a chain that rests on the floor, each on the one before: one

@@ -155,7 +155,7 @@ TEST_CASE("A crystal has Bragg peaks and nothing else") {
 }
 
 TEST_CASE("S of a hard-sphere fluid is Percus and Yevick's", "[statistics]") {
-  // Of eta = 0.15 their S is within a percent of the exact one.
+  // For eta = 0.15 their S is within a percent of the exact one.
   constexpr double eta = 0.15, width = 8;
   const int n = static_cast<int>(eta * width * width * width * 6 / pi);
   std::vector<Mean> s(24);
@@ -163,7 +163,7 @@ TEST_CASE("S of a hard-sphere fluid is Percus and Yevick's", "[statistics]") {
   for (std::uint64_t r = 0; r < 12; ++r) {
     RandomStream random(stream_key(20261124, 2, r, Purpose::start));
     Packing packing{FullyPeriodicBox{width, width, width}, {}};
-    for (int i = 0; i < n; ++i) {  // of a cubic lattice
+    for (int i = 0; i < n; ++i) {  // index in a cubic lattice
       const int site = i * 343 / n;
       packing.centres.push_back(
           {site % 7 * width / 7, site / 7 % 7 * width / 7, site / 49 * width / 7});

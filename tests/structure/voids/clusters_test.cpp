@@ -91,7 +91,7 @@ TEST_CASE("The variance of clusters of independent cells grows as their number")
       cluster_volumes(packing, cells, 32, [](std::uint32_t) { return true; });
   for (std::size_t k = 0; k < found.cells.size(); ++k) {
     const double n = found.cells[k];
-    // Of clusters that share cells about N/n are independent: error (2 n / N)^(1/2).
+    // For clusters that share cells about N/n are independent: error (2 n / N)^(1/2).
     const double error = std::sqrt(2 * n / static_cast<double>(cells.size()));
     CAPTURE(n, found.variance[k]);
     CHECK(std::abs(found.variance[k] / n - 1) < 3 * error);
@@ -112,7 +112,7 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
     std::vector<std::uint32_t> whole;
     for (std::uint32_t i = 0; i < cells.size(); ++i)
       if (cells.cut[i] == 0) whole.push_back(i);
-    double sum = 0, squares = 0;  // of all that are dealt out, in sphere volumes
+    double sum = 0, squares = 0;  // sum of all distributed volumes, in sphere volumes
     for (const std::uint32_t i : whole) sum += cells.volumes[i] / sphere_volume;
     const double mean = sum / static_cast<double>(whole.size());
     for (const std::uint32_t i : whole)

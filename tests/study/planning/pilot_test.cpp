@@ -113,7 +113,7 @@ TEST_CASE("What is followed of the motion is counted in the memory") {
   const std::uint64_t followed = motion_bytes(*plan.motion, 500);
   CHECK(followed > 11 * 500 * sizeof(Vec3));
   CHECK(with.bytes == without.bytes + 4 * followed);
-  // Of a bed that is cut for the pilot it is that of the whole one.
+  // For a bed that is cut for the pilot, the value is that of the whole bed.
   Plan large = plan_of(PeriodicBox{100, 100}, 40'000);
   monte_carlo(large).relax.stop.rule = SweepsStop{1};
   large.protocol = {{Dilate{0.02}, 1}};

@@ -57,7 +57,7 @@ void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbour
   }
 }
 
-// Whether a step is rejected, by all spheres and in double precision.
+// True if a step is rejected, by all spheres and in double precision.
 template <class Spheres, class Box>
 bool rejected(const Box& box, const PackedCentres& centres, std::uint32_t i, Vec3 step) {
   const Vec3 target = wrapped(box, unpacked(centres[i]) + step);

@@ -146,7 +146,7 @@ TEST_CASE("Errors of scaled curves include those of their scales", "[statistics]
   const AgeingFits fits = fit_ageing(rows, grid);
   const AgeingCurves curves = ageing_curves(rows, grid);
   for (std::size_t k = 0; k < 3; ++k) {
-    // Of one lag: its own error and those of the scales, a slope of 1 at most, add up or cancel.
+    // At one lag its own error and those of the scales, a slope of 1 at most, add up or cancel.
     const auto relative = [](const LogEstimate& x) { return x.error / x.value; };
     const std::size_t i = curves.at(k, 20);
     const double point = relative(curves.a[i]);

@@ -24,7 +24,8 @@ enum class Memory {
 /// Changes whose mean squares are eq. 6, by waiting time. The lags determine these laws: they begin
 /// well below tau and end close to A_inf.
 struct Paths {
-  double common_part = 0;  // of the mean square: the same in all realizations, as they compact
+  double common_part =
+      0;  // common part of the mean square: the same in all realizations, as they compact
   Memory memory = Memory::long_;
   std::array<double, 3> a_inf = {1, 3, 2}, b = {2, 2, 2}, tau = {20, 100, 500};
   std::array<double, 3> drift = {1, 1, 1};  // by which the common part is multiplied

@@ -41,7 +41,7 @@ AgeingCurves curves_of(const Ensemble& ensemble, const AgeingGrid& grid) {
   return ageing_curves(choose_taps(ensemble.series, ensemble.realizations, taps_of(grid)), grid);
 }
 
-// Of independent increments of variance 1: A = 2 D t with D = 1/2.
+// For independent increments of variance 1: A = 2 D t with D = 1/2.
 Ensemble random_walk(std::uint64_t seed, std::uint64_t n_taps, std::uint32_t realizations) {
   return walk(
       seed, n_taps, realizations, [](RandomStream&) { return 0.0; },

@@ -91,7 +91,8 @@ MotionRecords walks(std::size_t realizations, std::size_t group, bool mobile, do
   return records;
 }
 
-/// Of a share p of groups of `group` spheres that stay, the others moving: chi_4 = group p (1 - p).
+/// For a share p of groups of `group` spheres that stay, the others moving: chi_4 = group p (1 -
+/// p).
 std::vector<double> overlaps(std::size_t realizations, std::size_t group, double p,
                              RandomStream& random) {
   std::vector<double> row;
@@ -136,7 +137,7 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
   constexpr std::uint32_t layers = 8;
   constexpr double ratio = 1.6;
   synthetic::Gaussian gaussian(20261125, 45);
-  // Of the truth: p of a layer that a lateral step is less than 0.1.
+  // For the truth: p of a layer that a lateral step is less than 0.1.
   double truth = 0, stay = 0;
   for (std::uint32_t k = 0; k < layers; ++k) {
     const double step = 0.01 * std::pow(ratio, k), p = 1 - std::exp(-0.005 / (step * step));
@@ -220,7 +221,7 @@ TEST_CASE("Intervals of chi_4 hold the truth as often as they say", "[statistics
                    100.0 * found.n / ensembles, values.mean() / truth);
         CAPTURE(realizations, group, p, found.n);
         CHECK(std::abs(values.mean() - truth) <= 4 * values.standard_error());
-        // Of sixteen groups Q has few values, and three of them are often equal.
+        // For sixteen groups Q has few values, and three of them are often equal.
         if (found.n > ensembles / 2) require(found, group < 32);
       }
   std::fflush(stdout);
@@ -270,7 +271,7 @@ TEST_CASE("Gaussian motion has no non-Gaussian parameter, motion of two rates ha
   const double share = 52.0 / n_spheres;
   const double expected = (share * 81 + 1 - share) / std::pow(share * 9 + 1 - share, 2) - 1;
   CHECK(std::abs(alike.mean()) <= 3 * alike.standard_error() + 0.01);
-  // Of 512 spheres it is some 4 % low: a ratio of means of few fast ones.
+  // For 512 spheres it is some 4 % low: a ratio of means of few fast ones.
   CHECK(mixed.mean() == Approx(expected).epsilon(0.1));
   CHECK(vertical.mean() == Approx(expected).epsilon(0.1));
 }

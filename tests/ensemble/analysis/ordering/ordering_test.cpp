@@ -110,7 +110,7 @@ TEST_CASE("The median has limits where enough realizations ordered") {
   CHECK(std::isnan(median_limits(five, 0.95).low));
   CHECK(median_limits(five, 0.68).low == 10);
   CHECK(median_limits(std::span(six).first(3), 0.68).high == 30);
-  // Of ten, 2nd to 9th hold it with 0.979, 3rd to 8th with 0.891.
+  // For ten, 2nd to 9th hold it with 0.979, 3rd to 8th with 0.891.
   std::vector<OrderingTime> ten = ordered_at({1, 2, 3, 4, 5, 6, 7, 8});
   ten.resize(10, {99, false});
   CHECK(median_limits(ten, 0.95).low == 2);
@@ -167,7 +167,7 @@ TEST_CASE("The test of earlier times goes through all ways of sharing them out")
     std::vector<OrderingTime> pooled = ten;
     pooled.insert(pooled.end(), other.begin(), other.end());
     const std::vector<double> scores = log_rank_scores(pooled);
-    double variance = 0;  // of the sum of half of them
+    double variance = 0;  // variance of the sum of half of them
     for (const double score : scores) variance += score * score * 10 / (20 - 1.0) * 0.5;
     const double z =
         std::accumulate(scores.begin(), scores.begin() + 10, 0.0) / std::sqrt(variance);

@@ -33,7 +33,7 @@ double autoregressive_density(double rho, double frequency) {
   return 2 / (1 + rho * rho - 2 * rho * std::cos(2 * std::numbers::pi * frequency));
 }
 
-// Of a bin: the mean of its lines.
+// The value of a bin is the mean of its lines.
 double binned(const FrequencyBins& bins, std::size_t bin, std::size_t segment, auto density) {
   double sum = 0;
   for (std::size_t k = bins.first[bin]; k < bins.first[bin + 1]; ++k) {

@@ -29,7 +29,7 @@ struct Setting {
   double rho;
 };
 
-/// Of unit variance.
+/// For unit variance.
 std::vector<double> memory(const Setting& setting, double rho, std::uint64_t seed,
                            std::uint64_t stream) {
   std::vector<double> series = synthetic::autoregressive(rho, setting.n_taps, seed, stream);
@@ -173,7 +173,7 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
 TEST_CASE("The jackknife takes the bias of a variance about the mean of realizations away") {
   SteadyVolumes state;
   for (const double mean : {1.0, 2.0, 6.0}) state.add(std::vector{mean - 0.5, mean + 0.5});
-  // Of single values: within 1/4 and between 14/3 of the means about theirs.
+  // For single values: within 1/4 and between 14/3 of the means about theirs.
   CHECK(state.mean(3) == Approx(3).epsilon(1e-14));
   CHECK(state.variance(3) == Approx(0.25 + 14.0 / 3).epsilon(1e-14));
   CHECK(state.variance(2) == Approx(0.25 + 0.25).epsilon(1e-14));

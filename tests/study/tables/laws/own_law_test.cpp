@@ -16,7 +16,7 @@ namespace {
 struct Rewritten {
   std::string model, formula;
   ParameterValues truth;
-  double first, last;  // of t
+  double first, last;  // last of t
 };
 
 const std::vector<Rewritten>& rewritten_laws() {

@@ -45,7 +45,7 @@ ParameterPoint final_value(const Curve& curve) {
   return *point;
 }
 
-/// Of sweeps over five points whose final values rise by `slope` a point.
+/// For sweeps over five points whose final values rise by `slope` a point.
 void check(std::size_t realizations, double slope, int sweeps) {
   int bent = 0, covered = 0, made = 0, points = 0;
   for (int number = 0; number < sweeps; ++number) {
