@@ -4,7 +4,7 @@
 
 namespace jostle::inline engine {
 
-/// What every engine records of a shake: its lateral offsets that found no room, a sphere.
+/// Column of every engine for a shake: the lateral offsets per sphere that found no room.
 inline Column dropped_offsets_column() {
   return {.name = "dropped_offsets",
           .units = "1",

@@ -18,7 +18,7 @@ namespace jostle::inline engine {
 /// How far a bed is after a tap: it moves, it is at rest, or a limit ended it before it was.
 enum class DynamicsStatus : std::uint32_t { running = 0, settled = 1, capped = 2 };
 
-/// What moving the spheres took.
+/// Work of moving the spheres.
 struct Effort {
   std::uint64_t units = 0;       // units of the engine: trials, sphere steps
   std::uint64_t pair_tests = 0;  // pair distances computed in them
@@ -33,12 +33,12 @@ struct Effort {
   }
 };
 
-/// What an engine draws its own random numbers from: while the start comes to rest, and after taps.
+/// The streams of an engine's random numbers: while the start comes to rest, and after taps.
 struct DynamicsStreams {
   StreamKey start, taps;
 };
 
-/// A state that this program cannot go on from; what() says why and what to do.
+/// A state that this program cannot resume; what() gives the reason and what to do.
 class StateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -61,16 +61,16 @@ class Dynamics {
   /// this height (diameters): mechanics().driven. Nothing else depends on it. An engine without
   /// time, or a tap that moves no floor, has nothing to keep.
   virtual void watch_motion(double /*bin_width*/) {}
-  /// Goes on for about so many units, or until the bed is at rest. At rest it does nothing. Throws
+  /// Advances by about so many units, or until the bed is at rest. At rest it does nothing. Throws
   /// std::invalid_argument where the engine's settings do not suit the container.
   virtual DynamicsStatus advance(std::uint64_t units) = 0;
   /// Gives the bed as it is: the container, and [n_spheres] centres in the order of load().
   virtual void store(Packing& bed) const = 0;
   /// For the last tap, along the engine's columns. To be called once the bed is at rest.
   virtual std::vector<double> diagnostics() const = 0;
-  /// What moves and acts in the bed, at the positions that store() gives; to be called once the bed
-  /// is at rest. Nothing that follows depends on whether it was. Nothing where spheres do not move
-  /// in time.
+  /// Velocities, forces and contacts in the bed at the positions that store() gives; to be called
+  /// once the bed is at rest. Nothing that follows depends on whether it was. Nothing where spheres
+  /// do not move in time.
   virtual BedMechanics mechanics() const { return {}; }
   /// Since this object was made.
   virtual Effort effort() const = 0;
@@ -79,10 +79,10 @@ class Dynamics {
   /// Bytes held: positions, and what finds neighbours.
   virtual std::size_t bytes() const = 0;
 
-  /// All that the engine needs besides the bed to go on bit for bit. The bytes begin with what
-  /// tells their version.
+  /// All that the engine needs besides the bed to resume bit for bit. The bytes begin with their
+  /// version.
   virtual std::vector<std::byte> save() const = 0;
-  /// Goes on, with the bed loaded before, from where save() was called. Throws StateError where the
+  /// Resumes, with the bed loaded before, from the state of save(). Throws StateError where the
   /// bytes are of another engine or another version.
   virtual void restore(std::span<const std::byte> state) = 0;
 };

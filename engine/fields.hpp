@@ -81,7 +81,7 @@ struct Text {
   std::string_view first = {};  // character that it begins with: "a-z"; empty: any text
   std::string_view rest = {};   // those that follow: "a-z0-9_"
   std::size_t longest = 0;
-  std::string_view rule = {};  // the same in words
+  std::string_view rule = {};  // this in words
 };
 
 /// A value, or a word in its place: "last", "never", "infinity". The word stands for a value that
@@ -144,7 +144,7 @@ constexpr ListOf<Form> list_of(Form form, std::size_t least, std::size_t most,
 
 /// Rare properties of a field.
 struct Notes {
-  std::string_view required = {};  // what a key that must be there holds; empty: it may be absent
+  std::string_view required = {};  // content of a required key; empty: it may be absent
   bool unless_default = false;     // written only where the value is not the default
   std::string_view title = {};
   std::string_view examples = {};  // a JSON list
@@ -186,7 +186,7 @@ constexpr Alternative<Part, Variant> alternative(Variant Part::*member) {
   return {member};
 }
 
-/// A number under one of several keys, which says of what kind it is.
+/// A number under one of several keys; the key gives its kind.
 template <class Part, class Kind, std::size_t n>
 struct KeyedNumber {
   double Part::*value;

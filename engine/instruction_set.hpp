@@ -5,7 +5,7 @@
 
 namespace jostle::inline engine {
 
-/// What the kernels are compiled for, the widest last.
+/// The instruction sets of the kernels, the widest last.
 enum class InstructionSet { baseline, avx2, avx512 };
 
 std::string_view name(InstructionSet set);

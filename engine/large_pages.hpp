@@ -24,7 +24,8 @@ struct LargePageAllocator {
     void* memory = std::aligned_alloc(alignment, bytes);
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(MADV_HUGEPAGE) && !defined(JOSTLE_PORTABLE)
-    if (alignment == page) madvise(memory, bytes, MADV_HUGEPAGE);  // advice: refusal is no fault
+    if (alignment == page)
+      madvise(memory, bytes, MADV_HUGEPAGE);  // advice: refusal is not an error
 #endif
     return static_cast<T*>(memory);
   }

@@ -8,8 +8,8 @@
 
 namespace jostle::inline engine {
 
-/// What `read` makes of an engine's state, of all its bytes. `read` throws std::out_of_range where
-/// they are not its own; then this throws StateError.
+/// Returns the result of `read` on all bytes of an engine's state. `read` throws std::out_of_range
+/// where they are not its own; then this throws StateError.
 template <class Read>
 auto state_from(std::span<const std::byte> bytes, Read&& read) {
   try {

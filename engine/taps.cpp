@@ -32,7 +32,7 @@ std::vector<std::uint32_t> random_order(std::size_t n, RandomStream& random) {
   return order;
 }
 
-// Lateral offsets, one sphere after another; each sees the spheres as they then stand.
+// Lateral offsets, one sphere after another; each uses the positions at that time.
 class LateralOffsets {
  public:
   LateralOffsets(Packing& packing, const Shake& shake)

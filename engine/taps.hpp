@@ -76,7 +76,7 @@ struct Shake {
   }
 };
 
-/// What the strength of a floor's motion a sin(2 pi f t) is: its amplitude a, in diameters, or its
+/// The strength of a floor's motion a sin(2 pi f t): its amplitude a, in diameters, or its
 /// acceleration Gamma = a (2 pi f)^2 / g.
 enum class FloorStrength : std::uint32_t { amplitude, acceleration };
 inline constexpr NameTable<FloorStrength, 2> floor_strengths{
@@ -147,13 +147,13 @@ double floor_amplitude(const FloorTap auto& tap, double gravity) {
 /// Taps of a protocol, at most.
 inline constexpr std::uint64_t most_taps = 1'000'000'000;
 
-/// What scenes call the strength of a tap and ramps change: epsilon, delta, gamma, lambda, a
+/// Name of the strength of a tap in scenes and ramps: epsilon, delta, gamma, lambda, a
 /// or Gamma.
 double& strength(Tap& tap);
 
-/// What a tap's strength is plotted against: eps^(1/2) of dilations (Philippe & Bideau 2001), gamma
-/// of a lift (Rosato et al. 2010), lambda of a shake, a or Gamma of a floor that
-/// moves.
+/// Control parameter against which a tap's strength is plotted: eps^(1/2) of dilations (Philippe &
+/// Bideau 2001), gamma of a lift (Rosato et al. 2010), lambda of a shake, a or Gamma of a floor
+/// that moves.
 struct Control {
   std::string name;  // "sqrt_epsilon"
   std::string units;
@@ -168,7 +168,7 @@ std::optional<std::string> tap_fault(const Tap& tap, const Container& container)
 /// True if the tap moves the floor, not the spheres: what excite() cannot do.
 bool moves_floor(const Tap& tap);
 
-/// What a tap did beyond moving the spheres.
+/// Effects of a tap beyond moving the spheres.
 struct TapReport {
   std::uint64_t lateral_offsets_dropped =
       0;  // lateral offsets dropped of n_spheres; only a shake drops any

@@ -78,7 +78,7 @@ struct Estimate {
   double error = 0;
   Interval intervals[2];  // profile likelihood at interval_levels; the value itself if fixed
   Identifiability identifiability = Identifiability::not_examined;
-  std::string statement;  // the same in words
+  std::string statement;  // this in words
 
   /// True if the data give it a value: fixed, or the 68 % interval is closed, or no interval was
   /// looked for. What else least squares end at, as far out as the search went, is no measurement.

@@ -13,8 +13,8 @@
 #include "structure/region.hpp"
 #include "structure/voids/bernal_holes.hpp"
 
-// The structure of a packing, part by part: docs/reference/structure.md says what each quantity
-// means. Lengths in diameters.
+// The structure of a packing, part by part: docs/reference/structure.md defines each quantity.
+// Lengths in diameters.
 namespace jostle::inline structure {
 
 inline constexpr Range bin_width_range =
@@ -225,7 +225,7 @@ constexpr auto measured(std::optional<Settings> Part::*member) {
   return field(Settings::about.name, member, Object<Settings>{}, Settings::about.text);
 }
 
-/// What is measured: the parts that have settings, nothing else.
+/// The measured parts: those that have settings.
 struct StructureSettings {
   /// Where spheres, cells, pores and holes are counted; absent: as bulk_of() has it.
   std::optional<Region> region = std::nullopt;
@@ -278,7 +278,7 @@ StructureSettings all_structure();
 Region bulk_of(const Packing& packing);
 
 /// Each part that has settings, in their order. `points` draws the random points of P0. A part that
-/// the container does not have is refused: it says why and holds nothing. Throws
+/// the container does not have is refused: it holds the reason and no values. Throws
 /// std::invalid_argument for two centres less than half a diameter apart, which no packing of
 /// spheres of diameter 1 has.
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,

@@ -9,7 +9,7 @@
 // The parts of measure().
 namespace jostle::inline structure {
 
-/// What parts share: the packing, the region, and cells that are made once.
+/// Common data of the parts: the packing, the region, and cells that are made once.
 struct MeasuredPacking {
   const Packing& packing;
   Region region;

@@ -23,7 +23,7 @@ double deviation_of(std::span<const double> values, double mean) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// A density over bins of a width that begin at 0; what lies beyond the last is left out.
+/// A density over bins of a width that begin at 0; values beyond the last are left out.
 std::vector<double> density(std::span<const double> values, double bin_width, std::size_t n_bins) {
   std::vector<double> bins(n_bins, 0.0);
   const double weight = 1 / (static_cast<double>(values.size()) * bin_width);
@@ -39,7 +39,7 @@ double volume_of(const Container& container, double height) {
   return footprint_area(container) * (boundary.periodic_z ? boundary.height : height);
 }
 
-/// What is measured of the cells of a region.
+/// Measurements of the cells of a region.
 struct InnerCells {
   std::vector<std::uint64_t> face_counts;
   std::vector<double> faces, volumes, free_volumes, fractions;

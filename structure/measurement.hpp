@@ -6,11 +6,11 @@
 #include <variant>
 #include <vector>
 
-// What is measured inside one packing, in a form that can be averaged over packings whatever it is.
+// Measurements inside one packing, in a form that can be averaged over packings.
 // Names, units and sources are views of text that lives as long as the program: literals.
 namespace jostle::inline structure {
 
-/// Where the values of a quantity stand: heights, distances, numbers of neighbours, names.
+/// Axis of the values of a quantity: heights, distances, numbers of neighbours, names.
 struct Places {
   std::string_view name;  // snake_case
   std::variant<std::vector<double>, std::vector<std::string>> values{};
@@ -42,7 +42,7 @@ struct MeasuredQuantity {
   /// Its value at places that only another packing has, as heights above this one's surface: 0
   /// where there is nothing to find, NaN where there is nothing to measure.
   double beyond = 0;
-  /// True if its change since the first tap is of interest too.
+  /// True if its change since the first tap is also relevant.
   bool with_change = false;
   /// True if its mean over packings has an error: not so where it is itself one, or a constant.
   bool with_error = true;

@@ -12,7 +12,7 @@
 #include "engine/column.hpp"
 #include "engine/fields.hpp"
 
-// What is measured of the packing after every tap. Each observable is a small aggregate; a scene's
+// Measurements of the packing after every tap. Each observable is a small aggregate; a scene's
 // list of them is all that is computed.
 namespace jostle::inline structure {
 
@@ -80,8 +80,8 @@ struct BulkFraction {
   }
 };
 
-/// Share of fcc and hcp spheres in the bulk (bulk_of() in measure.hpp): what structure's part
-/// "order" gives as fcc + hcp where no region is set. In [0, 1]; NaN where no sphere lies there.
+/// Share of fcc and hcp spheres in the bulk (bulk_of() in measure.hpp): equal to fcc + hcp of
+/// structure's part "order" where no region is set. In [0, 1]; NaN where no sphere lies there.
 struct CrystallineFraction {
   bool operator==(const CrystallineFraction&) const = default;
 
@@ -117,7 +117,7 @@ inline constexpr Text kind_name_form{
     "them"};
 
 /// Mean height of the spheres of a kind, diameters, each weighted by its volume (kind_height() in
-/// mixing.hpp). Of a kind of one sphere: the height of an intruder.
+/// mixing.hpp). For a kind of one sphere it is the height of an intruder.
 struct KindHeight {
   std::string kind;
   bool operator==(const KindHeight&) const = default;

@@ -9,7 +9,7 @@
 #include "engine/bed/packing.hpp"
 #include "structure/region.hpp"
 
-// What is measured of a packing at snapshots only.
+// Measurements of a packing at snapshots only.
 namespace jostle::inline structure {
 
 /// N_c: mean number of other centres within `cut` diameters (at the cut included) of a centre,
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> neighbour_histogram(std::span<const unsigned> numbers
 /// nearly all of more would be empty. Requires a sphere.
 bool has_height_bins(const Packing& packing, double bin_width);
 
-/// Throws std::invalid_argument without has_height_bins(), and says why.
+/// Throws std::invalid_argument without has_height_bins(), with the reason.
 void require_height_bins(const Packing& packing, double bin_width);
 
 /// Bins [k width, (k + 1) width), k = 0 .. up to the highest centre. Requires a sphere. Throws as

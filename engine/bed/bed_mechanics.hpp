@@ -7,7 +7,7 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-// What moves and acts in a bed, beside where its spheres are.
+// Velocities, forces and contacts in a bed, in addition to positions.
 namespace jostle::inline engine {
 
 /// Two spheres, or a sphere and a wall, that act on each other. On `first` acts normal_force x

@@ -12,8 +12,8 @@
 
 namespace jostle::inline engine {
 
-/// Spheres in cells at least `cutoff` wide, so that whatever lies within the cutoff of a point lies
-/// in its cell or a neighbouring one. Holds the positions it was told of: build it anew, or
+/// Spheres in cells at least `cutoff` wide, so that all spheres within the cutoff of a point lies
+/// in its cell or a neighbouring one. Holds the positions that it received: build it anew, or
 /// relocate spheres, after they have moved. A periodic direction with room for fewer than three
 /// cells gets a single one (all pairs), so that no image is met twice.
 class CellGrid {
@@ -30,7 +30,7 @@ class CellGrid {
     for (std::uint32_t i = n; i-- > 0;) link(i, cell_at(position(i)));
   }
 
-  /// Sphere i, of the grid, now stands at `r`.
+  /// Sphere i, of the grid, is now at `r`.
   void relocate(std::uint32_t i, Vec3 r) {
     const std::uint32_t cell = cell_at(r);
     if (cell == cell_of_[i]) return;
@@ -50,7 +50,7 @@ class CellGrid {
     for_each_in(line, length, visit);
   }
 
-  /// The same for those of the cells that come within `reach` of `r`: few, if it is far less than
+  /// Like visit(), for the cells that come within `reach` of `r`: few, if it is far less than
   /// the cutoff.
   template <class Visit>
   void for_each_within(Vec3 r, double reach, Visit&& visit) const {

@@ -18,7 +18,7 @@ namespace jostle::inline engine {
 inline constexpr double sphere_radius = 0.5;
 inline constexpr double sphere_volume = 0.52359877559829887307710723054658;  // pi / 6
 
-/// How a container ends along x, y and z. Its footprint lies in [0, x] x [0, y] of its extent.
+/// How a container ends along x, y and z. Its footprint is [0, x] x [0, y] of its extent.
 struct ContainerShape {
   bool periodic_x = false, periodic_y = false;  // else a vertical plane at either end, or the tube
   bool periodic_z = false;  // else a floor at z = 0 under an open top; then there is gravity
@@ -87,7 +87,7 @@ struct WalledBox {
   }
 };
 
-/// A vertical tube whose axis stands at (diameter / 2, diameter / 2).
+/// A vertical tube whose axis is at (diameter / 2, diameter / 2).
 struct Cylinder {
   double diameter = 19;
 
@@ -157,7 +157,7 @@ std::vector<std::string> container_names();
 /// The container of that name with these widths along x, y, z; nothing if there is none.
 std::optional<Container> container_of(std::string_view name, Vec3 extent);
 
-/// What is wrong with the container's widths, naming the least width; nothing if they are right.
+/// Describes a fault of the container's widths, with the least width; nothing if they are valid.
 std::optional<std::string> width_fault(const Container& container);
 
 /// Area of the footprint, diameters squared.

@@ -22,7 +22,7 @@ struct Packing {
 };
 
 /// Throws std::invalid_argument where the packing has sizes, which `what` (a plural, "taps") does
-/// not take: the one place that says what is possible with a mixture.
+/// not take: the only place that rejects mixtures.
 void require_equal_spheres(const Packing& packing, const char* what);
 
 /// <Z>, the mean height of the centres, diameters, each weighted by the volume of its sphere; of
@@ -57,7 +57,7 @@ struct Overlap {
 /// Compares every pair (O(n^2), no neighbour search): the independent check of the engine.
 Overlap deepest_overlap_brute_force(const Packing& packing);
 
-/// The same by cells, O(n), for packings too large for all pairs.
+/// Like the loop over all pairs, by cells, O(n), for large packings.
 Overlap deepest_overlap(const Packing& packing);
 
 /// How deep an overlap rounding alone may leave after a tap: max(1e-12, 4 ulp of the top height).

@@ -6,7 +6,7 @@
 // function of (key, n) alone, so a realization can be resumed anywhere and depends on no other.
 namespace jostle::inline engine {
 
-/// What a stream of a realization is for. The numbers are part of the results' identity.
+/// Purposes of the streams of a realization. The numbers are part of the results' identity.
 enum class Purpose : std::uint32_t {
   start = 1,
   tap = 2,

@@ -10,7 +10,7 @@ namespace jostle::inline engine {
 
 /// Spheres of one or several sizes in cell grids, one grid per factor of two in size: cells are as
 /// narrow as the spheres in them allow (Krijgsman, Ogarko & Luding, Comput. Part. Mech. 1, 357,
-/// 2014). Like a CellGrid it holds the positions it was told of. Lengths in diameters.
+/// 2014). Like a CellGrid it holds the positions that it received. Lengths in diameters.
 class SizedGrid {
  public:
   /// Builds the grids over spheres 0 .. n - 1: `position(i)` wrapped, `radius(i)` > 0. A search
@@ -44,7 +44,7 @@ class SizedGrid {
     }
   }
 
-  /// Sphere i, of the grids, now stands at `r`.
+  /// Sphere i, of the grids, is now at `r`.
   void relocate(std::uint32_t i, Vec3 r) { classes_[class_of_[i]].grid.relocate(place_of_[i], r); }
 
   /// Calls visit(j) once for every sphere whose surface lies within the skin of that of a sphere of

@@ -124,7 +124,7 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
   if (taper < thin) return solids_fraction(packing, window);
   assert(!Boundary(packing.container).periodic_z);
   const double depth = window.high - window.low;
-  if (depth < taper) {  // the same weight of heights, from taper and depth exchanged
+  if (depth < taper) {  // this weight of heights, with taper and depth exchanged
     const double middle = 0.5 * (window.low + window.high);
     return tapered_solids_fraction(packing, {middle - 0.5 * taper, middle + 0.5 * taper}, depth);
   }

@@ -13,7 +13,7 @@ namespace jostle::inline engine {
 double sphere_volume_in_slab(double z, double low, double high, double diameter = 1);
 
 /// Solids fraction of the container between two heights: volume of spheres / volume of the slab.
-/// Exact but for rounding. Of a window without depth, as the quantiles of a single layer on the
+/// Exact but for rounding. For a window without depth, as the quantiles of a single layer on the
 /// floor give, it is the area fraction of the plane cut there (and so below 1e-5 diameters, to
 /// 1e-10). Requires window.low <= window.high, and in a fully periodic box a window inside [0,
 /// height]: spheres that reach through its ends count on both sides.
@@ -28,8 +28,8 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
 
 /// The window in heights: a height window is itself; a quantile window is taken from the heights
 /// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
-/// In a mixture a centre counts by the volume of its sphere: the q-quantile lies where the fraction
-/// q of the volume is below, half of each sphere's volume being counted below its centre.
+/// In a mixture a centre counts by the volume of its sphere: the q-quantile is the height where the
+/// fraction q of the volume is below, half of each sphere's volume being counted below its centre.
 HeightWindow resolve(const Window& window, const Packing& packing);
 
 }  // namespace jostle::inline engine

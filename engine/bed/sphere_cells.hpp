@@ -28,7 +28,7 @@ class SphereCells {
   const std::vector<Vec3>& centres() const { return centres_; }
 
   /// Calls visit(index, image) for every sphere in the cells that meet the block [low, high], and
-  /// for some just outside it, until a call returns true; tells whether one did. `image` is the
+  /// for some just outside it, until a call returns true; returns whether one did. `image` is the
   /// sphere's periodic image in the frame of the block.
   template <class Visit>
   bool any_in(Vec3 low, Vec3 high, Visit&& visit) const {
@@ -53,7 +53,7 @@ class SphereCells {
     return false;
   }
 
-  /// The same for the cube of half-side `reach` around a point.
+  /// Like visit() of a block, for the cube of half-side `reach` around a point.
   template <class Visit>
   bool any_near(Vec3 point, double reach, Visit&& visit) const {
     const Vec3 half = {reach, reach, reach};

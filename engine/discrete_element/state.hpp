@@ -9,18 +9,19 @@
 
 namespace jostle::inline engine {
 
-/// What a realization by discrete elements goes on from, besides the centres in the box.
+/// State from which a realization by discrete elements resumes, besides the centres in the box.
 struct GrainDynamicsState {
   DynamicsStatus status = DynamicsStatus::settled;
   double quiet_since = -1;  // time of the tap since which the bed is quiet; negative: it is not
   double input = 0;         // by a displacement at the tap's begin, m g d
   std::uint64_t dropped_offsets = 0;  // dropped offsets of a shake at the tap's begin
-  Energies before;                    // as the tap began, after the displacement
+  Energies before;                    // at the begin of the tap, after the displacement
   DrivenSums driven;                  // state of a tap whose motion is watched
   GrainLoop::State loop;
 };
 
-/// As bytes, which begin with their version, and back. Reading throws StateError for other bytes.
+/// Converts to bytes, which begin with their version, and back. Reading throws StateError for other
+/// bytes.
 std::vector<std::byte> bytes_of(const GrainDynamicsState& state);
 GrainDynamicsState grain_state(std::span<const std::byte> bytes);
 

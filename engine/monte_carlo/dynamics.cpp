@@ -21,7 +21,7 @@ HeightWindow stop_window(const Stop& stop, const Packing& bed) {
   return rule != nullptr ? resolve(rule->window, bed) : HeightWindow{0, 0};
 }
 
-// The same for the relaxation of the start itself, when there is no bed yet to take quantiles of:
+// The window for the relaxation of the start itself, when there is no bed yet to take quantiles of:
 // those of a uniform bed (docs/developers/decisions/stop-window-of-the-start.md).
 HeightWindow start_stop_window(const Stop& stop, const Packing& packing) {
   const auto* rule = std::get_if<BulkFractionStop>(&stop.rule);
@@ -92,7 +92,7 @@ class MonteCarloDynamics final : public Dynamics {
   std::vector<std::byte> save() const override {
     MonteCarloState state = state_;
     if (loop_) keep_place(state);
-    if (!moving()) {  // what the next trial depends on: nothing of the last relaxation
+    if (!moving()) {  // state of the next trial: independent of the last relaxation
       state.progress = {.status = DynamicsStatus::settled};
       state.dropped_offsets = 0;
     }
@@ -112,7 +112,7 @@ class MonteCarloDynamics final : public Dynamics {
     return !state_.tapping && settings_.relax_start ? *settings_.relax_start : settings_.relax;
   }
 
-  // A new loop is a resumed one: it takes over the centres and where the trials stand.
+  // A new loop is a resumed one: it takes over the centres and the number of the next trial.
   TrialLoop& loop() {
     if (loop_) return *loop_;
     loop_ = make_trial_loop(packing_.container, relaxation().move,
@@ -161,7 +161,7 @@ class MonteCarloDynamics final : public Dynamics {
   }
 
   // The start is at rest: from here on, trials after taps, with numbers of their own. Only a start
-  // that was relaxed by the rule of the taps hands on where its trials stand.
+  // that was relaxed by the rule of the taps passes on the number of its next trial.
   void begin_taps() {
     state_.move = {};
     state_.sampler = {};

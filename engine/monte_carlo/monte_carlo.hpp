@@ -43,16 +43,16 @@ struct MonteCarlo {
   bool operator==(const MonteCarlo&) const = default;
 };
 
-/// How the start is relaxed before tap 0 is recorded: as `relax_start` says; without it a random
+/// How the start is relaxed before tap 0 is recorded: by `relax_start`; without it a random
 /// settle as after a tap, any other start not at all (null).
 const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& start);
 
-/// What is recorded of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
+/// Columns of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
 /// without trials; capped; dropped_offsets, of a shake.
 std::vector<Column> columns(const MonteCarlo& settings);
 
-/// One realization's mechanics. A unit is a trial; slices end at the end of a sweep. What it saves
-/// is in engine/monte_carlo/state.hpp.
+/// One realization's mechanics. A unit is a trial; slices end at the end of a sweep.
+/// engine/monte_carlo/state.hpp has the saved state.
 std::unique_ptr<Dynamics> make_dynamics(const MonteCarlo& settings, const DynamicsStreams& streams);
 
 }  // namespace jostle::inline engine

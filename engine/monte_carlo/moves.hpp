@@ -53,7 +53,7 @@ struct PolarMove {
 /// Trials that a rule may name, at most.
 inline constexpr std::uint64_t most_trials = 1'000'000'000'000;
 
-/// Which trials the share of accepted ones is taken of.
+/// The trials of which the share of accepted ones is taken.
 enum class AcceptanceBase { all_trials, not_upward };
 inline constexpr NameTable<AcceptanceBase, 2> acceptance_bases{
     {{"all_trials", AcceptanceBase::all_trials}, {"not_upward", AcceptanceBase::not_upward}}};

@@ -11,14 +11,15 @@
 
 namespace jostle::inline engine {
 
-/// What the trial loop must agree with bit for bit: one trial after another, each held against all
-/// spheres, without lists, cells or caches. It shares with the trial loop the proposals alone, and
-/// those of the baseline instruction set. For checks: O(n) a trial, and the step never adapts.
+/// The reference with which the trial loop must agree bit for bit: one trial after another, each
+/// tested against all spheres, without lists, cells or caches. It shares with the trial loop the
+/// proposals alone, and those of the baseline instruction set. For checks: O(n) a trial, and the
+/// step never adapts.
 class PlainLoop {
  public:
   PlainLoop(Packing packing, const Move& move, StreamKey key);
 
-  /// Makes the trials from where it stands.
+  /// Makes the trials from its current state.
   void run(std::uint64_t n_trials);
 
   const Packing& packing() const { return packing_; }

@@ -2,7 +2,7 @@
 
 #include "engine/monte_carlo/trial_loop.hpp"
 
-// What goes with what among containers, moves and samplers.
+// Valid combinations of containers, moves and samplers.
 namespace jostle::inline engine {
 
 std::optional<std::string> move_fault(const Move& move, const Container& container) {

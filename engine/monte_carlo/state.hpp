@@ -10,7 +10,7 @@
 
 namespace jostle::inline engine {
 
-/// What a realization by Monte Carlo goes on from, besides the centres.
+/// State from which a realization by Monte Carlo resumes, besides the centres.
 struct MonteCarloState {
   bool tapping = false;         // true if the start is at rest: what follows is after taps
   RelaxationProgress progress;  // settled at once in a bed at rest
@@ -21,7 +21,8 @@ struct MonteCarloState {
   bool operator==(const MonteCarloState&) const = default;
 };
 
-/// As bytes, which begin with their version, and back. Reading throws StateError for other bytes.
+/// Converts to bytes, which begin with their version, and back. Reading throws StateError for other
+/// bytes.
 std::vector<std::byte> bytes_of(const MonteCarloState& state);
 MonteCarloState monte_carlo_state(std::span<const std::byte> bytes);
 

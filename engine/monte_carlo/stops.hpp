@@ -44,7 +44,7 @@ struct HeightChangeStop {
   std::uint64_t every_sweeps = 100;
   bool operator==(const HeightChangeStop&) const = default;
 
-  static constexpr About about{"mean_height"};  // a key tells it from MeanHeightStop
+  static constexpr About about{"mean_height"};  // a key distinguishes it from MeanHeightStop
   static constexpr auto fields() {
     return std::tuple{field("change", &HeightChangeStop::change, Number{above(0, 1)},
                             "Absolute change, diameters: the same for beds of every depth",

@@ -14,7 +14,7 @@
 
 namespace jostle::inline engine {
 
-/// Where the trials of a realization stand; with the positions, all that the next trial depends on.
+/// State of the trials of a realization; with the positions, all that the next trial depends on.
 struct MoveState {
   std::uint64_t next_trial = 0;     // number of the next trial of the realization: Philox's counter
   double step = 0;                  // Metropolis: the current largest displacement, diameters
@@ -35,7 +35,7 @@ inline constexpr NameTable<Sampler, 2> samplers{
 /// The spheres that a loop is compiled for: equal ones cost less.
 enum class SphereSizes { equal, several };
 
-/// What the rejection-free sampler must remember besides MoveState; unused by the exhaustive one.
+/// State of the rejection-free sampler besides MoveState; unused by the exhaustive one.
 struct SamplerState {
   bool active = false;                // else every trial is looked at, as after each tap
   std::uint64_t window_trials = 0;    // looked at since it was last decided whether to be active
@@ -73,7 +73,7 @@ class TrialLoop {
   /// Begins the relaxation of a tap: resets the Metropolis step where the move asks for it.
   virtual void begin_tap() = 0;
 
-  /// <Z> of the spheres as they stand, as mean_height() of their packing gives it.
+  /// <Z> of the spheres at their positions, equal to mean_height() of their packing.
   virtual double mean_height() const = 0;
   /// Those of the kinds of a mixture, as kind_heights() of the packing gives them.
   virtual std::vector<double> kind_heights() const { return {}; }
@@ -82,7 +82,7 @@ class TrialLoop {
   virtual std::uint32_t n_spheres() const = 0;
   virtual const MoveState& state() const = 0;
   virtual SamplerState sampler_state() const { return {}; }
-  /// Goes on, with the centres loaded before, from where another loop stood.
+  /// Resumes, with the centres loaded before, from the state of another loop.
   virtual void restore(const MoveState& state, const SamplerState& sampler = {}) = 0;
   virtual const TrialTally& tally() const = 0;
   /// Bytes held, positions and neighbour lists included.

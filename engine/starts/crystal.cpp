@@ -60,7 +60,7 @@ const char* name(Lattice lattice) {
   return lattice == Lattice::hcp ? "hcp crystal" : "fcc crystal";
 }
 
-// Where rows are spaced out the next layer lies at the point equidistant from three (hcp) or four
+// Where rows are spaced out the next layer is at the point equidistant from three (hcp) or four
 // (fcc) spheres, and sinks until it touches them or the layer two below.
 CrystalPlan plan_layers(Lattice lattice, Rows across, Rows rows) {
   const double a = across.spacing, b = rows.spacing;

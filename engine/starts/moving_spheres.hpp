@@ -36,7 +36,7 @@ class MovingSpheres {
     return norm_squared(separation(box_, r, centres()[other]));
   }
 
-  /// True if the lists still hold for a sphere moved to r: within half a skin of where it stood at
+  /// True if the lists still hold for a sphere moved to r: within half a skin of its position at
   /// the last renewal.
   bool in_reach(std::uint32_t sphere, Vec3 r) const {
     return norm_squared(separation(box_, r, origins_[sphere])) <= 0.25 * skin_ * skin_;

@@ -12,7 +12,7 @@
 // the faults of the start, the container and the number of spheres.
 namespace jostle::inline engine {
 
-/// What a pour cost. A drop whose path is degenerate is drawn anew.
+/// Work of a pour. A drop whose path is degenerate is drawn anew.
 struct PourTally {
   std::uint64_t redrawn = 0;
 };

@@ -220,7 +220,7 @@ std::optional<Vec3> descend(const PourBed& bed, Vec3 p) {
     if (!steering.moves) {
       const auto open = open_direction(outwards);
       if (!open) return at_rest(bed, polished(p, contacts, unit));
-      // Beside a tube, on a sphere that stands on its axis, every place is as good.
+      // In a tube, on a sphere at its axis, all places are equivalent.
       if (tips++ == 0) balanced = p;
       if (tips > max_tips) return at_rest(bed, balanced);
       p = p + (tipping * unit) * *open;

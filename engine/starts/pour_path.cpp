@@ -46,7 +46,7 @@ struct OnCircle {
 // The points (s, h) of the whole circle where it enters the obstacle, and where it leaves it.
 struct Chord {
   OnCircle entry, exit;
-  bool most;  // more than half of the circle lies inside
+  bool most;  // more than half of the circle is inside
 };
 
 // Nothing if the circle never enters the obstacle.
@@ -229,7 +229,8 @@ TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
       if (obstacle.kind == Obstacle::Kind::tube || obstacle == sphere) continue;
       least = std::min(least, gap(obstacle, here));
     }
-    // What is touched at the start is being left: rounding may show it as touched a little more.
+    // A body that is touched at the start is being left: rounding may show a slightly closer
+    // contact.
     return x == path.start() && least > -touching ? std::max(least, 0.0) : least;
   };
   const auto met = first_contact(path.start(), path.end(), unit, free_distance,

@@ -41,7 +41,7 @@ struct TubePathEnd {
   bool at_bottom = false;  // the lowest point of the curve, where the sphere rests
 };
 
-/// The same while touching a sphere and the tube: a curve that is no circle.
+/// Like the path on two spheres, while touching a sphere and the tube: a curve that is no circle.
 TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
                         std::span<const Obstacle> obstacles, double unit);
 

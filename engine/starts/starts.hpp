@@ -28,9 +28,9 @@ struct SteepestDescentPour {
 };
 
 /// The route of Philippe & Bideau 2001 to a walled box: a steepest-descent pour with periodic
-/// sides, fitted between walls. How, the paper does not say. Here the spheres that overlap a wall
+/// sides, fitted between walls. The paper gives no details. Here the spheres that overlap a wall
 /// are taken out and poured again by the same steepest descent, between the walls and onto the
-/// others, in the order in which they were poured: so what lay low comes to lie low again. No other
+/// others, in the order in which they were poured: so lower spheres remain lower. No other
 /// sphere moves, to the bit, not even one that has lost a support. Spheres that touched through a
 /// seam no longer meet. Other containers and widths of 2 diameters or less are an error.
 struct FittedPour {
@@ -176,13 +176,13 @@ std::optional<std::string> n_spheres_fault(const Start& start, const Container& 
 /// Why it makes no sense to relax this start before tap 0: it is at rest. Nothing if it may move.
 std::optional<std::string> settling_fault(const Start& start);
 
-/// A start that cannot fit; what() says what, why and what to do.
+/// A start that cannot fit; what() gives the fault, the reason and what to do.
 class StartError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A start that was stopped under way: what there was of it is lost.
+/// A start that was stopped under way: its work is lost.
 class StartStopped : public std::exception {
  public:
   const char* what() const noexcept override { return "the start was stopped"; }
@@ -192,9 +192,9 @@ class StartStopped : public std::exception {
 using StopAsked = std::function<bool()>;
 
 /// Builds the starting packing, before any relaxation. Throws StartError where the start does not
-/// suit the container or the spheres do not fit, and StartStopped soon after `stop` says so, within
-/// a sweep or the pour of a sphere; never hangs. A fitted pour leaves in `before_fitting`, where
-/// given, what was poured with periodic sides.
+/// suit the container or the spheres do not fit, and StartStopped soon after `stop` returns true,
+/// within a sweep or the pour of a sphere; never hangs. A fitted pour leaves in `before_fitting`,
+/// where given, what was poured with periodic sides.
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
                    RandomStream& random, const StopAsked& stop = {},
                    Packing* before_fitting = nullptr);

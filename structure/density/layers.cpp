@@ -79,8 +79,8 @@ double full_layer(const Container& container) {
   return std::max(places_in_rectangle(along_x, along_y), places_in_rectangle(along_y, along_x));
 }
 
-// Spheres of a close-packed layer by the area that centres can reach. A layer that lies in the
-// holes of a full one has fewer places: in a tube of 5 d 12 after 19, where this is 14.5.
+// Spheres of a close-packed layer by the area that centres can reach. A layer in the holes of a
+// full one has fewer places: in a tube of 5 d 12 after 19, where this is 14.5.
 double layer_by_area(const Container& container) {
   return std::max(1.0, footprint_area(Boundary(container), sphere_radius) / row);
 }

@@ -37,8 +37,8 @@ struct LayerRule {
   }
 };
 
-/// What stands between two mid-planes. Layers of a bed lie closer than those of hcp, as spheres are
-/// a little farther apart within them: so each is sought from the one found below it.
+/// The spheres between two mid-planes. Layers of a bed are closer than those of hcp, as spheres are
+/// a little farther apart within them: each is therefore sought from the one found below it.
 struct Layer {
   double height = 0;  // height of a layer of hcp
   double found = 0;   // mean height of the centres near the place that the layer below points to

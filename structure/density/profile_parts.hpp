@@ -5,7 +5,7 @@
 
 #include "structure/density/profiles.hpp"
 
-// What the profiles share: bins that are checked, and spheres shared out among them.
+// Common parts of the profiles: checked bins, and spheres divided among them.
 namespace jostle::inline structure {
 
 /// Throws std::invalid_argument for a fully periodic box.

@@ -62,7 +62,7 @@ double sphere_volume_beyond(double a, double b) {
 double sphere_volume_beyond(Vec3 corner) {
   const double a = clamped(corner.x), b = clamped(corner.y), c = clamped(corner.z);
   if (a == radius || b == radius || c == radius) return 0;
-  // To either side of a plane lies what the other two leave; by symmetry the far side is the near
+  // Each side of a plane has the rest of the other two; by symmetry the far side is the near
   // side of the mirrored plane.
   if (a < 0) return sphere_volume_beyond(b, c) - sphere_volume_beyond({-a, b, c});
   if (b < 0) return sphere_volume_beyond(a, c) - sphere_volume_beyond({a, -b, c});

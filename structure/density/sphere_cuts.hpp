@@ -3,14 +3,14 @@
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
-// What planes and tubes cut from a sphere of diameter 1. Lengths in diameters.
+// Volumes that planes and tubes cut from a sphere of diameter 1. Lengths in diameters.
 namespace jostle::inline structure {
 
 /// Volume of a sphere centred at the origin beyond two perpendicular planes: x > a, y > b.
 /// Closed form, to rounding (about 1e-16).
 double sphere_volume_beyond(double a, double b);
 
-/// The same beyond three perpendicular planes: x > corner.x, y > corner.y, z > corner.z.
+/// The volume beyond three perpendicular planes: x > corner.x, y > corner.y, z > corner.z.
 double sphere_volume_beyond(Vec3 corner);
 
 /// Volume of a sphere centred at the origin in the box from `low` to `high`, which may reach beyond

@@ -65,7 +65,7 @@ Profile transverse_profile(const Packing& packing, Axis axis, std::span<const do
     if (low >= sphere_radius || high <= -sphere_radius) continue;
     for_each_image(along(centre, axis), box, [&](double place) {
       share_out(profile, place - sphere_radius, place + sphere_radius, [&](double edge) {
-        // By symmetry what lies below the edge lies beyond its mirror image.
+        // By symmetry the part below the edge is the part beyond its mirror image.
         return sphere_volume_beyond(place - edge, low) - sphere_volume_beyond(place - edge, high);
       });
     });

@@ -81,7 +81,7 @@ StepTable shares_inside(const std::vector<double>& coordinates, double low, doub
                         double reach) {
   StepTable shares(reach);
   const auto n = static_cast<double>(coordinates.size());
-  // A lattice may end at the bounds: what lies within a step of them counts as inside.
+  // A lattice may end at the bounds: points within a step of them count as inside.
   std::size_t outside_low = coordinates.size(), inside_high = coordinates.size();
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const double least = low - StepTable::step - shares.middle(k);

@@ -93,8 +93,8 @@ class FootprintShares {
 /// Unit vectors that are evenly spread over all directions, on a Fibonacci spiral.
 std::vector<Vec3> even_directions(int n);
 
-/// The part of spheres around a centre that lies where centres may be: at least 1/2 from floor and
-/// walls.
+/// The part of spheres around a centre in the region of possible centres: at least 1/2 from floor
+/// and walls.
 class ShellPart {
  public:
   explicit ShellPart(const Container& container);

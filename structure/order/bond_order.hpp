@@ -7,7 +7,7 @@
 // How the neighbours of a sphere are oriented around it, whatever way the packing is turned.
 // Steinhardt, Nelson & Ronchetti 1983, doi:10.1103/PhysRevB.28.784.
 //
-// Whose neighbours: the table tells. The values of a sphere depend on that choice more than on
+// Whose neighbours: by the table. The values of a sphere depend on that choice more than on
 // anything else (Mickel et al. 2013, doi:10.1063/1.4774084): a cut is crossed by spheres that
 // hardly move, and dense packings have 12 neighbours in close packing but 6 to 9 touching ones in a
 // pour. nearest_neighbours(packing, 12) is what we recommend: always as many, so spheres are

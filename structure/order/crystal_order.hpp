@@ -6,7 +6,7 @@
 
 #include "structure/order/neighbours.hpp"
 
-// Which spheres are part of a close-packed crystal, and at what height.
+// Finds the spheres of a close-packed crystal, and their heights.
 namespace jostle::inline structure {
 
 enum class CrystalOrder : std::uint8_t { disordered, fcc, hcp };
@@ -18,12 +18,12 @@ enum class CrystalOrder : std::uint8_t { disordered, fcc, hcp };
 /// first two shells of a close packing. Each neighbour has a signature: how many of the others are
 /// bonded to it, how many bonds join those, and the longest chain of these bonds. fcc: twelve 421;
 /// hcp: six 421 and six 422; everything else is disordered. It is a strict rule: one bond out of
-/// place disorders a sphere. Spheres at the floor, at a wall or at the surface lack neighbours and
-/// are always disordered, also in a perfect crystal.
+/// place disorders a sphere. Spheres at the floor, at a wall or at the surface have too few
+/// neighbours and are always disordered, also in a perfect crystal.
 std::vector<CrystalOrder> crystal_order(const Packing& packing);
 
-/// The same of a table of at least the 12 nearest neighbours of each, [n]; spheres with fewer are
-/// disordered.
+/// Like the function of a packing, for a table of at least the 12 nearest neighbours of each, [n];
+/// spheres with fewer are disordered.
 std::vector<CrystalOrder> crystal_order(const NeighbourTable& nearest);
 
 }  // namespace jostle::inline structure

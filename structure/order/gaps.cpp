@@ -102,7 +102,7 @@ double gap_exponent(std::span<const double> gaps, double low, double high,
     most = std::max(most, gaps[k]);
     ++n;
   }
-  constexpr double one_size = 1e-6;  // as in a crystal: these have no law
+  constexpr double one_size = 1e-6;  // equal, as in a crystal: these have no law
   if (n < fewest || most - least < one_size) return std::numeric_limits<double>::quiet_NaN();
   const double mean = sum / all - 0.5;
   // For ln h the density is as h^(1 - gamma) (1 + h)^2.

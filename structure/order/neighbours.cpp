@@ -42,7 +42,7 @@ NeighbourFinder::NeighbourFinder(const Packing& packing, double cut)
     height = highest->z - low;
   }
   height = std::max(height, 1e-3);
-  // Small cells leave out most of what lies beyond the cut, if each still holds about a sphere.
+  // Small cells exclude most spheres beyond the cut, if each still holds about a sphere.
   double side = std::max(0.8, cut / 3);
   do {
     x_ = CellAxis::over(0, boundary.width_x, period.x, side);

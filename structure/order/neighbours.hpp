@@ -9,7 +9,7 @@
 #include "engine/bed/cell_axis.hpp"
 #include "engine/bed/packing.hpp"
 
-// Which centres are near which, in any container. Lengths in diameters.
+// Pairs of near centres, in any container. Lengths in diameters.
 namespace jostle::inline structure {
 
 /// Finds the centres within a cut of a centre. Along periodic directions every image is a centre of
@@ -96,12 +96,12 @@ struct NeighbourTable {
   }
 };
 
-/// Whatever lies at most `cut` away.
+/// All centres at most `cut` away.
 NeighbourTable neighbours_within(const Packing& packing, double cut);
 
 /// The `count` nearest of the other spheres, fewer only where there are no more. A sphere's own
 /// images are none of them, and of another sphere the nearest image is one; farther images only
-/// within 1.5, where they touch or nearly do. Equally far ones stand in order of their index.
+/// within 1.5, where they touch or nearly do. Equally distant ones are in the order of their index.
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
 
 /// Throws std::invalid_argument where lengths cannot be in diameters: two centres are less than 0.5

@@ -26,7 +26,7 @@ double ordered_height(const Packing& packing, std::span<const CrystalOrder> orde
   struct Slice {
     double crystalline = 0, all = 0;
   };
-  // A bed of n spheres that touch is at most n high: what lies above has no contiguous slices.
+  // A bed of n spheres that touch is at most n high: spheres above have no contiguous slices.
   std::vector<Slice> slices(packing.centres.size() + 2);
   const Region away_from_walls{-std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::infinity(), 2 * sphere_radius};

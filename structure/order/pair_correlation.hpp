@@ -33,7 +33,7 @@ struct PairCorrelation {
   std::vector<std::uint64_t> counts;  // neighbours found around all central spheres, [n_bins]
   std::vector<double> neighbours;     // in whole shells (whole_shells.hpp), [n_bins]
   std::vector<double> found;          // these, as if centres crowded nowhere at the sides, [n_bins]
-  std::vector<double> expected;       // what an uncorrelated packing would have, [n_bins]
+  std::vector<double> expected;       // pairs of an uncorrelated packing, [n_bins]
   std::vector<double> shells;  // central spheres that `neighbours` are counted around, [n_bins]
   double bin_width = 0;
   double widest_shell = 0;  // radius up to which shells have room between the sides, or infinite

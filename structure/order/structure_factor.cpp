@@ -22,7 +22,7 @@ struct Mode {
   double k;
 };
 
-/// What is cut out of the packing.
+/// The region cut out of the packing.
 struct Cut {
   double widths[3];
   double low;

@@ -35,7 +35,7 @@ struct StructureFactorSettings {
 /// S(k) averaged over wave vectors of each bin of |k|.
 struct StructureFactor {
   std::vector<double> k;             // middles of bins, [n_bins]
-  std::vector<double> s;             // NaN where no wave vector lies, [n_bins]
+  std::vector<double> s;             // NaN without wave vectors, [n_bins]
   std::vector<std::uint64_t> modes;  // wave vectors averaged, each with its opposite, [n_bins]
   /// At k = 0, of straight lines by least squares through the wave vectors used up to `fit_to`: in
   /// k^2, as of fluids and solids with sound, and in k, as of jammed disordered packings. NaN with

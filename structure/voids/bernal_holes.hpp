@@ -68,15 +68,15 @@ struct BondLengths {
 /// whose tetrahedra, none of them of another hole, fill it without a gap. At every bond length, the
 /// shortest first, holes are taken in the order antiprism, dodecahedron, prism, half-octahedron,
 /// tetrahedron, among equals the one whose longest bond falls farthest below its shortest diagonal
-/// first. So regular holes come before distorted ones, and large ones before those they could be
-/// cut into. What no bond length explains is unclassified: with the default lengths 23 % of the
-/// volume of a bed poured by steepest descent, 11 % of one that Monte Carlo moves fitted between
-/// walls. How the rest is shared out depends on them: compare packings by one and the same rule.
-/// Requires 1 < first <= last and step > 0. Throws std::invalid_argument for periodic widths under
-/// 4 diameters.
+/// first. Regular holes therefore come before distorted ones, and large ones before those they
+/// could be cut into. Volume that no bond length explains is unclassified: with the default lengths
+/// 23 % of the volume of a bed poured by steepest descent, 11 % of one that Monte Carlo moves
+/// fitted between walls. How the rest is shared out depends on them: compare packings by one and
+/// the same rule. Requires 1 < first <= last and step > 0. Throws std::invalid_argument for
+/// periodic widths under 4 diameters.
 std::vector<BernalHole> bernal_holes(const Packing& packing, const BondLengths& lengths = {});
 
-/// The same with cells of the packing that are there already.
+/// Like the function of a packing, with existing cells.
 std::vector<BernalHole> bernal_holes(const Packing& packing, const VoronoiCells& cells,
                                      const BondLengths& lengths = {});
 

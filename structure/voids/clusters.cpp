@@ -25,7 +25,7 @@ std::vector<std::uint32_t> sizes(std::uint32_t largest) {
   return all;
 }
 
-/// A distance within which a whole cluster lies, unless the surface is near.
+/// A distance that contains a whole cluster, unless the surface is near.
 double reach(const VoronoiCells& cells, std::uint32_t largest) {
   double volume = 0, whole = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {

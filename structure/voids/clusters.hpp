@@ -17,9 +17,9 @@ struct ClusterVolumes {
   /// one: clusters of many cells keep farther from the boundaries. [n_sizes], sphere volumes
   /// squared.
   std::vector<double> of_members;
-  /// What `variance` would be in the mean if volumes of cells were independent of each other, or
-  /// dealt out anew among the cells, over n times the variance of one: 1 but for cells that
-  /// clusters share. [n_sizes], NaN where all clusters are one and the same.
+  /// Expected `variance` if volumes of cells were independent of each other, or dealt out anew
+  /// among the cells, over n times the variance of one: 1 but for cells that clusters share.
+  /// [n_sizes], NaN where all clusters are one and the same.
   std::vector<double> independent;
   std::vector<std::uint64_t> clusters;  // [n_sizes]
 };

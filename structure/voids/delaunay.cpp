@@ -82,7 +82,7 @@ std::vector<DelaunayTetrahedron> from_first_cells(const Packing& packing,
 // True if each tetrahedron is seen from all of its four cells, and nothing else from any cell: not
 // so where five centres are so near a common sphere that cells differ in what meets there.
 bool all_agree(const VoronoiCells& cells, const std::vector<DelaunayTetrahedron>& found) {
-  std::vector<std::size_t> first(cells.size() + 1, 0);  // of those with a sphere as first
+  std::vector<std::size_t> first(cells.size() + 1, 0);  // those with a sphere as first
   for (const DelaunayTetrahedron& one : found) ++first[one.spheres.front() + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   const auto is_found = [&](const std::array<std::uint32_t, 4>& spheres) {

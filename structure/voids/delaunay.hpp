@@ -23,7 +23,7 @@ struct DelaunayTetrahedron {
 /// flat. Throws std::invalid_argument for periodic widths under 4 diameters.
 std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing);
 
-/// The same from cells of the packing that are there already.
+/// Like the function of a packing, from existing cells.
 std::vector<DelaunayTetrahedron> delaunay_tetrahedra(const Packing& packing,
                                                      const VoronoiCells& cells);
 

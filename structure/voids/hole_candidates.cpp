@@ -20,14 +20,14 @@ double distance_squared(const Packing& packing, std::uint32_t i, std::uint32_t j
       separation(Boundary(packing.container), packing.centres[i], packing.centres[j]));
 }
 
-// The same square from whichever corner and whichever way round.
+// Equal for a square from all corners and in both directions.
 Square canonical(Square square) {
   std::ranges::rotate(square, std::ranges::min_element(square));
   if (square[3] < square[1]) std::swap(square[1], square[3]);
   return square;
 }
 
-// Which of its edges are bonds: [0][1] joins its first two spheres.
+// Its edges that are bonds: [0][1] joins its first two spheres.
 using BondsOf = std::array<std::array<bool, 4>, 4>;
 
 BondsOf bonds_of(const DelaunayTetrahedron& one, const BondGraph& bonds) {
@@ -226,7 +226,7 @@ BondGraph::BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, doub
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   bonded_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (const auto& [i, j, length] : edges) {  // so that each sphere's are ascending
+  for (const auto& [i, j, length] : edges) {  // in ascending order for each sphere
     if (length >= bond) continue;
     bonded_[next[i]++] = j;
     bonded_[next[j]++] = i;

@@ -22,7 +22,7 @@ struct Edge {
 std::vector<Edge> edges_of(const Packing& packing,
                            const std::vector<DelaunayTetrahedron>& tetrahedra);
 
-/// Which spheres are bonded: closer than a length.
+/// Pairs of bonded spheres: closer than a length.
 class BondGraph {
  public:
   BondGraph(std::size_t n_spheres, const std::vector<Edge>& edges, double bond);

@@ -69,7 +69,7 @@ double squared_distance(const Boundary& boundary, Vec3 a, Vec3 b) {
   return norm_squared(separation(boundary, a, b));
 }
 
-// What a sphere of radius R around `r` fills of a region.
+// Volume of a region that a sphere of radius R around `r` fills.
 double filled_by(const Boundary& boundary, const Region& region, Vec3 r) {
   const bool x = boundary.planes_x(), y = boundary.planes_y();
   if (x || y) {

@@ -60,7 +60,7 @@ class CellReader {
     for (const int neighbour : neighbours_) {
       const auto n_corners = static_cast<std::size_t>(face_vertices_[at++]);
       const Vec3 first = corner(face_vertices_[at]);
-      Vec3 normal;  // as long as twice the area
+      Vec3 normal;  // of length twice the area
       for (std::size_t k = at + 2; k < at + n_corners; ++k)
         normal = normal +
                  cross(corner(face_vertices_[k - 1]) - first, corner(face_vertices_[k]) - first);
@@ -128,7 +128,7 @@ class CellReader {
 
   VoronoiCells found_;
   double unit_;                                  // diameters
-  std::vector<int> neighbours_, face_vertices_;  // as voro++ gives them, of one cell
+  std::vector<int> neighbours_, face_vertices_;  // in the order of voro++, for one cell
   std::vector<double> positions_;
 };
 
@@ -192,7 +192,7 @@ std::uint32_t count_inconsistent(const VoronoiCells& cells) {
 }  // namespace
 
 VoronoiCells voronoi_cells(const Packing& packing, std::optional<double> lid) {
-  // voro++ takes what lies within a fixed length of a plane as lying on it, and goes astray where
+  // voro++ treats points within a fixed length of a plane as points on it, and goes astray where
   // corners of nearly degenerate cells are about that far apart. In other units they are not.
   VoronoiCells best;
   for (const double scale : {1.0, 1.0 / 64, 64.0}) {

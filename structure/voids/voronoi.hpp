@@ -11,7 +11,7 @@
 // diameters.
 namespace jostle::inline structure {
 
-/// What a face of a cell is shared with: a sphere, or one of these.
+/// The other side of a face of a cell: a sphere, or one of these.
 inline constexpr std::uint32_t container_side = 0xffffffff;
 
 struct VoronoiFace {

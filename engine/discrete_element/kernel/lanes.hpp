@@ -5,7 +5,7 @@
 #include "engine/discrete_element/kernel/lane_operations.hpp"
 
 // Numbers for as many contacts as vectors have room for. Only sources that are compiled once for
-// every instruction set include it; it differs between them, so it stands in the namespace of each
+// every instruction set include it; it differs between them, so it is in the namespace of each
 // (JOSTLE_KERNELS).
 namespace jostle::inline engine::JOSTLE_KERNELS {
 
@@ -83,7 +83,7 @@ JOSTLE_INLINE Wide square_root(Wide x) {
   return x;
 }
 
-// As that of one number.
+// Like the function for one number.
 JOSTLE_INLINE Wide inverse_cube_root_guess(Wide x) {
   for (Lanes& one : x.part) {
     const LaneBits high = (LaneBits)one >> 32;

@@ -2,7 +2,7 @@
 
 namespace jostle::inline engine {
 
-/// What the laws need to know of a kind of contact: two spheres, or a sphere and a side.
+/// Constants of the laws for a kind of contact: two spheres, or a sphere and a side.
 struct LawConstants {
   double stiffness = 0;      // stiffness of loading: K1; of the linear spring: k_n
   double unloading = 0;      // K2 = K1 / e^2

@@ -12,16 +12,16 @@
 
 namespace jostle::inline engine {
 
-/// What rejects most trials of a sphere, in one cache line: where its likeliest blockers stand,
-/// seen from it, and its room to floor and sides. In single precision, with margins: a trial that
-/// the cache rejects would be rejected in double precision too; one that it lets pass is not
-/// decided.
+/// The bodies that reject most trials of a sphere, in one cache line: positions of its most likely
+/// blockers, relative to it, and its room to floor and sides. In single precision, with margins: a
+/// trial that the cache rejects would be rejected in double precision too; one that it lets pass is
+/// not decided.
 struct alignas(64) BlockerCache {
   static constexpr std::uint32_t size = 4;
   static constexpr float far = 1e9f;
 
   Lanes x = {far, far, far, far}, y = {}, z = {};  // one blocker a lane, diameters
-  Lanes room;                                      // as PackedBox::room gives it
+  Lanes room;                                      // in the form of PackedBox::room
 
   /// How many of the first neighbours have a lane.
   static constexpr std::uint32_t shown() { return size; }

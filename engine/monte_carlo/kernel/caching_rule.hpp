@@ -8,8 +8,8 @@
 namespace jostle::inline engine {
 
 /// Decides whether blocker caches pay, by thresholds on the acceptance ratio, with hysteresis:
-/// caching begins below 1/6 and ends above 1/4 (docs/developers/performance.md). It looks once a
-/// sweep or more rarely, and steers no trial.
+/// caching begins below 1/6 and ends above 1/4 (docs/developers/performance.md). It decides at most
+/// once per sweep, and changes no trial.
 class CachingRule {
  public:
   /// Counts trials of a bed of n_spheres towards the next decision.

@@ -6,7 +6,7 @@
 
 namespace jostle::inline engine {
 
-/// What is compiled once for every instruction set.
+/// Functions that are compiled once for every instruction set.
 struct Kernels {
   ProposalKernels proposals;
   RejectionFreeKernels rejection_free;

@@ -22,7 +22,7 @@ struct TrialRange {
   std::uint32_t first, last;
 };
 
-/// What the loop asks of a move. `step` is MoveState::step.
+/// The functions of a move that the loop calls. `step` is MoveState::step.
 template <class Policy>
 concept MovePolicy = requires(Policy& move, const Policy& same, const ProposalKernels& kernels,
                               const BatchOrigin& origin, ProposalBatch& batch, MoveState& state,

@@ -14,11 +14,11 @@
 namespace jostle::inline engine {
 
 /// Verlet lists: for every sphere the others whose origins lie within the sum of both radii + skin
-/// of its own, the likeliest blockers first. An origin is where a sphere stood when its list was
-/// last made; a list holds every sphere that can be touched as long as no sphere is farther than
-/// skin / 2 from its origin. A sphere that goes farther gets a new origin and a new list, alone.
-/// Sphere i stands in list j if and only if j stands in list i. What a list holds beyond what can
-/// be touched, and its order, decides no trial: only how fast it is made.
+/// of its own, the likeliest blockers first. An origin is the position of a sphere when its list
+/// was last made; a list holds every sphere that can be touched as long as no sphere is farther
+/// than skin / 2 from its origin. A sphere that goes farther gets a new origin and a new list,
+/// alone. Sphere i is in list j if and only if j is in list i. Entries of a list that cannot be
+/// touched, and its order, decide no trial: only how fast it is made.
 template <class Spheres>
 class NeighbourListsOf {
  public:

@@ -12,7 +12,7 @@
 
 namespace jostle::inline engine {
 
-/// What the lists are made for. Diameters.
+/// Settings of the lists. Diameters.
 struct Reach {
   double longest = 0;  // no displacement of a trial is longer
   double drift = 0;    // mean dz of the trials that geometry decides
@@ -97,7 +97,7 @@ class Neighbourhood {
     caches_follow_ = true;
   }
 
-  // Sphere i gets the list of where it stands, and its former neighbours forget it.
+  // Makes the list of sphere i at its position, and removes it from its former neighbours.
   template <BlockerCaching caching>
   void renew(Index i) {
     const auto* const row = lists_.row(i);
@@ -121,9 +121,9 @@ class Neighbourhood {
   std::vector<Index> former_;  // neighbours of the sphere whose list is renewed
 };
 
-/// What trials ask of a neighbourhood, and how they move its spheres. It holds in members what the
-/// loop reads again and again: the compiler cannot know that no store to a centre changes them.
-/// What is rare, and the second look at a trial that its cache lets pass, is never inlined.
+/// Functions by which trials test a neighbourhood and move its spheres. It holds in members what
+/// the loop reads again and again: the compiler cannot know that no store to a centre changes them.
+/// Rare paths and the exact test of a trial that passes its cache are not inlined.
 template <class Box, BlockerCaching caching, class Spheres>
 class NeighbourhoodView {
  public:
@@ -157,7 +157,7 @@ class NeighbourhoodView {
   }
 
   /// Moves sphere i to r, a target that rejects() did not reject. Far from where its list was made
-  /// the list may lack what lies there: false, and nothing moved, if a new one shows what does.
+  /// the list may be incomplete: returns false, and moves nothing, if a new list has an obstacle.
   [[gnu::always_inline]] bool move(Index i, const PackedCentre& r) {
     if (distance_squared(box_, r, origins_[i]) > half_skin_squared_ && !free_by_new_list(i, r)) {
       return false;

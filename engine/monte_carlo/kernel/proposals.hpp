@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-// Trial displacements, made in batches so that they vectorise. What a trial proposes is a function
-// of its stream and its number alone; every instruction set makes the same bits.
+// Trial displacements, made in batches so that they vectorise. The proposal of a trial is a
+// function of its stream and its number alone; every instruction set makes the same bits.
 namespace jostle::inline engine {
 
 /// Proposals of consecutive trials. Displacements: in diameters for the polar move, in units of the
@@ -17,7 +17,7 @@ struct ProposalBatch {
   alignas(64) double dz[size];
 };
 
-/// Where a batch stands in its stream: trial numbers first .. first + ProposalBatch::size - 1.
+/// Position of a batch in its stream: trial numbers first .. first + ProposalBatch::size - 1.
 struct BatchOrigin {
   std::uint64_t key;    // StreamKey of Purpose::trials
   std::uint64_t first;  // a multiple of ProposalBatch::size

@@ -86,8 +86,8 @@ class TypedTrialLoop final : public TrialLoop {
   const Policy& move() const { return move_; }
 
  private:
-  static constexpr std::uint32_t group = 16;  // trials held against caches together
-  // So many spheres are beyond the caches of a processor: what a trial needs is fetched early.
+  static constexpr std::uint32_t group = 16;  // trials tested per cache pass
+  // Above this number of spheres the data exceed the processor's caches: prefetch.
   static constexpr std::uint32_t many_spheres = 10'000;
 
   Packing stored() const {
@@ -125,7 +125,7 @@ class TypedTrialLoop final : public TrialLoop {
   // The loops are never inlined, nor are the rare paths out of them: their code then does not
   // depend on what else a program holds (bench/instruction_costs.py).
 
-  // One trial after another; `begin` is the trial of the batch at which state_ stands.
+  // One trial after another; `begin` is the trial of the batch that state_ reached.
   [[gnu::noinline]] void run_one_by_one(std::uint32_t begin, TrialRange range,
                                         TrialCounts& counts) {
     auto here = neighbourhood_.template view<BlockerCaching::off>(move_.reach(state_.step));
@@ -149,10 +149,10 @@ class TypedTrialLoop final : public TrialLoop {
     tally_.distance_tests += here.distance_tests();
   }
 
-  // The same where fewer trials are accepted: a group of trials is first held against the caches,
-  // without branches, and only those that pass are looked at closely; where memory is far and
-  // hardly any is accepted, two groups later, when what that takes has been fetched. An accepted
-  // trial invalidates the later candidates: it moves a sphere or renews a list.
+  // Like run_each(), where fewer trials are accepted: a group of trials is first tested against the
+  // caches, without branches, and only those that pass are looked at closely; where memory is far
+  // and hardly any is accepted, two groups later, when what that takes has been fetched. An
+  // accepted trial invalidates the later candidates: it moves a sphere or renews a list.
   [[gnu::noinline]] void run_groups(TrialRange range, TrialCounts& counts) {
     std::array<std::uint32_t, 4 * group> open;
     std::uint32_t n_open = 0, n_fetched = 0;

@@ -185,7 +185,7 @@ class BoundTables {
       add_plane(planes, {0, -1, 0}, own.xy[1] + beyond);
       add_plane(planes, {0, 1, 0}, extent.y - own.xy[1] + beyond);
     }
-    if constexpr (Box::shape().tube) {  // it lies within every plane that touches it
+    if constexpr (Box::shape().tube) {  // it is within every plane that touches it
       const double axis = 0.5 * extent.x;
       const double x = own.xy[0] - axis, y = own.xy[1] - axis;
       const double distance = std::sqrt(x * x + y * y);

@@ -45,7 +45,7 @@ class CandidateSampler {
     weigh();
   }
 
-  /// The probability that a trial is a candidate, as the centres stand.
+  /// The probability that a trial is a candidate, for the present centres.
   double share_of_trials() const {
     const double share = static_cast<double>(tables_.weights().total()) *
                          (1.0 / whole_weight / (n_ring_parts * n_sectors)) /

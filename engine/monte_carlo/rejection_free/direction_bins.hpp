@@ -14,7 +14,7 @@ DirectionBins<polar_sectors> polar_bins(const std::vector<double>& theta_table, 
 
 /// Bins of the Metropolis move at zero temperature. Rings are stretches of the cosine, so that
 /// probability is solid angle on the lower hemisphere. A bin's cap covers the cube |x|, |y|, |z| <=
-/// step; what lies beyond the cube is no trial.
+/// step; directions beyond the cube are no trials.
 DirectionBins<cubic_sectors> cubic_bins(double step);
 
 /// The angle from the downward vertical at coordinate u in (0, 1) of a ring, uniform in

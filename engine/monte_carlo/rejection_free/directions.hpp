@@ -39,8 +39,7 @@ class PolarDirections {
   Bins bins(double step) const { return polar_bins(theta_table_, step); }
   /// The probability of a trial within bounds that take up `share` of the bins' weight.
   static double probability(double share, const Bins&, double /*step*/) { return share; }
-  /// What a bound gives its bin of the weight that it may have, in (0, 1], and the length that this
-  /// is, over the longest.
+  /// Weight of a bin by its bound, in (0, 1], and the corresponding length over the longest.
   static double size(std::uint16_t bound) {
     return 1.0 / std::bit_cast<float>(std::uint32_t{bound} << 16);
   }
@@ -65,7 +64,7 @@ class CubicDirections {
   static constexpr int n_sectors = cubic_sectors;
   using Bins = DirectionBins<n_sectors>;
 
-  /// As PolarDirections says. A trial at zero temperature is cheap to look at; many of its steps
+  /// See PolarDirections. A trial at zero temperature is cheap to test; many of its steps
   /// are nearly horizontal.
   static constexpr double least_acceptance = 0.004;
   static constexpr double highest_obstacle = 0.75, obstacle_reach = 1;

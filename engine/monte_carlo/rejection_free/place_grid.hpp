@@ -29,8 +29,8 @@ class PlaceGrid {
   double coarsest() const { return *std::ranges::max_element(units_); }
 
  private:
-  // Along a direction that is not periodic: spheres within 32 diameters of each other are told
-  // apart.
+  // Along a direction that is not periodic: spheres within 32 diameters of each other are
+  // distinguished.
   static constexpr double open_unit = 0x1p-26;
 
   static std::int32_t rounded(double value) {

@@ -11,7 +11,7 @@ namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
-// As many sectors as a register of the instruction set holds.
+// Number of sectors in a register of the instruction set.
 #if defined(__AVX512F__)
 constexpr int lanes = 16;
 #elif defined(__AVX2__)
@@ -37,17 +37,17 @@ inline FourIntegers at(const GridPlace& place) {
   return *reinterpret_cast<const FourIntegers*>(place.at);
 }
 
-// So many spheres are done at once.
+// Number of spheres per group.
 constexpr std::size_t group = 8;
 
-// What stands in the ways of a group of spheres: r, seen from the centre of each.
+// Obstacles of a group of spheres: r, relative to each centre.
 struct Obstacles {
   static constexpr std::uint32_t size = group * (most_in_the_way + Planes::most) + 4;
   std::uint32_t n = 0;
   alignas(16) float r[size][4];
 };
 
-// Another place as seen from a sphere's own. All say in the same arithmetic what is in the way.
+// Another position relative to a sphere's own. All use one arithmetic for obstacles.
 // Differences wrap around, as places do through periodic sides.
 inline Four seen_from(const Sight& sight, FourIntegers own, FourIntegers other) {
   using Wrapping = std::uint32_t __attribute__((vector_size(16)));
@@ -60,7 +60,7 @@ inline Four tangent_squared(Four x, Four y, Four z, float margin) {
   return ((x * x + y * y + z * z) - 1.0f) + margin;
 }
 
-// Which of four are in the way, one bit each.
+// Tests four for obstacles, one bit each.
 inline unsigned in_the_way(const Sight& sight, const Four (&r)[4]) {
   Four x = r[0], y = r[1], z = r[2], rest = r[3];
   transpose(x, y, z, rest);
@@ -230,8 +230,8 @@ inline Floats reciprocal(Floats x) {
   return y * (2.0f - x * y);
 }
 
-// Bounds are the greatest of all lines, at least 1. What counts is positive, so that it compares as
-// the integers it is stored as: these have more units to run on.
+// Bounds are the greatest of all lines, at least 1. All values are positive, so that they compare
+// as the integers that store them: these have more units to run on.
 template <bool with_onset, int n_sectors>
 [[gnu::always_inline]] inline void greatest(const DirectionBins<n_sectors>& bins,
                                             const Coefficients& coefficients,

@@ -27,7 +27,7 @@ struct DirectionBins {
   alignas(32) float across[n_rings];                     // sin(theta) cos(alpha) of a ring's middle
   alignas(32) float down[n_rings];                       // cos(theta) cos(alpha)
   alignas(32) float spread[n_rings];                     // sin(alpha), rounded up
-  alignas(64) std::int32_t cap[n_rings][n_sectors];      // of what no step exceeds
+  alignas(64) std::int32_t cap[n_rings][n_sectors];      // upper limit of steps
   int parts[n_rings];
   double longest;  // step, diameters
 };
@@ -45,7 +45,7 @@ struct alignas(16) GridPlace {
 struct alignas(16) Sight {
   float unit[4];   // diameters a step of the grid; negative in z, which counts downward
   float margin;    // margin of |r|^2 near 1, for the grid and for rounding in single precision
-  float doubt;     // the same after a step; infinite where the grid is too small for steps
+  float doubt;     // the limit after a step; infinite where the grid is too small for steps
   float highest;   // whatever is higher than that is left out
   float farthest;  // and what has a greater |r|^2 - 1
 };
@@ -65,13 +65,13 @@ struct Planes {
   float gap[most];                  // > 0
 };
 
-/// So many spheres cannot all be in the way of one.
+/// More spheres than can obstruct one.
 inline constexpr std::uint32_t most_in_the_way = 64;
 
 /// The bounds of all bins of a sphere: lengths beyond which a step is certainly rejected, over the
-/// longest. Of the polar move the upper half of an inverse ratio in single precision, rounded down;
-/// of the Metropolis move the ratio cubed, in units of 1 / whole_weight, rounded up. A bin's weight
-/// is its ring's parts times the ratio, or its cube, times whole_weight.
+/// longest. For the polar move the upper half of an inverse ratio in single precision, rounded
+/// down; for the Metropolis move the ratio cubed, in units of 1 / whole_weight, rounded up. A bin's
+/// weight is its ring's parts times the ratio, or its cube, times whole_weight.
 template <int n_sectors>
 struct alignas(64) BoundRow {
   std::uint32_t bounds[n_rings / 2][n_sectors];  // two rings a word, the lower half first
@@ -99,14 +99,13 @@ struct CandidateBatch {
   alignas(64) std::uint32_t theta[size], length[3][size];
 };
 
-/// Makes the rows of n spheres, rows[sphere], and their weights. What they wait for is waited for
-/// together.
+/// Makes the rows of n spheres, rows[sphere], and their weights. Their memory accesses overlap.
 template <int n_sectors>
 using BoundsKernel = void (*)(const DirectionBins<n_sectors>& bins, const Sight& sight,
                               const Surroundings& around, Bounded* spheres, std::size_t n,
                               BoundRow<n_sectors>* rows);
 
-/// What single precision can tell of a step.
+/// Resolution of a step in single precision.
 enum class StepOutcome { free, blocked, unsure };
 
 struct RejectionFreeKernels {

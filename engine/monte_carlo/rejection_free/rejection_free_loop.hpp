@@ -15,7 +15,7 @@ namespace jostle::inline engine {
 /// the trajectory, counts of trials included, is that of the exhaustive loop; the random numbers
 /// are others. This is the n-fold way (Bortz, Kalos & Lebowitz 1975,
 /// doi:10.1016/0021-9991(75)90060-1) with bounds in place of exact probabilities; a candidate that
-/// the exact test rejects thins the process to the law wanted (Lewis & Shedler 1979,
+/// the exact test rejects thins the process to the required law (Lewis & Shedler 1979,
 /// doi:10.1002/nav.3800260304). Used while few trials are accepted; otherwise, as after a tap, the
 /// loop is exhaustive.
 template <class Box, class Directions>
