@@ -32,7 +32,7 @@ void say(const std::string& what) {
   print_to_standard_error(fmt::format("jostle: {}\n", printable(what, longest_line)));
 }
 
-/// Every error ends here, and says on stderr what is wrong.
+/// Every error ends here, with a message on stderr.
 int run_program(int argc, char** argv) {
   try {
     begin_log();

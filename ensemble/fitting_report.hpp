@@ -4,7 +4,7 @@
 
 namespace jostle::inline ensemble {
 
-/// What it took to fit a periodic pour between walls (FittedPour), and what that made of the bed.
+/// Record of the fit of a periodic pour between walls (FittedPour), and its effect on the bed.
 struct FittingReport {
   double spheres_moved = 0;
   double mean_rise = 0;  // mean rise of the moved spheres, diameters; 0 where none moved

@@ -9,7 +9,7 @@
 // The fold over the realizations of a sweep point, for results files and for sinks of one's own.
 namespace jostle::inline ensemble {
 
-/// What an ensemble has in one column, [n_taps] each. See Moments for what is NaN.
+/// Statistics of an ensemble in one column, [n_taps] each. Moments defines the NaN values.
 struct FoldedColumn {
   std::vector<double> mean, sigma, error;  // sigma with 1/M; error: of the mean
   std::vector<std::uint32_t> count;        // realizations that have a value

@@ -7,9 +7,9 @@
 #include <cassert>
 
 // All use of TBB. The thread sanitizer cannot see how TBB hands tasks over, for its library is
-// built without; so in the tsan build this file is too (ensemble/CMakeLists.txt), and what it
-// promises about visibility is told to the sanitizer in words. Whatever `work` does is still
-// watched.
+// built without; so this file is compiled with instrumentation in the tsan build
+// (ensemble/CMakeLists.txt), and annotations describe its guarantees of visibility to the
+// sanitizer. Whatever `work` does is still watched.
 #ifdef JOSTLE_TSAN
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -35,7 +35,7 @@ void acquire(void*) {}
 void on_threads(int threads, const std::function<void()>& work) {
   assert(threads >= 1);
   namespace tbb = oneapi::tbb;
-  // As many as asked for, even where that is more than the machine has.
+  // The requested number, even if the machine has fewer processors.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);

@@ -36,7 +36,7 @@ struct Stage {
   bool operator==(const Stage&) const = default;
 };
 
-/// What is kept at chosen taps (tap 0 is the start).
+/// Data kept at chosen taps (tap 0 is the start).
 struct Snapshots {
   std::vector<std::uint64_t> taps;  // ascending, each at most the number of taps
   bool positions = true;

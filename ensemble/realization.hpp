@@ -15,7 +15,7 @@
 
 namespace jostle::inline ensemble {
 
-/// What one call of Realization::advance did.
+/// Result of one call of Realization::advance.
 struct Slice {
   std::optional<TapRow> row;               // where a tap ended
   std::optional<SnapshotRecord> snapshot;  // where one was due at that tap
@@ -31,7 +31,7 @@ std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index);
 /// rows and snapshots do not depend on how it was sliced.
 class Realization {
  public:
-  /// Begins anew, or goes on from a state that `state()` gave for the same plan and index. Of the
+  /// Begins, or resumes from a state that `state()` gave for the same plan and index. Of the
   /// plan, only taps at the end may have been added since. `plan` must outlive the realization.
   /// Throws StateError for a state of another engine or version.
   Realization(const Plan& plan, std::uint32_t index,
@@ -46,10 +46,10 @@ class Realization {
   /// True if every tap of the plan is recorded.
   bool finished() const;
 
-  /// Goes on until a row is complete or for about so many units of the engine. Requires
+  /// Advances until a row is complete or by about so many units of the engine. Requires
   /// !finished(). Throws StartError where the start is impossible, std::invalid_argument where the
-  /// engine's settings do not suit the container; the realization is then lost. A start is given up
-  /// once `stop` says so, to be made anew by the next call: the slice is empty.
+  /// engine's settings do not suit the container; the realization is then lost. A start is
+  /// abandoned once `stop` returns true, and made again by the next call: the slice is empty.
   Slice advance(std::uint64_t units, const StopAsked& stop = {});
 
   RealizationState state() const;
@@ -70,7 +70,7 @@ class Realization {
   RealizationState state_;  // but for the centres and the engine, which the members below hold
   std::unique_ptr<Dynamics> dynamics_;
   std::shared_ptr<const Sizes> sizes_;  // null: equal spheres
-  Packing packing_;                     // as last recorded
+  Packing packing_;                     // last recorded state
   RandomStream tap_random_;
   std::optional<Observer> observer_;
 };

@@ -20,9 +20,8 @@ double seconds_since(ProcessorClock::time_point began) {
   return std::chrono::duration<double>(ProcessorClock::now() - began).count();
 }
 
-// True if `act` succeeded; if not, the outcome says why. Memory that ran out, or a state of another
-// program, is no fault of the realization: that ends the run, and the realization goes on from its
-// last checkpoint.
+// True if `act` succeeded; if not, the outcome has the reason. Out of memory, or a state of another
+// program, aborts the run, not the realization: it resumes from its last checkpoint.
 template <class Act>
 bool attempt(Outcome& outcome, Act&& act) {
   try {
@@ -78,7 +77,7 @@ class EnsembleRun {
   std::exception_ptr sink_failure_;  // the first
 };
 
-// Whatever is thrown here comes from the sink, a foreign state or for want of memory: `attempt`
+// Exceptions here come from the sink, a foreign state or lack of memory: `attempt`
 // keeps what else a realization throws.
 void EnsembleRun::work() noexcept {
   try {

@@ -12,7 +12,7 @@
 
 namespace jostle::inline ensemble {
 
-/// Live counts for a progress display, read while the run goes on.
+/// Live counts for a progress display, read during the run.
 struct Progress {
   std::atomic<std::uint64_t> realizations_done{0}, realizations_running{0}, realizations_failed{0};
   std::atomic<std::uint64_t> taps_done{0};
@@ -25,8 +25,8 @@ struct RunOptions {
   int threads = 1;
   /// Least time between checkpoints of a realization. 0: after every slice.
   std::chrono::duration<double> checkpoint_every{60.0};
-  /// How many units of its engine a realization goes on for before it looks at `stop` and at the
-  /// clock. By default what the engine makes in about 0.1 s.
+  /// Units of its engine between two checks of `stop` and of the clock. Default: the work of about
+  /// 0.1 s.
   std::optional<std::uint64_t> units_per_slice = std::nullopt;
   /// Set from a signal handler or a time limit: every realization stops at the end of its slice,
   /// checkpoints and ends.
@@ -39,13 +39,13 @@ struct RunSummary {
 };
 
 /// Runs the given realizations of the plans on `options.threads` threads, each thread taking the
-/// next of the list, and hands their records to the sink. What reaches the sink for a realization
-/// depends only on its plan and index, never on threads or timing; but for when it checkpoints.
+/// next of the list, and hands their records to the sink. The data of a realization that reach the
+/// sink depend only on its plan and index, never on threads or timing; but for when it checkpoints.
 /// At a stop each realization ends with status `running` and its state. One that throws ends as
 /// failed with the reason and an empty state, and the rest go on. An exception of the sink, or a
-/// std::bad_alloc of a realization, which goes on from its last checkpoint when the run is resumed,
-/// stops the run like a stop and is rethrown. So is StateError of one whose state is of another
-/// engine or version: what is stored of it stays.
+/// std::bad_alloc of a realization, which resumes from its last checkpoint, stops the run like a
+/// stop and is rethrown. StateError of a realization with a state of another engine or version is
+/// rethrown, too: its stored data stay.
 RunSummary run_ensemble(std::span<const Plan> plans, const std::vector<RealizationId>& realizations,
                         const RunOptions& options, Sink& sink, Progress& progress);
 

@@ -13,7 +13,7 @@
 #include "ensemble/motion/motion.hpp"
 #include "structure/forces.hpp"
 
-// Where an ensemble's numbers go. Nothing here says how they are stored.
+// Receives an ensemble's numbers. The storage is up to the implementation.
 namespace jostle::inline ensemble {
 
 /// One realization of one sweep point: both are indices into the study.
@@ -23,7 +23,7 @@ struct RealizationId {
   auto operator<=>(const RealizationId&) const = default;
 };
 
-/// What else is stored beside the observables of a sweep point: none of them may be called so.
+/// Other columns of a sweep point: no observable may have one of these names.
 inline constexpr const char* names_beside_series[] = {"tap",    "realization", "status",
                                                       "reason", "rows",        "trial_key"};
 
@@ -62,7 +62,7 @@ struct RealizationState {
 
 enum class RealizationStatus : std::uint32_t { missing = 0, running = 1, done = 2, failed = 3 };
 
-/// What a realization took: cost, not physics, so it depends on where a run was resumed.
+/// Cost of a realization, not physics, so it depends on where a run was resumed.
 struct Work {
   double seconds = 0;        // seconds of processor time
   double start_seconds = 0;  // seconds until tap 0 was recorded

@@ -10,9 +10,9 @@
 // How many realizations a target precision needs.
 namespace jostle::inline ensemble {
 
-/// What is to become small: the standard error of the mean over realizations, which shrinks as
-/// 1/M^(1/2), or their population deviation sigma, which does not shrink: Rosato et al. 2010 add
-/// realizations until sigma(N_T; gamma) <= 0.001.
+/// The quantity that must become small: the standard error of the mean over realizations, which
+/// shrinks as 1/M^(1/2), or their population deviation sigma, which does not shrink: Rosato et al.
+/// 2010 add realizations until sigma(N_T; gamma) <= 0.001.
 enum class Spread { standard_error, sigma };
 inline constexpr NameTable<Spread, 2> spread_names{
     {{"standard_error", Spread::standard_error}, {"sigma", Spread::sigma}}};
@@ -42,7 +42,7 @@ struct SpreadTarget {
 
 /// Realizations are added until every target is met at every sweep point, or there are `at_most`.
 struct TargetPrecision {
-  std::vector<SpreadTarget> targets;  // empty: as many as the scene says, and no more
+  std::vector<SpreadTarget> targets;  // empty: exactly the number of the scene
   std::uint32_t at_most = 0;
   bool operator==(const TargetPrecision&) const = default;
 

@@ -74,8 +74,8 @@ class BinnedLaw final : public Model {
   const std::vector<Bin>& bins_;
 };
 
-// Signed roots of what each bin adds to the deviance, 2 (mu - n + n ln(n / mu)), whose sum least
-// squares then minimise: twice what the logarithm of the likelihood lacks of its largest value.
+// Signed roots of the contribution of each bin to the deviance, 2 (mu - n + n ln(n / mu)), whose
+// sum least squares then minimise: twice the difference of the log-likelihood from its maximum.
 class DevianceResiduals final : public Residuals {
  public:
   DevianceResiduals(const Model& law, const Curve& counts, const ParameterValues& p)

@@ -11,7 +11,7 @@
 // doi:10.1016/0167-5087(84)90016-4.
 namespace jostle::inline fitting {
 
-/// Where a bin lies along the law's variable. low == high: a whole number, whose expected count is
+/// Place of a bin along the law's variable. low == high: a whole number, whose expected count is
 /// the law's value there; else the integral over the bin.
 struct Bin {
   double low, high;

@@ -33,9 +33,9 @@ Curve mean_curve(std::vector<double> t, std::vector<double> values, std::size_t 
 /// agree by accident. Where realizations are missing it grows as one over the number present.
 Curve with_pooled_errors(Curve curve, bool relative = false);
 
-/// What makes a curve unfit for any fit: lengths that differ, values that are not finite, errors
-/// that are not positive, a lone realization. One sentence a fault, the first place named; empty
-/// for a good curve.
+/// Faults that make a curve unfit for any fit: lengths that differ, values that are not finite,
+/// errors that are not positive, a lone realization. One sentence per fault, with its first place;
+/// empty for a good curve.
 std::vector<std::string> faults(const Curve& curve);
 
 /// The points with first <= t <= last.

@@ -57,7 +57,7 @@ class Fitter {
   const Model& model_;
   const FitOptions& options_;
   Curve curve_;     // with errors, where its realizations give them
-  Curve searched_;  // what is descended on and profiled: the same, or its means over 1 % of t
+  Curve searched_;  // the curve that is searched and profiled: all points, or means over 1 % of t
   ParameterValues fixed_;  // [n_parameters], NaN where free
   std::vector<bool> free_;
   Minimum best_;

@@ -32,7 +32,7 @@ struct FitOptions {
   bool limits = true;
   /// Evaluations of the law over the curve, in all: searches and intervals. A derivative by one
   /// parameter is one. Fewer are allowed where their work would exceed max_work. A fit that reaches
-  /// the end of them is not settled, or has intervals left open, and says so.
+  /// the end of them is marked as not settled, or has open intervals.
   long long max_evaluations = 200000;
   /// A law of more than 5 parameters has this limit of evaluations x points x parameters^2. An
   /// evaluation of such a law at a point takes as long as it has parameters, and so does a step.
@@ -51,7 +51,7 @@ struct Interval {
   bool closed() const;
 };
 
-/// What the data say of a parameter, from its 95 % interval.
+/// Constraint of the data on a parameter, from its 95 % interval.
 enum class Identifiability {
   fixed,             // by the user
   not_examined,      // no intervals asked for, or no degree of freedom left
@@ -72,7 +72,7 @@ struct Estimate {
   /// For a linear problem whose points are independent; infinite without degrees of freedom, 0 for
   /// a fixed parameter.
   double standard_error = 0;
-  /// The same counting dependence: from the scatter of realizations, else from the memory of the
+  /// Standard error with dependence: from the scatter of realizations, else from the memory of the
   /// residuals. For Student's t of the fit's error_dof, which makes half the 68 % interval of it;
   /// without intervals that of the linear problem.
   double error = 0;
@@ -81,7 +81,7 @@ struct Estimate {
   std::string statement;  // this in words
 
   /// True if the data give it a value: fixed, or the 68 % interval is closed, or no interval was
-  /// looked for. What else least squares end at, as far out as the search went, is no measurement.
+  /// looked for. Other end points of least squares, at the limit of the search, are no measurement.
   bool has_value() const;
   /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
   double half_width() const;
@@ -96,7 +96,7 @@ double half_width(double error, double dof, double level = interval_levels[0]);
 /// The law that another becomes where some of its parameters are 0 or infinite, as it was fitted.
 struct LimitingFit {
   std::string name, formula;
-  std::string statement;  // which limit, what the data determine, and what not
+  std::string statement;  // the limit, and the parameters that the data determine
   std::shared_ptr<const Model> law;
   std::vector<Estimate> estimates;  // [n_parameters of that law]
 };
@@ -107,7 +107,7 @@ struct RestatedFit {
   std::vector<Estimate> estimates;  // [n_parameters of that law]
 };
 
-/// A fit and what can be said of it. No number is NaN; what does not exist is infinite.
+/// A fit and its statistics. No number is NaN; missing numbers are infinite.
 struct Fit {
   std::string model, formula, source;
   std::vector<Estimate> estimates;  // [n_parameters]
@@ -115,8 +115,8 @@ struct Fit {
   std::vector<Estimate> combinations;
   /// In the parameters of the equivalent law, where there is one and it has the curve.
   std::optional<RestatedFit> restated;
-  /// Where the least squares lie at a limit of the law: what was fitted. Statistics, fitted values
-  /// and errors are of this law, and parameters of the law that it does not have are without value.
+  /// The fitted law, where the least squares are at a limit of the law. Statistics, fitted values
+  /// and errors are of this law, and other parameters of the law have no value.
   std::optional<LimitingFit> limit;
   /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
   /// residual variance where no errors were given, absolute where they were.

@@ -85,7 +85,7 @@ class NearLimit {
     }
   }
 
-  /// Parameters as near as the curve can tell; empty where none are known.
+  /// Parameters within the accuracy of the curve; empty where none are known.
   ParameterValues place() {
     if (!limit_.near) return {};
     const auto [first, last] = times(curve_);

@@ -19,8 +19,8 @@ struct LimitCandidate {
   std::size_t dof = 0;
 };
 
-/// The limits of a law that a curve can be fitted by, in the order of the law. Left out are those
-/// that lack a parameter that is fixed.
+/// The limits of a law that a curve can be fitted by, in the order of the law. Limits without a
+/// fixed parameter of the law are left out.
 std::vector<LimitCandidate> limit_candidates(const Model& model, const Curve& curve,
                                              const FitOptions& options);
 
@@ -30,8 +30,9 @@ std::vector<LimitCandidate> limit_candidates(const Model& model, const Curve& cu
 const LimitCandidate* reached(const std::vector<LimitCandidate>& candidates, const Curve& curve,
                               std::optional<double> cost, std::size_t dof);
 
-/// The fit of the limit's law, told in the parameters of the law: those that both have, with their
-/// errors and intervals; the others without a value, with the limits that the curve sets them.
+/// The fit of the limit's law, expressed in the parameters of the law: those that both have, with
+/// their errors and intervals; the others without a value, with the limits that the curve sets
+/// them.
 std::variant<Fit, Refusal> fit_at_limit(const Model& model, const Curve& curve,
                                         const FitOptions& options, const LimitCandidate& candidate);
 

@@ -86,7 +86,7 @@ std::string more_of_the_parameters(const Fit& fit) {
   return table(rows) + meanings + '\n';
 }
 
-// What the errors rest on.
+// The source of the errors.
 std::string basis_of_errors(const Fit& fit) {
   std::ostringstream text;
   text << fit.n_points << " points";

@@ -35,7 +35,7 @@ std::string interval_text(const Estimate& estimate, std::size_t level);
 
 /// A fit for people: the law, a table of parameters, what errors and intervals rest on, and
 /// remarks. Several lines, each ended by a newline; tables are at most 80 wide, sentences are not
-/// folded. A value stands with its error only (value_with_error): half of the 68 % interval, which
+/// folded. A value is printed with its error (value_with_error): half of the 68 % interval, which
 /// holds the value; "-" where that interval is open.
 std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
 

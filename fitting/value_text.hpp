@@ -13,7 +13,7 @@ namespace jostle::inline fitting {
 /// "-".
 std::string value_with_error(double value, double error, double scale = 1);
 
-/// Where a value lies: "0.57 to 0.61" with so many digits, "> 0.57", "< 0.61", or "no limit" where
+/// Range of a value: "0.57 to 0.61" with so many digits, "> 0.57", "< 0.61", or "no limit" where
 /// neither end is finite.
 std::string limits_text(double low, double high, int digits);
 

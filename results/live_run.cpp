@@ -18,7 +18,7 @@
 namespace jostle::inline results {
 namespace {
 
-/// Replaces what a part knows better; a part may vanish while a live run folds.
+/// Replaces data that a part has more recently; a part may vanish while a live run folds.
 void take_parts(const ResultsFile& file, std::vector<RealizationSummary>& realizations) {
   for (const RealizationId id : realizations_with_parts(file.path())) {
     const auto place = std::ranges::lower_bound(realizations, id, {}, &RealizationSummary::id);
@@ -33,7 +33,7 @@ void take_parts(const ResultsFile& file, std::vector<RealizationSummary>& realiz
   }
 }
 
-/// Tells one published file from the next under the same name.
+/// Distinguishes one published file from the next with its name.
 std::pair<std::uint64_t, std::int64_t> version_of(const std::string& path) {
   struct stat status {};
   ::stat(path.c_str(), &status);

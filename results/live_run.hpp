@@ -25,7 +25,7 @@ std::optional<LockOwner> lock_owner(const std::string& results_path);
 /// For many files: Slurm is asked once for all.
 std::optional<LockOwner> lock_owner(const std::string& results_path, SlurmQueue& queue);
 
-/// A file and, where a run goes on or was killed, its parts.
+/// A file and, if a run is in progress or was killed, its parts.
 struct RunStatus {
   RunState state = RunState::running;            // state of the file
   std::optional<LockOwner> owner;                // owner of a lock
@@ -36,8 +36,8 @@ struct RunStatus {
 /// Looks without disturbing: a live run may go on while this reads. Throws ResultsError.
 RunStatus run_status(const std::string& results_path);
 
-/// A file and its status, of the realizations of its share. Of the file's checksum it is only
-/// looked whether there is one: a glance at many files does not read all of them.
+/// A file and the status of the realizations of its share. Only the presence of the checksum is
+/// tested: a list of many files does not read all of them.
 struct LiveLook {
   ResultsFile file;
   RunStatus status;
@@ -52,7 +52,7 @@ LiveLook look_at_run(const std::string& results_path, SlurmQueue& queue,
 /// that TMPDIR names, which is gone when this returns. Throws ResultsError.
 ResultsFile live_results(const std::string& results_path, Content content = Content::everything);
 
-/// The same as a results file of its own, under `output`, without derived tables. `live`: with the
+/// Writes it as a results file `output`, without derived tables. `live`: with the
 /// checkpoints. Throws ResultsError.
 void write_copy(const std::string& results_path, const std::string& output, bool live,
                 const Patience& patience = {});

@@ -11,7 +11,7 @@
 
 namespace jostle::inline results {
 
-/// What snapshots keep of every sphere, as an H5MD element each: `name`/{step, value}.
+/// Data of every sphere in snapshots, as one H5MD element each: `name`/{step, value}.
 struct SphereVector {
   const char* name;
   std::vector<Vec3> SnapshotRecord::*values;
@@ -26,7 +26,7 @@ inline constexpr SphereVector sphere_vectors[] = {
      "angular velocities, at the time of the positions"}};
 inline constexpr std::size_t n_sphere_vectors = std::size(sphere_vectors), kept_positions = 0;
 
-/// What they keep by height, a dataset of /snapshots/P each. `padding` stands above a bed.
+/// Data by height, one dataset of /snapshots/P each. `padding` fills heights above a bed.
 struct HeightProfile {
   const char* name;
   std::vector<double> SnapshotRecord::*values;
@@ -55,12 +55,12 @@ inline constexpr HeightProfile height_profiles[] = {
      "jostle"}};
 inline constexpr std::size_t n_height_profiles = std::size(height_profiles), kept_histogram = 0;
 
-/// What is stored of one realization but for its series and its snapshots.
+/// Stored data of one realization except its series and snapshots.
 struct RealizationHead {
   RealizationStatus status = RealizationStatus::missing;
   std::string reason;                     // reason of a failure
   Work work{};                            // over all processes that reported
-  std::optional<RealizationState> state;  // where it goes on; none for missing and failed ones
+  std::optional<RealizationState> state;  // state for a resume; none for missing and failed ones
 };
 
 /// All that is stored of one realization.

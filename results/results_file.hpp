@@ -19,7 +19,7 @@ namespace jostle::inline results {
 /// Written on the file: `running` until the first fold, then `interrupted` while realizations of
 /// the shard have taps left, else `complete` (with or without failed realizations).
 enum class RunState { running, interrupted, complete };
-/// "running", "interrupted", "complete": as files and people are told.
+/// "running", "interrupted", "complete": the word in files and texts.
 const char* name_of(RunState state);
 
 /// One column of the series at one sweep point, over all realizations.
@@ -43,7 +43,7 @@ struct RealizationRange {
   std::uint32_t first, end;
 };
 
-/// The same over the ensemble, [n_taps] each.
+/// Statistics over the ensemble, [n_taps] each.
 struct EnsembleSeries {
   Column label;
   std::vector<double> mean, sigma, error;  // sigma has 1/M; NaN where undefined
@@ -55,11 +55,10 @@ struct RealizationValues {
   Column label;
   std::vector<double> values;
 };
-/// What of a realization is wanted.
+/// Selected data of a realization.
 enum class Content { everything, without_snapshots };
 
-/// What of a file is looked at before it is read: all of it, against its checksum, or whether it
-/// ends with one.
+/// Verification of a file before it is read: its whole checksum, or only its presence.
 enum class Verify { whole_file, end_of_file };
 
 enum class Realizations { all, of_its_share };
@@ -76,14 +75,14 @@ struct RealizationSummary {
 };
 
 /// A results file opened for reading. Its checksum is verified first: a damaged, truncated or
-/// foreign file is refused with a ResultsError that says which. One thread at a time may use any
-/// ResultsFile.
+/// foreign file is rejected with a ResultsError that names the fault. One thread at a time may use
+/// any ResultsFile.
 class ResultsFile {
  public:
   explicit ResultsFile(const std::string& path, Verify verify = Verify::whole_file);
   /// One of many files of a study: it shares the study of `sibling` where it has the same.
   ResultsFile(const std::string& path, Verify verify, const ResultsFile& sibling);
-  /// One that stands in for `known_as`: path() and errors name that.
+  /// A file that replaces `known_as`: path() and errors name that.
   ResultsFile(const std::string& path, const std::string& known_as);
   ~ResultsFile();
   ResultsFile(ResultsFile&&) noexcept;
@@ -107,7 +106,7 @@ class ResultsFile {
   std::vector<double> block(std::uint32_t point, const std::string& column, const TapRange& taps,
                             const RealizationRange& chosen) const;
   std::vector<EnsembleSeries> ensemble(std::uint32_t point) const;
-  /// What fitting did to each pour between walls (fitting_columns); nothing of another start.
+  /// Records of fitting each pour between walls (fitting_columns); empty for another start.
   std::vector<RealizationValues> fittings(std::uint32_t point) const;
   /// How far spheres moved; nothing where it was not followed, or nothing has been found yet.
   std::optional<MotionRecords> motion(std::uint32_t point) const;
@@ -119,7 +118,7 @@ class ResultsFile {
                                                  Content content = Content::everything) const;
   /// Everything stored of one realization.
   RealizationRecord record(RealizationId id) const;
-  /// Where it goes on; nothing for missing and failed ones.
+  /// The state for a resume; nothing for missing and failed ones.
   std::optional<RealizationState> restart_state(RealizationId id) const;
   /// Its snapshots alone; centres are empty where positions were not kept.
   std::vector<SnapshotRecord> snapshots(RealizationId id) const;
@@ -145,7 +144,7 @@ class ResultsFile {
 };
 
 /// The changes that another program made to a file that it opened for writing and closed, where the
-/// contents are still the old ones and readers take it; empty where there is nothing to tell. Reads
+/// contents are still the old ones and readers take it; otherwise empty. Reads
 /// the ends of the file alone.
 std::string seal_warning(const std::string& path);
 

@@ -47,7 +47,7 @@ void require_room_for_run(const std::string& path, std::uint64_t bytes) {
                      "time limit, at which it stops with what it has");
 }
 
-/// A study with another scene or other sizes: the file must say so before parts follow it.
+/// A study with another scene or other sizes: the file must contain it before parts follow it.
 bool differs(const Study& stored, const Study& study) {
   return stored.resolved_scene != study.resolved_scene || stored.realizations != study.realizations;
 }
@@ -87,8 +87,8 @@ class RunStore::Impl {
   Room room;
   std::string run_id;
   std::vector<Provenance> processes;
-  std::optional<ResultsFile> file;                       // what the parts go on from
-  std::map<RealizationId, RealizationSummary> folded;    // what is in it
+  std::optional<ResultsFile> file;                       // the state before the parts
+  std::map<RealizationId, RealizationSummary> folded;    // its contents
   std::map<RealizationId, RealizationSummary> in_parts;  // last checkpoints
   std::mutex mutex;  // mutex of `recorders`, `in_parts` and everything that touches HDF5
   std::map<RealizationId, std::unique_ptr<Recorder>> recorders;
@@ -126,8 +126,7 @@ void RunStore::Impl::go_on(const std::function<Study(const ResultsFile&)>& study
   processes = file->provenance();
   processes.push_back(provenance);
   in_parts = verify_parts(path, run_id, file->study());
-  // What lies there already is a part of the estimate: a chain of runs that fits at first fits to
-  // its end.
+  // Existing data are a part of the estimate: a chain of runs that fits at first fits to its end.
   require_room(parts_bytes(path) + file_bytes(path));
   if (!same_points(file->study(), study)) fold_parts_of_the_stored_points();
   if (differs(file->study(), study))

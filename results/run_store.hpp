@@ -13,8 +13,8 @@
 
 namespace jostle::inline results {
 
-/// The results of one run on disk: a file NAME that always opens, parts under NAME.parts/ while the
-/// run goes on, and NAME.lock. Killed at any instant, it leaves its last checkpoints.
+/// The results of one run on disk: a file NAME that always opens, parts under NAME.parts/ during
+/// the run, and NAME.lock. Killed at any instant, it leaves its last checkpoints.
 ///
 /// Begin/append/snapshot/checkpoint/end may be called from several threads, one realization at a
 /// time from one; everything else from one thread. Every function throws ResultsError.
@@ -30,16 +30,16 @@ class RunStore : public Sink {
                                           const Shard& shard, const Provenance& provenance,
                                           bool force = false, Room room = Room::for_all,
                                           const Patience& patience = {});
-  /// Goes on with a file. `study` is the stored one, or it has more taps at the end, more
+  /// Resumes a file. `study` is the stored one, or it has more taps at the end, more
   /// realizations or more sweep points, in any order: the caller compares the scenes
   /// (ResultsFile::study) and refuses other changes. Points are known by their ids. A share of a
-  /// run keeps its points: which realizations are its own depends on their number.
+  /// run keeps its points: their number decides which realizations are its own.
   /// The shard must be the stored one. `force` only takes over the lock of another host.
   static std::unique_ptr<RunStore> resume(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
                                           bool force = false, const Patience& patience = {});
-  /// The same where the study depends on what the file holds: `study_for` is given the locked,
-  /// verified file, and may refuse by throwing.
+  /// Like the constructor above, for a study that depends on the file's contents: `study_for`
+  /// receives the locked, verified file, and may throw.
   static std::unique_ptr<RunStore> resume(const std::string& path,
                                           const std::function<Study(const ResultsFile&)>& study_for,
                                           const Shard& shard, const Provenance& provenance,
@@ -50,7 +50,7 @@ class RunStore : public Sink {
   /// Ends a store: gives the lock back, and its file as the last fold left it, open and verified.
   static ResultsFile close(std::unique_ptr<RunStore> store);
 
-  /// What is to be told of its lock: that flock does not work here. Else empty.
+  /// Warning about the lock if flock does not work here; otherwise empty.
   std::string lock_warning() const;
   /// The file as the last fold left it, until the next one.
   const ResultsFile& results() const;
@@ -73,7 +73,7 @@ class RunStore : public Sink {
 
   /// Folds everything into a new file in the order of (point, realization), replaces the old one
   /// by it, then deletes the parts. At the end of a run and at a graceful stop alike: the
-  /// restart states of unfinished realizations are in the file. `progress` is told how far it is.
+  /// restart states of unfinished realizations are in the file. `progress` receives the progress.
   void finish(const StoringProgress& progress = {});
   /// For the file and its parts: what finish() reads and writes about once.
   std::uint64_t bytes_to_fold() const;

@@ -64,7 +64,7 @@ pid_t spawn(std::vector<std::string> words, int output) {
   return error == 0 ? child : -1;
 }
 
-/// What comes from a pipe to its end; nothing where that takes too long.
+/// Reads a pipe to its end; nothing after a time limit.
 std::optional<std::string> read_to_end(int pipe) {
   const auto deadline = Clock::now() + longest_answer;
   std::string text;
@@ -84,8 +84,7 @@ std::optional<std::string> read_to_end(int pipe) {
   }
 }
 
-/// What a program prints that is found along PATH; nothing where there is none, or it fails or
-/// does not end.
+/// Output of a program on the PATH; nothing if it is missing, fails or does not end.
 std::optional<std::string> output_of(const std::vector<std::string>& words) {
   std::array<int, 2> ends{};
   if (!open_pipe(ends)) return std::nullopt;

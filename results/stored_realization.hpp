@@ -19,7 +19,7 @@ struct SnapshotOutline {
   std::optional<BedForces> forces{};
 };
 
-/// What results files are written from: all that is stored of one realization. Its series and its
+/// Source of results files: all stored data of one realization. Its series and its
 /// snapshots can be larger than memory and are read piece by piece. All throw ResultsError.
 class StoredRealization {
  public:
@@ -30,7 +30,7 @@ class StoredRealization {
 
   /// Realizations with the same are quickest read one after another.
   virtual const void* source() const { return nullptr; }
-  /// To be called once: where it goes on is not kept.
+  /// To be called once: its position is not kept.
   virtual RealizationHead head() = 0;
   virtual std::uint64_t n_rows() const = 0;
   /// Fills `rows`, [n, n_columns], with those from `first` on; they must be there.
@@ -44,7 +44,7 @@ class StoredRealization {
   virtual std::vector<Contact> contacts(std::uint64_t tap) = 0;
 };
 
-/// Told, while a results file is written, how many of its realizations are.
+/// Receives the number of written realizations of a results file.
 using StoringProgress = std::function<void(std::uint64_t done, std::uint64_t of)>;
 
 /// One that is held in memory; by default one of which nothing is there.

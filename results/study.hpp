@@ -33,7 +33,7 @@ struct PointSpheres {
   std::shared_ptr<const Sizes> sizes(const std::vector<double>& of_realization) const;
 };
 
-/// What a results file must know of one sweep point to lay out and read back its numbers.
+/// Description of one sweep point with which a results file stores and reads its numbers.
 struct StudyPoint {
   std::string label;                                              // for people; may be empty
   std::vector<std::pair<std::string, std::string>> sweep_values;  // JSON pointer, JSON value
@@ -43,9 +43,9 @@ struct StudyPoint {
   std::uint32_t n_spheres = 0;
   std::shared_ptr<const PointSpheres> mixture{};  // null: equal spheres; shared by equal points
   std::uint64_t taps = 0;           // the series have taps + 1 rows: tap 0 is the start
-  std::vector<Column> observables;  // as the scene lists them
+  std::vector<Column> observables;  // in the scene's order
   std::vector<Column> diagnostics;  // the engine's
-  std::string unit = "trials";      // what a unit of its work is called
+  std::string unit = "trials";      // name of a unit of its work
   Snapshots snapshots;
   std::optional<MotionSettings> motion{};
   std::string start_sum{};  // SHA-256 of the spheres of a start from a file; else empty
@@ -58,7 +58,7 @@ struct StudyPoint {
 /// A whole study: every sweep point times `realizations`.
 struct Study {
   std::string scene;           // the scene file, word for word
-  std::string resolved_scene;  // the same with every default written out: what a resume compares
+  std::string resolved_scene;  // the scene with all defaults, which a resume compares
   std::uint32_t realizations = 0;
   std::vector<StudyPoint> points;
 };

@@ -8,7 +8,7 @@
 #include "results/patience.hpp"
 #include "results/study.hpp"
 
-// What is derived from a run's data and kept in its file: the groups /fits, /analysis and
+// Tables derived from a run's data and kept in its file: the groups /fits, /analysis and
 // /structure. They can be made again from the data at any time, and are not part of the digest.
 namespace jostle::inline results {
 
@@ -22,7 +22,7 @@ struct TableGroup {
 
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
-/// replaced, others stay. Every table tells who made it: attributes version, git_revision,
+/// replaced, others stay. Every table records its origin: attributes version, git_revision,
 /// command_line, made. The file is never written in place: a changed copy is published over it.
 /// Throws ResultsError; LockHeld where another process holds the file's lock for longer than
 /// `patience` lasts; std::invalid_argument for a quantity whose number of values its axes do not
@@ -30,7 +30,7 @@ struct TableGroup {
 void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                   const Provenance& provenance, const Patience& patience = {});
 
-/// The same for several groups, in one replacement of the file.
+/// Like store_tables(), for several groups in one replacement of the file.
 void store_tables(const std::string& path, std::span<const TableGroup> groups,
                   const Provenance& provenance, const Patience& patience = {});
 

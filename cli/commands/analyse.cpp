@@ -26,7 +26,7 @@ namespace jostle::inline cli {
 
 namespace {
 
-/// Below the help of one kind: an example, and where the rest of its command line is told.
+/// Below the help of one kind: an example, and a reference to the rest of its command line.
 void add_example(Command kind, const std::string& example) {
   kind.footer("Example:\n  " + example +
               "\n\nThe files, --sweep-point and options of the output stand before the analysis: "

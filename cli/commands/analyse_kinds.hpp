@@ -33,8 +33,8 @@ struct AnalyseArguments {
   std::string equilibrium;
 };
 
-/// The options of the kinds of analyses: each belongs to its kind, and stands before the kind's
-/// name as well as behind it.
+/// The options of the kinds of analyses: each belongs to its kind, and is accepted before and after
+/// the kind's name.
 class AnalysisKinds {
  public:
   AnalysisKinds(Command command, std::shared_ptr<AnalyseArguments> arguments)

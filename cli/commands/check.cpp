@@ -80,7 +80,7 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
       a_tap, about, format_duration(estimate.realization)));
 }
 
-/// What the grains' settings come to, at the first sweep points that differ in it.
+/// Derived numbers of the grains' settings, at the first sweep points that differ in them.
 void print_grains(const LoadedScene& loaded) {
   constexpr std::size_t most = 5;
   std::set<std::string> known;

@@ -58,7 +58,7 @@ KeptTaps tap_choice(const std::vector<std::string>& words) {
 struct Wanted {
   std::vector<ExportedFrame> frames;
   std::string source;  // for people
-  std::string suffix;  // tells the default name from those of other packings of the file
+  std::string suffix;  // distinguishes the default name from those of other packings of the file
 };
 
 Wanted wanted(const ExportArguments& arguments) {
@@ -124,7 +124,7 @@ int export_packings(const ExportArguments& arguments) {
   return exit_ok;
 }
 
-/// The results themselves, with the checkpoints of a run that goes on: a file for other programs.
+/// The results themselves, with the checkpoints of a run in progress: a file for other programs.
 int export_results(const ExportArguments& arguments) {
   const std::string& input = arguments.input;
   if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));

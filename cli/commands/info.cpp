@@ -42,8 +42,8 @@ bool is_alive(const RunStatus& status) {
   return status.owner && status.owner->alive;
 }
 
-/// A file whose run was killed says "running" still, and one that a run goes on from says what it
-/// was: the lock tells.
+/// A file whose run was killed still contains "running", and a file that is resumed its former
+/// state: the lock decides.
 std::string state_of(const RunStatus& status) {
   if (is_alive(status)) return "running";
   if (status.state != RunState::running) return name_of(status.state);

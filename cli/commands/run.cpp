@@ -94,7 +94,7 @@ RunSettings settings_of(const RunArguments& arguments, const LoadedScene& loaded
   return settings;
 }
 
-/// This command again, as it goes on after a stop.
+/// This command, as it resumes after a stop.
 std::string resume_command(const RunArguments& arguments) {
   auto words = command_line();
   remove_flag(words, "--force");

@@ -26,7 +26,7 @@ bool all_done(const ShardsStatus& study) {
   return study.indices(ShardState::done).size() == study.shards.size();
 }
 
-/// What comes next, by their commands: these are never folded.
+/// The next commands: these are never folded.
 std::string next_text(const ShardsStatus& study, const StatusArguments& arguments,
                       const std::vector<std::string>& redo) {
   constexpr std::size_t most_commands = 20;

@@ -69,7 +69,7 @@ StructureSettings wanted(const StructureArguments& arguments, StructureSettings 
   return with_parts(std::move(settings), parts);
 }
 
-/// What is read stays.
+/// Inputs are kept.
 void require_output(const StructureArguments& arguments) {
   std::vector<std::string> read = arguments.inputs;
   if (!arguments.settings.empty()) read.push_back(arguments.settings);

@@ -11,8 +11,8 @@
 
 namespace jostle::inline cli {
 
-/// Stores the tables in `group` of a results file. Returns whether they are stored: where they are
-/// not, standard error says why. For tables that were printed.
+/// Stores the tables in `group` of a results file. Returns whether they are stored: otherwise
+/// standard error gives the reason. For tables that were printed.
 [[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
                                std::span<const Table> tables, const Provenance& by,
                                const Patience& patience);

@@ -10,7 +10,7 @@ namespace jostle::inline cli {
 /// The flag --live.
 void add_live(Command& command, Live& live);
 
-/// open_results(), which says on stderr where the run is unfinished, and what to do about it.
+/// open_results(), which reports an unfinished run on stderr, and what to do.
 ResultsFile open_to_read(const std::string& path, Live live);
 
 }  // namespace jostle::inline cli

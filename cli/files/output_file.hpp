@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-// What a command may write to. Each refuses with BadInput, or with ResultsError where there is no
+// Checks of outputs of a command. Each throws BadInput, or with ResultsError where there is no
 // such folder, and is called before any work is done.
 namespace jostle::inline cli {
 

@@ -57,7 +57,7 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The file of this program; empty where the system does not tell.
+/// The file of this program; empty if unknown.
 fs::path own_path() {
   try {
     return program_path();
@@ -131,7 +131,7 @@ bool lacks_module(const Ended& ended) {
          ended.messages.find("No module named") != std::string::npos;
 }
 
-/// The last line of a traceback says what is missing.
+/// The last line of a traceback names the missing module.
 std::string last_line(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
   return text.substr(text.rfind('\n') + 1);

@@ -8,8 +8,8 @@
 
 namespace jostle::inline cli {
 
-/// --wait, also JOSTLE_WAIT: how long other processes that work on the results are waited for. What
-/// is waited for is printed to standard error.
+/// --wait, also JOSTLE_WAIT: time limit of waiting for other processes that work on the results.
+/// The wait is reported on standard error.
 void add_wait(Command& command, Patience& patience);
 
 /// Prints a warning to standard error for each of these files that another program opened for

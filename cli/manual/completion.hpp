@@ -9,7 +9,7 @@ namespace jostle::inline cli {
 /// A script that bash sources: commands, options, values that are words, and files by their suffix.
 std::string bash_completion(const CommandText& program);
 
-/// The same as a function of zsh's completion system, with descriptions.
+/// A function of zsh's completion system, with descriptions.
 std::string zsh_completion(const CommandText& program);
 
 }  // namespace jostle::inline cli

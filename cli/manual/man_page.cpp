@@ -9,7 +9,7 @@ namespace jostle::inline cli {
 
 namespace {
 
-// As text of roff: nothing in it is a request, and every - can be copied as one.
+// Escapes text for roff: nothing in it is a request, and every - can be copied as one.
 std::string roff(const std::string& text) {
   std::string safe;
   bool line_begins = true;
@@ -96,7 +96,7 @@ std::vector<std::string> paragraphs(const std::string& text) {
   return all;
 }
 
-// What stands at the end of a help: examples as they are, exit codes, and what else is said.
+// The end of a help text: examples, exit codes, and remarks.
 std::string closing(const std::string& footer) {
   std::string examples, status, notes;
   for (const std::string& paragraph : paragraphs(footer)) {

@@ -16,14 +16,13 @@ class Option;
 // sees them: only the sources of this folder do.
 namespace jostle::inline cli {
 
-/// What Command::add_reader's reader throws: what is wrong with the text, without the option's
-/// name.
+/// Thrown by the reader of Command::add_reader: the fault of the text, without the option's name.
 class BadValue : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// One option of a command, or a word that stands without a name. A handle: the command owns it.
+/// One option of a command, or a word without a name. A handle: the command owns it.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
@@ -41,10 +40,10 @@ class Option {
   Option& existing_file();
   /// A file's name: neither empty nor "-", which stands for no stream here.
   Option& file_to_write();
-  /// `fault` says what is wrong with a text; nothing, if nothing. `type` is shown in the help.
+  /// `fault` describes the fault of a text; nothing if it is valid. `type` is shown in the help.
   Option& check(std::function<std::string(const std::string& text)> fault, const std::string& type);
 
-  /// What completion offers; other values are taken too.
+  /// Values that completion offers; others are accepted, too.
   Option& offers(const std::vector<std::string>& words);
   /// Names of files with one of these suffixes, "h5"; of any file, if there are none.
   Option& offers_files(const std::vector<std::string>& suffixes);

@@ -20,10 +20,10 @@ class CommandLine {
   /// All that has been described.
   CommandText text() const;
 
-  /// What is to be printed instead of running a command; empty where one was run.
+  /// Text to be printed instead of running a command; empty where one was run.
   struct Outcome {
     std::string asked_for;  // a help or the version
-    std::string fault;      // what is wrong
+    std::string fault;      // the fault
     bool refused = false;
   };
   /// Reads the words and runs the command that they name. Throws BadInput for unknown words, and

@@ -7,10 +7,10 @@ namespace CLI {
 class App;
 }
 
-// What the command line offers, as plain text: what manual pages and completions are made of.
+// The command line as plain text, from which manual pages and completions are made.
 namespace jostle::inline cli {
 
-/// What completion may offer for a value.
+/// Values for completion.
 struct Offer {
   std::vector<std::string> words = {};
   bool files = false;
@@ -24,7 +24,7 @@ inline constexpr const char* files_offered = "files";
 
 struct OptionText {
   std::vector<std::string> names;  // "-o", "--output"; of a word without a name: what it is
-  std::string value;               // what stands for the value, "TEXT"; empty for a flag
+  std::string value;               // placeholder of the value, "TEXT"; empty for a flag
   std::string description, environment;
   bool required = false, repeated = false;
   Offer offer;

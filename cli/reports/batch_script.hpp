@@ -7,7 +7,7 @@
 
 namespace jostle::inline cli {
 
-/// What a batch script must know besides.
+/// Further data of a batch script.
 struct BatchScript {
   std::string name;             // name of the scene: letters, digits, dots, hyphens, underscores
   std::string scene;            // its file
@@ -22,7 +22,7 @@ struct BatchScript {
 };
 
 /// A complete script for Slurm's sbatch: an array of jobs that runs every shard, stops before its
-/// time is up, goes back into the queue, and goes on there.
+/// time limit, requeues itself, and resumes.
 std::string slurm_script(const BatchScript& script, const JobPlan& plan);
 
 /// "2-00:30:00", "12:00:00": as Slurm takes them; whole minutes, rounded up.

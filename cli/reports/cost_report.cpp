@@ -68,7 +68,7 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost, const Lay
   return table.text(layout.table_width());
 }
 
-/// What failed, with the first reason of each setting, and the settings of which it is so.
+/// Failures, with the first reason of each setting, and the settings with this reason.
 std::string failures(const CostStudy& study) {
   std::map<std::string, std::string> settings;
   for (std::size_t p = 0; p < study.settings().size(); ++p) {

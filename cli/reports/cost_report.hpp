@@ -8,9 +8,9 @@
 
 namespace jostle::inline cli {
 
-/// For people: with a target the cheapest way to it, what the scene's own setting gives with so
-/// many realizations, and a line a setting for one observable. An error stands in the last digits
-/// of what it is of: +0.0012(5).
+/// For people: with a target the cheapest way to it, the result of the scene's own setting, and a
+/// line per setting for one observable. An error is printed in the last digits of its value:
+/// +0.0012(5).
 std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
                       std::uint32_t scene_realizations, std::optional<double> target,
                       const Layout& layout);

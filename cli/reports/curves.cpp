@@ -39,7 +39,7 @@ struct Range {
   }
 };
 
-/// Where a tap stands on the axis, from 0 to 1: tap 1 at 0, the last at 1.
+/// Position of a tap on the axis, from 0 to 1: tap 1 at 0, the last at 1.
 double place_of(double tap, double last) {
   return last > 1 ? std::log(tap) / std::log(last) : 1;
 }
@@ -214,7 +214,7 @@ std::string curve_text(const std::string& name, std::span<const double> values, 
 
 std::string sparkline(std::span<const double> values, double low, double high, std::size_t width,
                       Glyphs glyphs) {
-  constexpr std::string_view plain = "_.-=+*#%";  // as many as there are blocks
+  constexpr std::string_view plain = "_.-=+*#%";  // one per block
   constexpr std::uint32_t lowest_block = 0x2581;
   if (values.empty()) return "";
   const auto last = static_cast<double>(values.size() - 1);

@@ -14,12 +14,12 @@ enum class Glyphs {
 };
 
 /// A curve over taps, `values` from tap 0 on, with its least and greatest value at the left and
-/// taps below: tap 0, which a logarithmic axis has no place for, stands apart, then tap 1 to the
+/// taps below: tap 0, which has no place on a logarithmic axis, is separate, then tap 1 to the
 /// last on it. NaN is not drawn. Nothing of fewer than three values that are no NaN.
 std::string curve_text(const std::string& name, std::span<const double> values, std::size_t width,
                        Glyphs glyphs);
 
-/// The same in one line of so many characters, heights between `low` and `high`.
+/// The curve in one line of so many characters, heights between `low` and `high`.
 std::string sparkline(std::span<const double> values, double low, double high, std::size_t width,
                       Glyphs glyphs);
 

@@ -34,7 +34,7 @@ std::string in_words(const Json& value) {
   return words;
 }
 
-/// What is left of a part without the lists that are empty.
+/// A part without its empty lists.
 Json without_empty_lists(const Json& part) {
   if (!part.is_object()) return part;
   Json kept = Json::object();

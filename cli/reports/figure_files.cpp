@@ -28,8 +28,8 @@ struct FigureOfFile {
 
 constexpr const char* kinds[] = {".csv", ".json", ".py", ".svg", ".pdf"};
 
-/// The folder of the figures, and what is written into it. What did not exist before is removed
-/// again unless it is kept: a full disk leaves neither an empty folder nor some of the data.
+/// The folder of the figures and its new files. New files are removed again unless they are kept: a
+/// full disk leaves neither an empty folder nor some of the data.
 class WrittenFigures {
  public:
   explicit WrittenFigures(const std::string& folder) : folder_(folder) {
@@ -44,7 +44,7 @@ class WrittenFigures {
   WrittenFigures& operator=(const WrittenFigures&) = delete;
   ~WrittenFigures() {
     if (kept_) return;
-    std::error_code fault;  // what failed before is reported
+    std::error_code fault;  // the earlier failure is reported
     for (const fs::path& file : files_) fs::remove(file, fault);
     if (made_) fs::remove(folder_, fault);
   }
@@ -62,7 +62,7 @@ class WrittenFigures {
   bool made_ = false, kept_ = false;
 };
 
-/// Refuses what stands there already.
+/// Rejects existing files.
 void require_room_for(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
                       const std::vector<std::string>& inputs) {
   std::error_code fault;
@@ -99,7 +99,7 @@ void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figu
     written.write(name + ".json", described.back().dump() + "\n");
     written.write(name + ".py", figure_script(name, folder.columns));
   }
-  written.keep();  // data and scripts are of use without matplotlib
+  written.keep();  // data and scripts are useful without matplotlib
   const std::vector<PaperFigure> drawn = draw_with_python(described, folder.columns);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     written.write(figures[i].figure.name + ".svg", drawn[i].svg);

@@ -10,7 +10,7 @@
 
 namespace jostle::inline cli {
 
-/// What the figures of a report are written to.
+/// Output of the figures of a report.
 struct FigureFolder {
   std::string path;  // made where there is none
   JournalColumns columns = JournalColumns::one;

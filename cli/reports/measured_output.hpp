@@ -8,7 +8,7 @@
 
 namespace jostle::inline cli {
 
-/// What `fit` writes of a measured curve beside its report: figures and a page.
+/// Outputs of `fit` for a measured curve besides its report: figures and a page.
 struct MeasuredOutput {
   std::string page;
   FigureFolder figures;
@@ -23,7 +23,7 @@ void add_measured_output(Command& command, MeasuredOutput& output);
 /// Throws BadInput where the page may not be written. `force`: replace files that exist.
 void require_measured_output(const MeasuredOutput& output, const std::string& input, bool force);
 
-/// Writes what is wanted of a curve with a fit. Returns what was written, for people.
+/// Writes the requested outputs of a curve with a fit. Returns a description for people.
 std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitted,
                            const std::string& input, bool force, const Provenance& by);
 

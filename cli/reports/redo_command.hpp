@@ -6,7 +6,7 @@
 
 namespace jostle::inline cli {
 
-/// The command that goes on with shard `index` of `count`, by `program`. `stored` is the command
+/// The command that resumes shard `index` of `count`, by `program`. `stored` is the command
 /// line that a results file holds, whoever wrote it: its scene and those of its options that `run`
 /// has are taken over, and nothing of a line that is none of `run`, for which "SCENE.json" stands.
 std::string redo_command(const std::string& program, const std::string& stored, std::uint32_t index,

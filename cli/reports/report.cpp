@@ -126,7 +126,7 @@ std::string failure_line(const RealizationSummary& failed, const StudyPoint& poi
                      failed.reason);
 }
 
-constexpr std::size_t most_failures = 20;  // that are told one by one
+constexpr std::size_t most_failures = 20;  // listed one by one
 constexpr std::size_t most_points = 40;    // whose curves are shown, and those with failures
 
 std::string further_failures(std::size_t n) {

@@ -11,9 +11,8 @@ namespace jostle::inline cli {
 /// where its first fraction (or its first observable) went. Then for every sweep point a table over
 /// taps, about three a decade, of the mean of every observable with its standard error, and the
 /// means that the engine has shown beside them where there is room, or, with all columns, sigma and
-/// all of these; the number M of realizations where not all reached every tap. Below it what the
-/// engine says in sentences (capped relaxations), cost, and failed realizations with seed and
-/// reason.
+/// all of these; the number M of realizations where not all reached every tap. Below it the
+/// engine's sentences (capped relaxations), cost, and failed realizations with seed and reason.
 std::string report(const ResultsFile& file, const Layout& layout = {});
 
 /// A line for each of the first realizations that failed, with its seed and reason, and how many

@@ -50,7 +50,7 @@ std::optional<std::uint32_t> variable(const std::string& script, const std::stri
   return std::nullopt;
 }
 
-/// True if a resume goes on with a shard. An unreadable file may hold finished work.
+/// True if a resume continues a shard. An unreadable file may hold finished work.
 bool is_open(const ShardStatus& shard, const ShardsStatus& study) {
   if (shard.state == ShardState::missing) return study.unread.empty();
   return shard.state == ShardState::stopped || shard.state == ShardState::dead;

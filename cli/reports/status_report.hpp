@@ -8,7 +8,7 @@
 
 namespace jostle::inline cli {
 
-/// How the jobs of a study run: what their batch script says of them.
+/// How the jobs of a study run: data from their batch script.
 struct JobArray {
   std::string script;  // its file; empty where there is none
   std::uint32_t shards_a_task = 1;

@@ -5,7 +5,7 @@
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 
-// Tables of fits and analyses, for programs. A quantity "x" and its "x_error" stand together.
+// Tables of fits and analyses, for programs. A quantity "x" and its "x_error" are adjacent.
 namespace jostle::inline cli {
 
 /// {"name", "notes": {...}, "axes": {name: quantity}, "quantities": {name: quantity}}, a quantity

@@ -27,7 +27,7 @@ bool is_probability(const std::string& name) {
   return name.ends_with("_p") || name.ends_with("_p_corrected");
 }
 
-/// What has no error beside it has four digits, and all those of a whole number.
+/// Values without an error have four digits; whole numbers have all.
 std::string plain_number(double number, const std::string& name) {
   const bool whole = number == std::trunc(number) && std::abs(number) < 1e7;
   return number_text(number, whole ? 7 : is_probability(name) ? 2 : 4);
@@ -79,7 +79,7 @@ bool is_shown_beside(const Quantity& quantity, const Block& block) {
   });
 }
 
-/// A value with what stands beside it: "2.1 (1.3 to 3.4)" where there is a 95 % interval, else
+/// A value with its error or interval: "2.1 (1.3 to 3.4)" where there is a 95 % interval, else
 /// "2.10(40)".
 std::string shown(const Quantity& quantity, const Block& block, std::size_t index) {
   if (has_interval(quantity, block)) {
@@ -147,7 +147,7 @@ bool holds_sentences(const Quantity& quantity) {
          });
 }
 
-/// "waiting_time 0, 1: ...", a line for all rows that say the same.
+/// "waiting_time 0, 1: ...", one line for all rows with equal texts.
 std::string sentences(const Table& table, const Block& block, const Quantity& quantity) {
   const auto& texts = std::get<std::vector<std::string>>(quantity.values);
   std::vector<std::string> order;
@@ -176,7 +176,7 @@ std::size_t characters(const Quantity& quantity) {
   return n;
 }
 
-/// Says which columns are not shown, and where they are.
+/// Names the omitted columns, and where to find them.
 std::string left_out(const Block& block, const char* where, const std::vector<std::string>& names) {
   return fmt::format("  {:<22} {}{}\n",
                      counted(block.n_rows(), "row") + " of " + joined(block.axes, ", "), where,
@@ -295,7 +295,7 @@ class BlockText {
   std::vector<std::string> empty_;  // names of columns without a number
 };
 
-/// What was found stands before how.
+/// Results come first.
 bool is_verdict(const std::string& note) {
   return note.ends_with("verdict") || note == "refused" || note == "maximum";
 }

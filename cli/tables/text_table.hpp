@@ -9,15 +9,15 @@ namespace jostle::inline cli {
 /// Columns as wide as their longest cell, numbers flush right, two spaces apart.
 class TextTable {
  public:
-  /// The first `keys` columns say which row it is.
+  /// The first `keys` columns identify the row.
   explicit TextTable(std::vector<std::string> headers, std::size_t keys = 1);
 
   /// One cell a header.
   void add(std::vector<std::string> cells);
   /// Width of a column, in characters.
   std::size_t width_of_column(std::size_t column) const;
-  /// One line a row, the headers first, each ending in a newline. Columns that find no room beside
-  /// the others stand below them, behind the keys again, after an empty line.
+  /// One line a row, the headers first, each ending in a newline. Columns that do not fit are
+  /// printed below, after the keys and an empty line.
   std::string text(std::size_t width = std::string::npos) const;
 
  private:

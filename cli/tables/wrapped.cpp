@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t none = std::string_view::npos;
 
-/// Where a line's further lines begin: [bytes of its own that stand before].
+/// Indent of continuation lines, in bytes.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   const std::size_t gap = line.find("  ", indent);

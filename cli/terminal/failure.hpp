@@ -5,8 +5,8 @@
 
 namespace jostle::inline cli {
 
-/// What went wrong, in the words of the command line: arguments by the names of their options, and
-/// where the exception itself does not say it, what to do.
+/// The error in terms of the command line: arguments by the names of their options, and what to do,
+/// if the exception itself does not contain it.
 std::string failure_text(const std::exception& error);
 
 }  // namespace jostle::inline cli

@@ -45,7 +45,7 @@ ProgressDisplay::ProgressDisplay(const Progress& progress, WorkAhead ahead, Prog
   clock_.begin([this] {
     try {
       show_until_end();
-    } catch (const std::bad_alloc&) {  // no more lines; the run is told where it needs memory
+    } catch (const std::bad_alloc&) {  // no more lines; the run reports lack of memory
     }
   });
 }

@@ -18,7 +18,7 @@ enum class ProgressStyle { live, plain, none };
 class ProgressDisplay {
  public:
   ProgressDisplay(const Progress& progress, WorkAhead ahead, ProgressStyle style);
-  /// Clears a live line; says nothing further.
+  /// Clears a live line; prints nothing further.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -37,7 +37,7 @@ class StoringDisplay {
  public:
   explicit StoringDisplay(ProgressStyle style)
       : style_(style), last_(std::chrono::steady_clock::now()) {}
-  /// Clears a live line; says nothing further.
+  /// Clears a live line; prints nothing further.
   ~StoringDisplay();
   StoringDisplay(const StoringDisplay&) = delete;
   StoringDisplay& operator=(const StoringDisplay&) = delete;

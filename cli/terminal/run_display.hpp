@@ -8,10 +8,10 @@
 
 namespace jostle::inline cli {
 
-/// What a run says while it goes on: how much is to do, progress, how far its targets are met.
+/// Messages of a run: its extent, progress, and the state of its targets.
 class RunDisplay : public RunObserver {
  public:
-  /// `file` is said with what is to do; nothing is said where it is empty.
+  /// `file` is printed with the extent; nothing is printed where it is empty.
   RunDisplay(ProgressStyle style, std::string file, int threads, bool prints_targets)
       : style_(style), file_(std::move(file)), threads_(threads), prints_targets_(prints_targets) {}
 

@@ -9,7 +9,7 @@
 
 namespace jostle::inline cli {
 
-/// What standard output can show.
+/// Capabilities of standard output.
 struct Screen {
   std::size_t width = 80;  // width of a line: COLUMNS, else the terminal's, else 80
   bool draws = false;      // a terminal, and not a dumb one (TERM)

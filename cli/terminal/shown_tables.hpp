@@ -23,7 +23,7 @@ struct TableOutput {
   Live live = Live::no;
   Patience patience;
 
-  /// A run that goes on would lose them.
+  /// A run in progress would lose them.
   bool stored() const { return !not_stored && live == Live::no; }
 };
 

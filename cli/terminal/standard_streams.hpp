@@ -6,21 +6,21 @@
 
 #include "config/json/json.hpp"
 
-// What leaves the program on its standard streams: all of it goes through here.
+// All output of the program on its standard streams.
 namespace jostle::inline cli {
 
 /// First thing in the program. A standard stream that the caller closed is opened, so that no
 /// results file takes its number and is written over by messages; writing to it still fails. Beyond
-/// a limit on file sizes (ulimit -f) a write fails and says so, where it would kill; a reader of
-/// standard output or error that went away costs the text, not the work.
+/// a limit on file sizes (ulimit -f) a write fails with a message, instead of killing the program;
+/// a reader of standard output or error that went away costs the text, not the work.
 void reserve_standard_fds();
 
-/// Writes a text for people to standard output; what a terminal could take for a command is shown
-/// as \xNN. Throws nothing: results are stored though nobody reads about them. The first failure
-/// is said on standard error, and output_is_lost() from then on.
+/// Writes a text for people to standard output; control characters are shown as \xNN. Throws
+/// nothing: results are stored even without a reader. The first failure is reported on standard
+/// error; output_is_lost() is then true.
 void print(std::string_view text);
 
-/// The same for programs, to the byte.
+/// Output for programs, to the byte.
 void print_exactly(std::string_view text);
 
 /// JSON, two blanks a level, and a newline. Names that are not UTF-8 show U+FFFD for the bytes that

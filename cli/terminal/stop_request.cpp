@@ -39,7 +39,7 @@ void StopRequest::stop_after(Seconds limit) {
 }
 
 StopRequest::~StopRequest() {
-  // What was stopped is stored: a second signal, as batch systems send one, must not change how the
+  // Stopped work is stored: a second signal, as batch systems send one, must not change how the
   // process ends.
   for (const int signal : stop_signals)
     std::signal(signal, stop_asked && signal != SIGINT ? SIG_IGN : SIG_DFL);

@@ -4,7 +4,7 @@
 
 namespace jostle::inline cli {
 
-/// What `jostle --version` prints: version, revision, compiler and the libraries as linked.
+/// Text of `jostle --version`: version, revision, compiler and the libraries as linked.
 std::string version_text();
 
 }  // namespace jostle::inline cli

@@ -43,8 +43,8 @@ std::vector<std::uint32_t> listed_kinds(const Sizes* sizes, const Scene& scene,
   return kinds;
 }
 
-/// Throws StartError where the spheres of a kind are not as many, or not as large, as the scene
-/// lists them.
+/// Throws StartError where the spheres of a kind are not as many, or not as large, in the scene's
+/// order.
 void require_listed(const MixtureKind& kind, const std::vector<double>& diameters,
                     const std::string& path) {
   if (diameters.size() != kind.count)

@@ -51,7 +51,7 @@ double limit_of_t(std::size_t pairs) {
                    : student_two_sided(0.6, static_cast<double>(pairs - 1));
 }
 
-// What the reference lacks, at its limit; NaN where steps are not known to shrink.
+// Limit of the remaining bias of the reference; NaN where steps are not known to shrink.
 double shortfall_limit(const Pilot& pilot, double least_error) {
   const auto doubt = [&](const PairedBias& step) {
     return limit_of_t(step.pairs) * std::max(step.error, least_error);

@@ -8,7 +8,7 @@
 
 #include "ensemble/statistics/student_tests.hpp"
 
-// What accuracy costs: settings of a relaxation compared in pairs, realization by realization, each
+// Cost of accuracy: settings of a relaxation compared in pairs, realization by realization, each
 // pair from one starting packing.
 namespace jostle::inline ensemble {
 
@@ -41,9 +41,9 @@ Growth bias_growth(std::span<const double> values_before, std::span<const double
 /// True if it is significant: Student's t over pairs, at 5 %.
 bool is_seen(const PairedBias& bias);
 
-/// What a ladder's last setting still lacks.
+/// Remaining bias of a ladder's last setting.
 struct Remainder {
-  std::size_t realizations = 0;  // that all three settings have
+  std::size_t realizations = 0;  // common to all three settings
   double value = 0;              // NaN where steps do not shrink: r outside 0 .. 0.9
   double error = 0;  // jackknife over realizations; NaN where it is not defined without one of them
 };
@@ -78,7 +78,7 @@ std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, do
 /// of a Gaussian exceeds once in five times: 1.35 for 8, 2.12 for 3. Infinite below 2.
 double sigma_limit(std::size_t n_values);
 
-/// What beside its settings a pilot has to say of them.
+/// Results of a pilot besides its settings.
 struct Pilot {
   std::size_t reference = 0;  // reference of settings: the most complete, of which biases are
   PairedBias last_step, step_before;    // to the reference, and to the setting before it
@@ -92,9 +92,9 @@ void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot);
 /// Settings at the limits of what the pilot knows, each exceeded once in five times: sigma by
 /// sigma_limit() of its values; the bias of its pairs by Student's t, its error no smaller than the
 /// root mean square over the settings of one bed, since of many settings one has a small error by
-/// chance. To each bias comes what the reference itself lacks: the limit of its last step where
-/// that is not seen, which takes for granted that further steps shrink at least by half; else the
-/// rest of a series whose ratio is at the limit of these two steps. Biases are NaN where that
+/// chance. The remaining bias of the reference is added to each bias: the limit of its last step
+/// where that is not seen, which takes for granted that further steps shrink at least by half; else
+/// the rest of a series whose ratio is at the limit of these two steps. Biases are NaN where that
 /// series has no end. bias_error is 0.
 std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot);
 

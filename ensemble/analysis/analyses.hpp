@@ -132,7 +132,7 @@ struct OrderingSettings {
   }
 };
 
-/// What is drawn against which swept value.
+/// Quantities that are drawn against a swept value.
 struct SweepSettings {
   /// "value": the mean of the last taps; else what another analysis ("steady/sigma") or a fit
   /// ("kww/rho_inf") of the same observable found.
@@ -160,11 +160,11 @@ struct SweepSettings {
   }
 };
 
-/// What is drawn of volumes and compactivities, over the points of a sweep.
+/// Volumes and compactivities over the points of a sweep.
 struct VolumesSettings {
   std::optional<std::uint64_t> last = std::nullopt;  // absent: the last quarter
-  std::string against;                               // as for sweeps
-  /// Whose volume it is; absent: those of the observable's window.
+  std::string
+      against;  // like sweeps Spheres of the volume; absent: those of the observable's window.
   std::optional<double> spheres = std::nullopt;
   bool operator==(const VolumesSettings&) const = default;
 
@@ -206,7 +206,7 @@ class SpectrumAnalysis {
 
   void add(std::span<const double> values);  // [n_taps]
   /// After at least one realization: frequency; density, its error, lines a bin; the slope, its
-  /// error; the trend. Note "drift" says whether a drift fakes the low frequencies,
+  /// error; the trend. The note "drift" reports if a drift imitates low frequencies,
   /// "verdict" how the slope compares with that of an AR(1) process of the same memory.
   Table table() const;
 
@@ -219,7 +219,7 @@ class SpectrumAnalysis {
 };
 
 /// Value, deviation, autocorrelation time, each with its error; the blocking levels; trend and
-/// halves. Note "verdict" begins with "reached", "not reached" or "cannot decide", and says why.
+/// halves. Note "verdict" begins with "reached", "not reached" or "cannot decide", with the reason.
 Table steady_table(const AnalysedSeries& series, const SteadyState& state);
 
 }  // namespace jostle::inline ensemble

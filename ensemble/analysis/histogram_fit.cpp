@@ -72,7 +72,7 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
     double sum = 0;
     for (std::uint32_t r = 0; r < m; ++r) sum += counts[r];
     between += (sum - groups.expected[g]) * (sum - groups.expected[g]) / groups.expected[g];
-    // Shares: how much a realization counts in all says nothing of the law.
+    // Shares: the total count of a realization is independent of the law.
     for (std::uint32_t r = 0; r < m; ++r) {
       const double share = totals[r] / all, off = counts[r] - share * sum;
       within += off * off / (groups.expected[g] * share);

@@ -9,7 +9,7 @@
 // Laws of distributions, fitted to the histograms of realizations by maximum likelihood.
 namespace jostle::inline ensemble {
 
-/// What several realizations counted in the same bins, empty ones included.
+/// Counts of several realizations in common bins, including empty ones.
 struct Histogram {
   std::vector<Bin> bins;           // [n_bins], ascending
   std::vector<double> counts;      // [n_bins, n_realizations]

@@ -16,7 +16,7 @@ namespace jostle::inline ensemble {
 /// the turn, which ends the branch before. Steps of equal strength stay together.
 std::vector<std::vector<std::size_t>> branches(std::span<const double> strengths);
 
-/// What separates two branches: the integral of the later's value less the earlier's over the
+/// The distance of two branches: the integral of the later's value less the earlier's over the
 /// strengths that both have, straight lines between steps.
 struct Loop {
   std::size_t earlier = 0, later = 0;  // branches
@@ -25,7 +25,7 @@ struct Loop {
   ErrorOf error{};                     // over realizations, Student's; none below two
   double p = 1, corrected = 1;   // p-value for no area: by itself, and for all loops (Holm 1979)
   double detectable = 0;         // area that would have been found with probability 0.8
-  std::size_t realizations = 0;  // that have all steps of both branches
+  std::size_t realizations = 0;  // realizations with all steps of both branches
 
   static constexpr double level = significance_level;  // false alarms, all loops together
   /// "encloses an area" or "cannot decide", with the test and what would have refuted it.
@@ -36,9 +36,9 @@ struct Loop {
 std::vector<Loop> loops(std::span<const double> strengths, std::span<const double> values,
                         std::uint32_t realizations);
 
-/// The steady-state value of each step with its error over realizations, the branch it lies on, and
-/// the loops between branches. values: [n_steps, n_realizations], means of the last taps of each
-/// step (means_over_rows of the steps' windows), NaN where there is none.
+/// The steady-state value of each step with its error over realizations, its branch, and the loops
+/// between branches. values: [n_steps, n_realizations], means of the last taps of each step
+/// (means_over_rows of the steps' windows), NaN where there is none.
 Table hysteresis_table(std::string name, const Column& observable, const ProtocolSteps& steps,
                        std::span<const double> values, std::uint32_t realizations);
 

@@ -14,7 +14,7 @@ namespace jostle::inline ensemble {
 
 namespace {
 
-// What keeps the taps from deciding; empty where nothing does.
+// The reason why the taps cannot decide; empty if they can.
 std::string reasons_for_doubt(const SteadyState& state) {
   std::string reasons;
   const auto add = [&](const std::string& reason) {

@@ -16,13 +16,13 @@ namespace jostle::inline ensemble {
 /// realizations would not have shown one that matters.
 enum class Verdict { reached, not_reached, cannot_decide };
 
-/// What the last taps of a run say of the state they may have reached.
+/// Analysis of the last taps of a run for a steady state.
 struct SteadyState {
   std::size_t n_taps = 0, realizations = 0;
   double value = 0;  // mean over taps and realizations
-  /// Over realizations where there are two or more. Of one by its memory, as for fits of one curve
-  /// (fitting/intervals/memory.hpp); where that is as long as the taps, a lower bound without
-  /// degrees of freedom.
+  /// With two or more realizations, their standard error. For one, by its memory, as for fits of
+  /// one curve (fitting/intervals/memory.hpp); where that is as long as the taps, a lower bound
+  /// without degrees of freedom.
   ErrorOf error{};
   double sigma = 0;  // deviation of single taps about the steady value of their realization
   double sigma_error = 0, sigma_dof = 0;  // over realizations; of one, Bartlett's, dof infinite

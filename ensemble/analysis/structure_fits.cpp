@@ -20,7 +20,7 @@ namespace {
 constexpr double least_depth =
     2;  // least depth of bed between the layers at the floor and the surface
 
-/// What a law gave at one tap.
+/// Result of a law at one tap.
 struct FoundLaw {
   HistogramFit fit;
   std::uint32_t realizations = 0;
@@ -30,13 +30,13 @@ using Packings = std::vector<const Measurement*>;  // Packings of one tap, [n_re
 
 /// A law, what it is fitted to, and how.
 struct FittedLaw {
-  std::string quantity;  // what the law is of
+  std::string quantity;  // quantity of the law
   std::string prefix;    // prefix of the names of parameters in the table
   std::string model;
   std::vector<std::string> units;  // units of the parameters; empty: left out
   std::function<FoundLaw(const Model&, const Packings&)> found;
   bool of_counts = false;
-  std::string variable = "";  // what t of the formula is, where it is not the quantity's place
+  std::string variable = "";  // meaning of t in the formula, where it is not the quantity's axis
 };
 
 const std::vector<double>& places_of(const Measurement& measurement, std::string_view name) {
@@ -105,8 +105,8 @@ FoundLaw fitted_curve(const std::string& quantity, const Model& model, const Pac
   return found;
 }
 
-/// What a histogram counted: `bin` gives the law's variable at a place, `number` what 1 of the
-/// quantity stands for in a packing. Whole numbers beyond the last one found count as empty.
+/// Counts of a histogram: `bin` gives the law's variable at a place, `number` the count for 1 of
+/// the quantity in a packing. Whole numbers beyond the last one found count as empty.
 FoundLaw fitted_counts(const std::string& quantity, const Model& model, const Packings& packings,
                        const std::function<std::optional<Bin>(double place)>& bin,
                        const std::function<double(const Measurement&)>& number,

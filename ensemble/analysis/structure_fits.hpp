@@ -16,7 +16,7 @@ using PartPackings = std::vector<std::vector<const Measurement*>>;
 /// not settle), and a status in words. Eq. 7 by least squares to the mean vertical profile. By
 /// maximum likelihood to counts, with the chance p that the law holds: the exponential to the tail
 /// of pores, the normal law to numbers of neighbours and of faces, the k-gamma law to free volumes.
-/// Other parts have none. A parameter that diverges is not a number, and the status says so.
+/// Other parts have none. A parameter that diverges is NaN, and the status reports it.
 void add_fits(std::string_view part_name, const PartPackings& part,
               const StructureSettings& settings, Table& table);
 

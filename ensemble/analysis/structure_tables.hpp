@@ -10,7 +10,7 @@
 // The structure of packings averaged over realizations, tap by tap.
 namespace jostle::inline ensemble {
 
-/// What measure() gave of every packing, all by the same settings.
+/// Results of measure() for every packing, with common settings.
 struct EnsembleStructure {
   std::vector<std::uint64_t> taps;                              // [n_taps], ascending
   std::vector<std::vector<std::vector<Measurement>>> packings;  // [n_taps][n_realizations][n_parts]

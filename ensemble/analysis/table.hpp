@@ -24,7 +24,7 @@ struct Table {
   std::string name;              // '/' separates parts: "point_0000/ageing/mean_height"
   std::vector<Quantity> axes{};  // one-dimensional, each along itself
   std::vector<Quantity> quantities{};
-  /// What was asked for, and what was found in words: "observable", "verdict", ...
+  /// Settings and results in words: "observable", "verdict", ...
   std::vector<std::pair<std::string, std::string>> notes{};
 };
 

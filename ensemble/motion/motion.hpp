@@ -19,7 +19,7 @@ inline constexpr std::uint32_t most_motion_layers = 1000;
 inline constexpr std::uint64_t most_motion_bytes = std::uint64_t{1} << 30;    // a realization
 inline constexpr std::uint64_t most_motion_numbers = std::uint64_t{1} << 27;  // a sweep point
 
-/// What is followed.
+/// Settings of the followed motion.
 struct MotionSettings {
   std::vector<std::uint64_t> origins;   // waiting times t_W, ascending; tap 0 is the start
   std::vector<std::uint64_t> lags;      // taps, ascending, at least 1
@@ -28,7 +28,7 @@ struct MotionSettings {
   bool operator==(const MotionSettings&) const = default;
 };
 
-/// What a quantity has a value for each of.
+/// Axes of a quantity.
 enum class MotionPlaces {
   none,
   directions,
@@ -92,7 +92,7 @@ struct MotionOrigin {
   bool operator==(const MotionOrigin&) const = default;
 };
 
-/// What following needs to go on, and what it has found.
+/// State needed to resume following, with its results.
 struct MotionState {
   std::vector<Vec3> unwrapped;  // [n_spheres], at the last recorded tap
   /// The largest step of a sphere in one tap along a periodic direction, in periods. A step of more

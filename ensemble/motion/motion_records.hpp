@@ -9,7 +9,7 @@
 
 namespace jostle::inline ensemble {
 
-/// What was found of the motion at one sweep point over all realizations; NaN where there is
+/// Motion at one sweep point over all realizations; NaN where there is
 /// nothing.
 struct MotionRecords {
   MotionRecords(const MotionSettings& followed, std::uint32_t spheres, std::uint32_t realizations);

@@ -18,8 +18,8 @@ struct AutocorrelationTime {
   bool found() const { return window > 0; }
 };
 
-/// What is taken from every series first: its mean, or its straight line, so that a drift does not
-/// pass for memory.
+/// Subtracted from every series first: its mean, or its straight line, so that a drift does not
+/// count as memory.
 enum class Removed { mean, line };
 
 /// Pooled over series of one length, at least 4, each about its own mean or line. The sum ends at

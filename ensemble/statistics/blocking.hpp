@@ -18,7 +18,7 @@ struct BlockingLevel {
 
 struct BlockingResult {
   std::vector<BlockingLevel> levels;
-  /// The first level with long enough blocks; none where the series are too short to tell: then
+  /// The first level with long enough blocks; none where the series are too short: then
   /// every error of `levels` is a lower bound.
   std::optional<std::size_t> plateau;
 

@@ -33,7 +33,7 @@ std::vector<double> ln_means_without_one(std::span<const double> values);
 double variance(std::span<const double> values);
 
 /// ln of the variance (sum of squares about the mean over n - 2) with each value left out in turn:
-/// for the jackknife. Empty below four values: it would say too little; minus infinity where only
+/// for the jackknife. Empty below four values, which are too few; minus infinity where only
 /// the one left out differs.
 std::vector<double> ln_variances_without_one(std::span<const double> values);
 

@@ -12,7 +12,7 @@ namespace jostle::inline ensemble {
 
 enum class Resampling {
   jackknife,  // each realization left out in turn
-  bootstrap   // as many realizations drawn with replacement, `count` times
+  bootstrap   // an equal number of realizations drawn with replacement, `count` times
 };
 
 struct ResamplingOptions {
@@ -26,7 +26,7 @@ struct ResamplingOptions {
 struct ResampledErrors {
   std::vector<double> errors;     // standard errors
   std::vector<Interval> middle;   // central 68 % of parameters in a bootstrap; else empty
-  std::vector<Interval> central;  // likewise 95 %
+  std::vector<Interval> central;  // 95 % limits
   std::uint32_t resamples = 0;    // refitted
   std::uint32_t failed = 0;       // resamples without a settled fit: not counted in the errors
 };

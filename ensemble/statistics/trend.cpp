@@ -15,7 +15,7 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr double times_of_a_block = 5;  // autocorrelation times
-constexpr double rounding = 1e-12;      // what is left of a change is no memory
+constexpr double rounding = 1e-12;      // the rest of a change is no memory
 constexpr std::size_t fewest_blocks_of_series = 4;
 constexpr double enough_freedom = 20;  // degrees of freedom sufficient for an error within series
 constexpr double doubted = 0.25;       // p of realizations that differ by more than they change

@@ -6,7 +6,7 @@
 
 namespace jostle::inline ensemble {
 
-/// What chi2 with dof > 0 degrees of freedom stays below with the probability `p`, in (0, 1).
+/// Quantile p in (0, 1) of chi2 with dof > 0 degrees of freedom.
 double chi_squared_quantile(double p, double dof);
 
 /// The variance of normal values over realizations (of n - 1) with the intervals of chi2, exact for

@@ -125,7 +125,7 @@ FitOptions refit_options(const FittedModel& law) {
   return options;
 }
 
-// Where a law cannot be fitted without a realization, `fault` says so.
+// Where a law cannot be fitted without a realization, `fault` reports it.
 Predictions predictions(const Ensemble& ensemble, const FittedLaw& law, std::string& fault) {
   Predictions found;
   found.model = law.model->name();

@@ -17,8 +17,8 @@ constexpr double constant_tolerance =
     1e-6;  // tolerance for a constant's squared length, outside the tangent
 constexpr double least_level_weight = 1e-6;
 
-// What least squares makes of residuals: an orthonormal basis Q of the Jacobian's columns, and for
-// every variable the combination of Q^T r that is its change.
+// Linear map of least squares on residuals: an orthonormal basis Q of the Jacobian's columns, and
+// for every variable the combination of Q^T r that is its change.
 struct Influence {
   Eigen::MatrixXd basis;    // [n_points, n_variables]
   Eigen::MatrixXd changes;  // [n_variables, n_variables], a variable a column

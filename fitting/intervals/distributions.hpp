@@ -4,9 +4,9 @@ namespace jostle::inline fitting {
 
 /// ln Gamma(x) for x > 0. std::lgamma writes to a global, and fits run on many threads.
 double log_gamma(double x);
-/// What |z| of a standard normal variable stays below with probability `level` in (0, 1).
+/// Quantile `level` in (0, 1) of |z| for a standard normal variable.
 double normal_two_sided(double level);
-/// The same for Student's t with dof > 0 degrees of freedom. Its square is the quantile of
+/// Quantile for Student's t with dof > 0 degrees of freedom. Its square is the quantile of
 /// F(1, dof), as the square of the former is that of chi2 with one degree of freedom.
 double student_two_sided(double level, double dof);
 /// Student's t, or the normal where dof is infinite.

@@ -23,16 +23,16 @@ void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& f
 /// Fills error_factor from effective_size.
 void count_effective_points(Fit& fit);
 
-/// Judges every estimate by its 95 % interval and says so. Adds remarks on what the errors rest on,
-/// on parameters that can make up for each other, on few points that dominate, on chi2 far from 1
-/// and on correlated residuals.
+/// Classifies every estimate by its 95 % interval. Adds remarks on the source of errors, on
+/// parameters that can compensate each other, on few points that dominate, on chi2 far from 1 and
+/// on correlated residuals.
 void judge(const Curve& curve, Fit& fit);
 /// Opens the intervals of examined estimates at which a singular search ended by rounding alone.
 void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates);
 /// Takes the errors of examined estimates from their 68 % intervals, infinite where these are open:
 /// in an ill-conditioned problem those of the linear one mean nothing.
 void take_errors_of_intervals(const Fit& fit, std::vector<Estimate>& estimates);
-/// Judges estimates by their 95 % intervals and says so, without remarks.
+/// Classifies estimates by their 95 % intervals, without remarks.
 void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates);
 
 }  // namespace jostle::inline fitting

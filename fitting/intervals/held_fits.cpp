@@ -190,7 +190,8 @@ void HeldFits::search(HeldFit& fit) {
   fixed[index_] = parameter(fit.distance);
   if (std::none_of(free_.begin(), free_.end(), [](bool free) { return free; })) return;
   int agreeing = 0;
-  // A grid of all nonlinear parameters is the dear one, and needs few points to be told apart.
+  // A grid of all nonlinear parameters is the expensive one, and few points suffice to distinguish
+  // its nodes.
   const bool all_nonlinear = problem_.model.parameters()[index_].linear;
   const Curve sample = all_nonlinear ? thinned(problem_.curve, 32) : problem_.curve;
   EvaluationBudget* const budget = problem_.solver.budget;

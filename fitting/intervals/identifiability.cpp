@@ -21,8 +21,8 @@ constexpr double wide_factor = 2;  // ratio of limits of a wide positive paramet
 constexpr double wide_share =
     0.125;  // share of the curve's range for a wide parameter, for a place or a level
 
-// Where the curvature of the least squares is rounding and a minimum lies absurdly far from all
-// that was measured, whatever closed its interval was not the data.
+// Where the curvature of the least squares is rounding and a minimum is extremely far from all
+// measurements, the data did not close its interval.
 constexpr double singular_condition = 4.5e15;  // 1 / epsilon
 constexpr double absurd = 100;
 
@@ -102,7 +102,7 @@ bool is_loose(const Estimate& estimate) {
 // Two parameters with a correlation of 0.98 have this one: below, what is loose is so by noise.
 constexpr double tied_condition = 100;
 
-// What is loose, and whether because parameters can make up for each other.
+// Lists unconstrained parameters, and those that can compensate each other.
 void remark_on_loose(Fit& fit) {
   std::vector<std::string> names;
   for (const Estimate& estimate : fit.estimates) {

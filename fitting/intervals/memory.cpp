@@ -71,7 +71,7 @@ Eigen::MatrixXd correlated(const std::vector<double>& t, const Memory& memory,
                            const Eigen::MatrixXd& vectors) {
   if (!(memory.time > 0)) return vectors;
   const std::vector<double> gaps = gaps_of(t);
-  // What remembers points before, and points after.
+  // The memory of earlier points, and of later points.
   Eigen::MatrixXd forward = vectors, backward = vectors;
   for (Eigen::Index i = 1; i < vectors.rows(); ++i) {
     forward.row(i) +=

@@ -67,8 +67,8 @@ double Side::crossing(HeldFit low, HeldFit high, double threshold) {
   return high.z - low.z < 0.1 * threshold ? distance : infinite;
 }
 
-// Tells whether z is all but level where it passes the threshold: half as far out it is as high but
-// for `flat`. The place of such an end rests on digits of chi2 that mean nothing.
+// Tests if z is nearly level where it passes the threshold: half as far out it is as high within
+// `flat`. The place of such an end rests on digits of chi2 that mean nothing.
 bool Side::is_flat_before(double distance, const std::vector<HeldFit>& points, double threshold) {
   const bool logarithmic = fits_.coordinate().is_logarithmic();
   const double half = logarithmic ? distance - std::log(2.0) : 0.5 * distance;
@@ -115,7 +115,7 @@ void Side::revise(std::vector<HeldFit>& points, const HeldFit& found) {
   }
 }
 
-// Outwards until z has passed both thresholds, or as far as it is of interest.
+// Searches outwards until z has passed both thresholds, or to the end of the range.
 std::vector<HeldFit> Side::march(double step) {
   const double end = reach(step);
   const double last_threshold = problem_.thresholds[1];

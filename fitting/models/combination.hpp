@@ -19,7 +19,7 @@ class CombinedModel final : public Model {
   std::vector<ParameterValues> starts(const Curve& curve, std::span<const double> fixed,
                                       std::size_t n) const override;
 
-  /// The same curve in the parameters of one and of the other.
+  /// One curve in the parameters of both laws.
   ParameterValues combined(ParameterValues p) const;
   ParameterValues separate(ParameterValues p) const;
 

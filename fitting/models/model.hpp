@@ -11,7 +11,7 @@
 
 namespace jostle::inline fitting {
 
-/// What a parameter is measured in.
+/// Units of a parameter.
 enum class ParameterUnit { none, value, time, value_per_time, value_time, per_time };
 
 struct Parameter {
@@ -64,7 +64,7 @@ class Model {
 
   /// The model at t. p: [n_parameters], within their bounds.
   virtual double value(double t, const double* p) const = 0;
-  /// The same value, and its derivatives by the parameters in gradient [n_parameters]. By default
+  /// The value, and its derivatives by the parameters in gradient [n_parameters]. By default
   /// fourth-order differences of `value`, good to about 10 digits.
   virtual double value_and_gradient(double t, const double* p, double* gradient) const;
 
@@ -90,7 +90,7 @@ class Model {
   virtual std::vector<Limit> limits() const;
   /// The law that draws the same curves with other parameters, if there is one.
   virtual std::optional<Equivalent> equivalent() const { return std::nullopt; }
-  /// The same curve with its parameters in standard order (as tau1 <= tau2).
+  /// The curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }
 };
 

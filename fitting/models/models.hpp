@@ -10,7 +10,7 @@
 #include "fitting/models/model.hpp"
 
 // The laws of Philippe & Bideau 2001 (Phys. Rev. E 63, 051304, "PB") and Rosato et al. 2010 (Phys.
-// Rev. E 81, 061301, "DR"). t: number of taps unless said otherwise.
+// Rev. E 81, 061301, "DR"). t: number of taps unless stated otherwise.
 namespace jostle::inline fitting {
 
 /// A law as it is published: what it is called, how it reads, where it is from.
@@ -78,7 +78,7 @@ class TwoExponentials final : public PublishedLaw {
 };
 
 /// rho(n) = rho_inf - (rho_inf - rho_0) exp(-(n/tau)^beta), Kohlrausch-Williams-Watts; rho_0 is
-/// free unless it is fixed; tau > 0, beta > 0 (above 1 it is compressed, and said so). DR.
+/// free unless it is fixed; tau > 0, beta > 0 (above 1 it is reported as compressed). DR.
 class StretchedExponential final : public PublishedLaw {
  public:
   StretchedExponential();

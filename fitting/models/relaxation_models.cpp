@@ -24,9 +24,9 @@ std::pair<double, double> positive_range(const Curve& curve) {
   return last > 0 ? std::pair{first, last} : std::pair{1.0, 1.0};
 }
 
-// For the inverse logs with strength number `b` and time number `tau`. What a curve determines is
-// how far the logarithm has grown at its end, B ln(1 + last/tau): from hardly out of the linear
-// regime to saturated; and whether tau is below its first time, among its times, or beyond.
+// For the inverse logs with strength number `b` and time number `tau`. A curve determines the
+// growth of the logarithm up to its end, B ln(1 + last/tau): from hardly out of the linear regime
+// to saturated; and whether tau is below its first time, among its times, or beyond.
 Grid log_grid(const Curve& curve, std::span<const double> fixed, std::size_t b, std::size_t tau) {
   const auto [first, last] = positive_range(curve);
   Grid grid;
@@ -271,7 +271,8 @@ StretchedExponential::StretchedExponential()
            {.name = "tau", .meaning = "relaxation time", .unit = ParameterUnit::time, .lower = 0},
            {.name = "beta", .meaning = "stretching exponent", .lower = 0}}) {}
 
-// As rho_0 + (rho_inf - rho_0) (1 - exp): where the law has hardly begun rho_inf can be any size.
+// Written as rho_0 + (rho_inf - rho_0) (1 - exp): where the law has hardly begun rho_inf can be any
+// size.
 double StretchedExponential::value(double t, const double* p) const {
   return p[1] - (p[0] - p[1]) * std::expm1(-std::pow(t / p[2], p[3]));
 }

@@ -3,14 +3,14 @@
 #include <Eigen/Core>
 #include <memory>
 
-// Decompositions of matrices with few columns. Eigen's templates for them take seconds of every
-// source that uses one: they stand in one, behind plain functions.
+// Decompositions of matrices with few columns. Eigen's templates for them cost seconds in every
+// source that uses one: they are in one source, behind plain functions.
 namespace jostle::inline fitting {
 
 /// The x that minimises |a x - b|, by Householder QR with column pivoting. a: [n, m]; b: [n].
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-/// The same for every column of b, [n, k]: [m, k].
+/// The solution for every column of b, [n, k]: [m, k].
 Eigen::MatrixXd least_squares_of_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Columns that are independent to rounding, by the same decomposition.
@@ -39,7 +39,7 @@ struct TriangularSystem {
   Eigen::MatrixXd upper;  // R, [m, m]
   Eigen::VectorXd right;  // the first m rows of Q^T b
 };
-/// What is left to solve of the least squares problem a x = b, without pivoting. a: [n, m], n >= m;
+/// Reduces the least squares problem a x = b, without pivoting. a: [n, m], n >= m;
 /// b: [n].
 TriangularSystem triangular_system(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 

@@ -24,7 +24,7 @@
 namespace jostle::inline results {
 namespace {
 
-constexpr std::size_t most_bytes = 512;  // that a lock holds
+constexpr std::size_t most_bytes = 512;  // content of a lock
 constexpr std::string_view storing_word = "storing";
 
 std::string lock_path(const std::string& results_path) {
@@ -37,9 +37,8 @@ std::string this_host() {
   return name.data();
 }
 
-/// "host pid start_time", of a Slurm job then "slurm cluster id restarts name", and "storing" where
-/// it is held for moments, in one line.
-/// Whether it is alive is not in it.
+/// "host pid start_time", for a Slurm job then "slurm cluster id restarts name", and "storing"
+/// where it is held briefly, in one line. Whether it is alive is not in it.
 std::optional<LockOwner> parse_owner(const std::string& text) {
   const std::size_t end = text.find('\n');
   if (end != std::string::npos && end + 1 < text.size()) return std::nullopt;
@@ -65,7 +64,7 @@ std::string text_of_this_process(LockUse use) {
   return text + "\n";
 }
 
-/// `lock`: the user whose lock it is. Of another user's jobs Slurm may be silent.
+/// `lock`: the user whose lock it is. Slurm may not report another user's jobs.
 bool is_alive(const LockOwner& owner, uid_t lock, SlurmQueue& queue) {
   if (owner.host == this_host()) {
     const std::uint64_t start_time = start_time_of(owner.pid);
@@ -179,7 +178,7 @@ std::string reason_of(int error) {
   return std::strerror(error == not_supported_by_server ? ENOTSUP : error);
 }
 
-/// What a lock holds. It is written in place: what is no lock of ours must not be written over.
+/// Content of a lock. It is written in place: other files must not be overwritten.
 std::string read_lock(const std::string& path, int descriptor) {
   struct stat status;
   if (::fstat(descriptor, &status) != 0) fail_on_disk(path, "read", errno);
@@ -217,7 +216,7 @@ struct OpenedLock {
   int flock_error = 0;   // why flock does not work here
 };
 
-/// None if it was taken away meanwhile.
+/// Empty if it was deleted concurrently.
 OpenedLock try_open(const std::string& path) {
   OpenedLock lock{open_lock(path, O_RDWR)};
   if (!lock.file && errno == ENOENT) {

@@ -26,7 +26,7 @@ class RunLock {
   /// Removes the lock file.
   ~RunLock();
 
-  /// What is to be told of it: that flock does not work here. Empty where it does.
+  /// Warning about the lock if flock does not work here; otherwise empty.
   std::string warning() const;
 
  private:

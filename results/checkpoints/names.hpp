@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-// Names of the files that stand beside a results file while it is written.
+// Names of the files beside a results file while it is written.
 namespace jostle::inline results {
 
 /// Bytes that a file's name may have in the folder of `path`: 255 nearly everywhere.

@@ -20,8 +20,8 @@ std::string output_path(const std::string& path);
 /// Who may write to a folder beside its owner.
 enum class Writers { everybody, a_group_or_everybody };
 
-/// True if another user may have put what is at `path` there: it is of another user, in a folder
-/// where these may write.
+/// True if another user may have created the file at `path`: it belongs to another user, in a
+/// folder where others may write.
 bool may_be_planted(const std::string& path, Writers writers);
 
 /// Makes a folder, if there is none. Throws ResultsError.

@@ -17,7 +17,7 @@ namespace jostle::inline results {
 /// The number of the parts' format.
 inline constexpr std::uint32_t part_format = 6;
 
-/// What every part carries, so that a foreign one is told from ours.
+/// Identification in every part, which distinguishes foreign parts.
 struct PartIdentity {
   std::string run_id;
   RealizationId id;
@@ -44,7 +44,7 @@ struct PartState {
   std::optional<RealizationState> state;
 };
 
-/// Where in a part's file a row of numbers lies, and how many there are.
+/// Position of a row of numbers in a part's file, and the number of rows.
 struct Extent {
   std::uint64_t n = 0, at = 0;
 };
@@ -81,7 +81,7 @@ void write_segment(const std::string& path, const PartIdentity& identity, std::u
 /// Read a part. Throw ResultsError where it is missing, truncated, damaged, of another run or
 /// another realization.
 PartState read_state(const std::string& path, const PartIdentity& identity);
-/// As the others, where series and snapshots are wanted later.
+/// Like the functions above, but loads series and snapshots lazily.
 PartOutline read_state_outline(const std::string& path, const PartIdentity& identity);
 PiecePlaces read_segment_places(const std::string& path, const PartIdentity& identity,
                                 std::uint32_t number);

@@ -121,7 +121,7 @@ void put(ByteWriter& writer, const SeriesPiece& piece) {
 
 namespace {
 
-/// What takes little room, which follows the rest.
+/// Small data, which follow the rest.
 template <class Snapshot>
 void get_small(ByteReader& reader, Snapshot& snapshot) {
   if (reader.get_flag()) snapshot.coordination = reader.get<double>();

@@ -106,7 +106,7 @@ void publish(const std::string& path, std::span<const std::byte> bytes) {
 }
 
 std::string end_of_links(const std::string& path) {
-  constexpr int most_links = 40;  // as Linux follows
+  constexpr int most_links = 40;  // as many as Linux follows
   std::filesystem::path end(path);
   for (int links = 0; links < most_links; ++links) {
     struct stat status;
@@ -144,7 +144,7 @@ void sync_folder_of(const std::string& path) {
   const std::string folder = folder_of(path);
   const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!descriptor) fail_on_disk(folder, "open", errno);
-  // Some network file systems cannot fsync a folder and say EINVAL: there is nothing to be done.
+  // Some network file systems cannot fsync a folder and return EINVAL, which is ignored.
   if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail_on_disk(folder, "fsync", errno);
 }
 

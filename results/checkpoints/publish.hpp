@@ -16,8 +16,8 @@ void publish(const std::string& path, std::span<const std::byte> bytes);
 /// All bytes to a descriptor that is open on `path`, whatever interrupts or shortens a write.
 void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes);
 
-/// Where symbolic links at `path` end, to read there: the path itself if it is none. What is to be
-/// written has output_path().
+/// Target of symbolic links at `path`, for reading; the path itself without a link. Outputs use
+/// output_path().
 std::string end_of_links(const std::string& path);
 
 /// Refuses to replace what is no file, and a file that is write-protected; what is not there may

@@ -39,7 +39,7 @@ void Recorder::snapshot(const SnapshotRecord& record) {
   publish_tail_if_large();
 }
 
-/// A segment that no published state counts is written anew by whoever goes on from that state.
+/// A segment that no published state counts is written again by a resume from that state.
 void Recorder::publish_tail_if_large() {
   if (part_.tail.bytes() < largest_tail) return;
   write_segment(segment_path(results_path_, identity_.id, part_.n_segments), identity_,

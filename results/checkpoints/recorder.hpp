@@ -10,12 +10,12 @@ namespace jostle::inline results {
 /// Writes the parts of one realization while it runs. One thread at a time.
 class Recorder {
  public:
-  /// Goes on from `part`, the last checkpoint or an empty one.
+  /// Resumes from `part`, the last checkpoint or an empty one.
   Recorder(std::string results_path, PartIdentity identity, std::size_t n_columns, PartState part);
 
   void append(const TapRow& row);
   void snapshot(const SnapshotRecord& record);
-  /// Both publish a state and say what it says.
+  /// Both publish a state and return its content.
   RealizationSummary checkpoint(const RealizationState& state);
   RealizationSummary end(const RealizationState& state, const Outcome& outcome);
 

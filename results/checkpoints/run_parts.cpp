@@ -44,7 +44,7 @@ std::optional<PartName> parse_name(const std::string& name) {
   return part;
 }
 
-/// What a folder's owner, and nobody else, chose: a link here could make us remove files anywhere.
+/// Only the folder's owner may choose it: a link here could make us remove files anywhere.
 void require_own_folder(const std::string& folder) {
   struct stat status;
   if (::lstat(folder.c_str(), &status) != 0) {
@@ -119,7 +119,7 @@ PartsIndex index_parts(const std::string& results_path, const PartIdentity& iden
   return index;
 }
 
-/// What a results file holds of a realization, continued by its parts.
+/// Data of a realization in a results file, continued by its parts.
 class Continued : public StoredRealization {
  public:
   Continued(std::unique_ptr<StoredRealization> base, const std::string& results_path,
@@ -148,14 +148,14 @@ class Continued : public StoredRealization {
   std::vector<Contact> contacts(std::uint64_t tap) override;
 
  private:
-  /// Where something lies that was indexed.
+  /// Position of an indexed item.
   struct Place {
     std::uint32_t segment;
     std::uint64_t at;
   };
-  /// Reads what `place` finds in the index. A live run goes on: another checkpoint may have taken
-  /// the place of the one that was indexed, or its tail become a segment; all is indexed anew then,
-  /// and what was there is there again.
+  /// Reads the item that `place` finds in the index. A live run continues: another checkpoint may
+  /// have taken the place of the one that was indexed, or its tail become a segment; all is indexed
+  /// anew then, and the item is found again.
   void read(const std::function<Place()>& place, std::span<std::byte> bytes);
   const PartsIndex::Rows& rows_with(std::uint64_t row) const;
   const PartsIndex::Snapshot* snapshot_at(std::uint64_t tap) const;

@@ -25,13 +25,13 @@ std::vector<RealizationId> realizations_with_parts(const std::string& results_pa
 
 RealizationSummary summary_of(RealizationId id, const PartState& part);
 
-/// Verifies every part of a run before it goes on, and clears away what a killed process left half
-/// done: temporary files and segments that no checkpoint counts.
+/// Verifies every part of a run before it resumes, and removes incomplete files of a killed
+/// process: temporary files and segments that no checkpoint counts.
 std::map<RealizationId, RealizationSummary> verify_parts(const std::string& results_path,
                                                          const std::string& run_id,
                                                          const Study& study);
 
-/// What the file holds of a realization (`base`), continued by its parts, which are verified now
+/// Data of a realization in the file (`base`), continued by its parts, which are verified now
 /// and read as they are asked for. `results_path` must outlive it.
 std::unique_ptr<StoredRealization> continued(std::unique_ptr<StoredRealization> base,
                                              const std::string& results_path,

@@ -67,7 +67,7 @@ std::string line_for(const std::string& path, const Descriptor& file, std::uint6
   return std::string(line_start) + hex(sum.finish()) + "\n";
 }
 
-/// Where the signature stands: at the start, or behind a user block of 512 bytes, 1024, 2048, ...;
+/// Position of the signature: at the start, or behind a user block of 512 bytes, 1024, 2048, ...;
 /// nothing where there is none. https://docs.hdfgroup.org/hdf5/develop/_f_m_t3.html
 std::optional<std::uint64_t> signature_place(const std::string& path, const Descriptor& file) {
   const std::uint64_t size = size_of(path, file);
@@ -76,7 +76,7 @@ std::optional<std::uint64_t> signature_place(const std::string& path, const Desc
   return std::nullopt;
 }
 
-/// Where HDF5 says that the file ends, by its superblock; 0 for one of a layout that is not known.
+/// End of the file by HDF5's superblock; 0 for an unknown layout.
 std::uint64_t hdf5_end(const std::string& path, const Descriptor& file) {
   constexpr std::size_t longest = 64;
   const std::string block = read_at(path, file, 0, longest);

@@ -12,16 +12,16 @@ namespace jostle::inline results {
 /// Appends the line to a file. Throws ResultsError.
 void seal(const std::string& path);
 
-/// `lost`: the line is gone, and the file ends where HDF5 says it does. HDF5 leaves every file so
-/// that was opened for writing, changed or not; only the contents can show that they are the old
-/// ones (file/contents.hpp).
+/// `lost`: the line is missing, and the file ends where its superblock ends it. HDF5 leaves every
+/// file in this state that was opened for writing, changed or not; only the contents can show that
+/// they are the old ones (file/contents.hpp).
 enum class SealState { whole, lost };
 
 /// Reads the ends of the file alone. Throws ResultsError where it is no HDF5 file, or where it ends
-/// neither with the line nor where HDF5 says.
+/// neither with the line nor at HDF5's end.
 SealState seal_state(const std::string& path);
 
-/// Verifies the checksum, where there is one. Throws ResultsError saying what is wrong with the
+/// Verifies the checksum, where there is one. Throws ResultsError saying the fault with the
 /// file: missing, not HDF5, truncated, changed. `take` is given the whole file, piece by piece,
 /// before that is known: one reading is enough to verify and to copy.
 [[nodiscard]] SealState verify_seal(

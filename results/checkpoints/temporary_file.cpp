@@ -24,7 +24,7 @@ constexpr std::size_t random_digits = 8;
 constexpr std::string_view ending = ".tmp";
 constexpr mode_t permissions = 0777;
 
-/// What is to be replaced, if it may be.
+/// The file to be replaced, if this is permitted.
 std::optional<struct stat> replaced_file(const std::string& path) {
   struct stat status;
   if (::lstat(path.c_str(), &status) != 0) {
@@ -42,7 +42,7 @@ void take_over(const std::string& path, int file, const struct stat& old) {
   struct stat own;
   if (::fstat(file, &own) != 0) fail_on_disk(path, "create", errno);
   mode_t mode = old.st_mode & permissions;
-  // What the old group might read, another must not.
+  // Permissions of the old group are not given to another.
   const bool same_group = own.st_gid == old.st_gid || ::fchown(file, -1, old.st_gid) == 0;
   if (!same_group) mode &= ~static_cast<mode_t>(070);
   if (own.st_uid != old.st_uid && ::fchown(file, old.st_uid, -1) != 0 && errno != EPERM)

@@ -15,8 +15,8 @@ namespace jostle::inline results {
 /// published. Everything throws ResultsError.
 class TemporaryFile {
  public:
-  /// Makes an empty file beside `path`. What is there is going to be replaced: its permissions are
-  /// taken over; what is a link, no file, or write-protected, is refused.
+  /// Makes an empty file beside `path`. An existing file will be replaced: its permissions are
+  /// copied. A link, a directory or a write-protected file is rejected.
   explicit TemporaryFile(const std::string& path);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -39,7 +39,7 @@ class TemporaryFile {
 };
 
 /// Publishes several finished files that belong together.
-/// Where one cannot be given its name, those before it that replaced nothing are taken away again.
+/// Where one cannot be given its name, earlier ones that replaced nothing are removed again.
 void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files);
 
 /// Removes what killed processes left on the way to `path`. For the owner of its lock.

@@ -24,7 +24,7 @@ Taps taps_with_positions(const std::vector<SnapshotRecord>& records) {
   return taps;
 }
 
-/// What a reader may ask for instead: the realizations that keep positions, and their taps.
+/// Alternatives for a reader: the realizations that keep positions, and their taps.
 std::string all_kept(const ResultsFile& file) {
   constexpr int most_lines = 12;
   std::string text;

@@ -28,7 +28,7 @@ struct ExportedFile {
 std::vector<ExportedFile> exported_files(ExportFormat format, const std::string& path,
                                          std::span<const ExportedFrame> frames);
 
-/// Which of the kept packings: all, those of some taps (frames of an extended XYZ file, from 0), or
+/// Selection of kept packings: all, those of some taps (frames of an extended XYZ file, from 0), or
 /// the last if none is named.
 struct KeptTaps {
   bool all = false;

@@ -37,7 +37,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Splits a comment line into key=value pairs. A value with blanks stands in quotes or brackets.
+/// Splits a comment line into key=value pairs. A value with blanks is in quotes or brackets.
 class CommentParser {
  public:
   explicit CommentParser(const std::string& line) : line_(line) {}
@@ -251,8 +251,8 @@ std::vector<SphereKind> kinds_of(const Keys& keys) {
   return kinds;
 }
 
-/// Reads Properties=name:type:columns:..., where a line must hold all of them: one that lacks a
-/// number would pass for another. Without it, a name and the positions are all.
+/// Reads Properties=name:type:columns:..., where a line must hold all of them: a line without a
+/// number could be misread. Without it, a name and the positions are all.
 void read_columns(const Keys& keys, ExtendedXyzHeader& header) {
   const auto properties = keys.find("properties");
   if (properties == keys.end()) return;

@@ -16,7 +16,7 @@ namespace jostle::inline results {
 
 /// A column, or several, that holds sizes of spheres.
 struct SizeColumns {
-  std::string name;       // as the file spells it
+  std::string name;       // spelled as in the file
   std::size_t first = 0;  // index of a word in a line
   std::size_t n = 1;
   double model = 0;          // the size of equal spheres: radius 0.5 or diameter 1
@@ -31,14 +31,14 @@ struct ExtendedXyzHeader {
   std::size_t n_columns = 4;
   std::vector<SizeColumns> sizes;
   std::optional<std::size_t> species;  // a column of names
-  std::vector<SphereKind> kinds;       // as the line lists them; empty: those that species name
+  std::vector<SphereKind> kinds;       // in the order of the line; empty: those that species name
 };
 
 /// Reads a comment line. Throws std::invalid_argument: whatever changes the meaning of the
 /// positions is understood or refused (docs/reference/file-format.md#extended-xyz).
 ExtendedXyzHeader parse_extended_xyz_header(const std::string& comment);
 
-/// "T T F": which directions are periodic, as pbc says it.
+/// "T T F": periodic directions, in the form of pbc.
 std::string periodic_directions(const Boundary& boundary);
 
 /// Words between blanks.

@@ -25,8 +25,7 @@ class InputFile {
   bool next_line(std::string& line);
   /// Fills the bytes from a place in the file; throws where the file ends before.
   void read_at(std::uint64_t offset, std::span<std::byte> bytes);
-  /// Tells it from another that was put in its place: of no other file that is there or was made
-  /// since.
+  /// Identifies the file: differs for every other file that exists or was made since.
   std::string stamp() const;
   /// All that has not been read; throws beyond 256 MB.
   std::string rest();

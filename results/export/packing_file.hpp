@@ -10,8 +10,8 @@
 // Packings kept by an earlier run or made elsewhere.
 namespace jostle::inline results {
 
-/// Which snapshot of a results file; an extended XYZ file has frames (`tap` then is the frame's
-/// number from 0) and no points or realizations.
+/// Selection of a snapshot of a results file; an extended XYZ file has frames (`tap` then is the
+/// frame's number from 0) and no points or realizations.
 struct PackingSelector {
   std::uint32_t point = 0;
   std::uint32_t realization = 0;

@@ -127,7 +127,7 @@ void ContentWalk::add_dataset(hid_t dataset, const std::string& path) {
 
 void ContentWalk::add_attributes(hid_t object, const std::string& path) {
   Names names = attribute_names(object);
-  // References to where a dataset lies in the file; add_axes names them instead.
+  // References to the address of a dataset in the file; add_axes names them instead.
   std::erase_if(names, [](const std::string& name) {
     return name == "DIMENSION_LIST" || name == "REFERENCE_LIST";
   });
@@ -150,7 +150,7 @@ void ContentWalk::add_attribute(hid_t object, const std::string& name, const std
       [&] { return texts_of_attribute(attribute, name); });
 }
 
-/// Axes lie in the group of what stands along them, and a reference to one is its address there:
+/// Axes are in the group of their datasets, and a reference to one is its address there:
 /// to ask HDF5 for its name would search the whole file.
 void ContentWalk::add_axes(hid_t dataset, const std::string& path, const Paths& paths) {
   const auto axes = axes_of(dataset);

@@ -18,7 +18,7 @@ class ContentSink {
  public:
   virtual ~ContentSink() = default;
 
-  /// The bytes that follow are of another item. `attribute` is empty for other kinds.
+  /// The following bytes belong to another item. `attribute` is empty for other kinds.
   virtual void begin(const std::string& path, const std::string& attribute) = 0;
   virtual void add(std::span<const std::byte> bytes) = 0;
   /// Names of all members of a group, or of all attributes of an object, in their order: no item.

@@ -28,7 +28,7 @@ bool is_contents(const std::string& path) {
   return path == folder_path;
 }
 
-/// The group below the root that a path lies in.
+/// The group below the root that contains a path.
 std::string group_of(const std::string& path) {
   return path == "/" ? root : path.substr(1, path.find('/', 1) - 1);
 }
@@ -119,7 +119,7 @@ class ComparedHashes : public ItemHashes {
       changed_.push_back(item);
   }
 
-  /// True if another change tells why a list of names is another one: what was added is named.
+  /// True if another change explains a changed list of names: the added name is reported.
   bool explains(const Item& list) const {
     const std::string below = list.path == "/" ? "/" : list.path + "/";
     return std::ranges::any_of(changed_, [&](const Item& one) {

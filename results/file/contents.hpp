@@ -8,7 +8,7 @@
 
 // /provenance/contents: a hash of every item of the file (content_walk.hpp), in one dataset for the
 // root and one for each group below it. The seal is over bytes, which another program may move;
-// these hashes tell whether the contents are still the ones that jostle wrote, and what is not.
+// these hashes show if the contents are unchanged since jostle wrote them, and name the changes.
 namespace jostle::inline results {
 
 /// Hashes all of a file that is open for writing. Throws Hdf5Error.

@@ -4,8 +4,8 @@
 
 #include "results/results_file.hpp"
 
-// A results file is as jostle wrote it where its seal says so, or, where another program opened it
-// for writing and so cut the seal off, where its contents do. All throw ResultsError.
+// A results file is intact if its seal verifies, or, if another program opened it for writing and
+// thereby removed the seal, if its contents verify. All throw ResultsError.
 namespace jostle::inline results {
 
 /// Refuses what is not as jostle wrote it, naming what differs. `known_as`: the file's name in

@@ -61,7 +61,7 @@ inline constexpr const char *motion_origins = "motion_origins", *motion_lags = "
                             *motion_lengths = "motion_overlap_lengths",
                             *motion_layers = "motion_layers", *motion_folder = "motion";
 
-/// What fitting did to the pours of points that start from one.
+/// Records of fitting for points that start from a fitted pour.
 inline constexpr const char* fitting_folder = "fitting";
 
 /// The datasets of /provenance, one text a process that worked on the file.

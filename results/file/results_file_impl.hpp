@@ -20,7 +20,7 @@
 
 namespace jostle::inline results {
 
-/// What is stored of a point, but for series, positions and restart states.
+/// Stored data of a point except series, positions and restart states.
 struct PointTables {
   std::uint32_t point = 0;
   std::vector<std::uint8_t> statuses;

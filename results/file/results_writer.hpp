@@ -11,7 +11,7 @@
 
 namespace jostle::inline results {
 
-/// What a results file is written from.
+/// Source of the data of a results file.
 struct FileContent {
   const Study& study;
   Shard shard;
@@ -20,7 +20,7 @@ struct FileContent {
   /// Called once for every realization of the study, in the order of (point, realization); those of
   /// a point are kept while it is written. Absent: the small file of a run that has just begun.
   std::function<std::unique_ptr<StoredRealization>(RealizationId)> realization;
-  /// Told how many realizations are written, of how many; may be absent.
+  /// Receives the number of written realizations and the total; may be absent.
   StoringProgress progress = {};
 };
 

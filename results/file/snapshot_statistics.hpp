@@ -11,7 +11,7 @@
 
 namespace jostle::inline results {
 
-/// What is kept of the snapshots of a point but for what is kept of every sphere.
+/// Snapshots of a point without the data of every sphere.
 struct SnapshotStatistics {
   std::vector<double> coordination;  // [n_taps, n_realizations], NaN where there is none
   std::vector<std::optional<BedForces>> forces;  // [n_taps, n_realizations]
@@ -25,7 +25,7 @@ struct SnapshotStatistics {
 void write_snapshot_statistics(hid_t group, const StudyPoint& point, std::uint32_t n_realizations,
                                const SnapshotStatistics& statistics);
 
-/// The forces of the snapshots of a point, [n_taps, n_realizations], as they stand in its group;
+/// The forces of the snapshots of a point, [n_taps, n_realizations], in the order of its group;
 /// empty where none were kept. Throws Hdf5Error.
 std::vector<std::optional<BedForces>> read_bed_forces(hid_t group, const StudyPoint& point,
                                                       std::uint32_t n_realizations);

@@ -118,7 +118,7 @@ std::vector<std::pair<std::string, std::string>> values_like(const StudyPoint& e
   return values;
 }
 
-/// What all points keep, together: a few bytes of a file make a list of each point anew.
+/// Limit for all points together: a few bytes of a file can define a list for each point.
 class KeptInAll {
  public:
   /// Throws Hdf5Error beyond what memory is for.
@@ -174,7 +174,7 @@ StudyPoint read_point(hid_t sweep, std::span<const StudyPoint> earlier, const Sw
   return point;
 }
 
-/// The layout tells whether there are mixtures, so that no reader takes one for equal spheres.
+/// The layout number marks mixtures, so that no reader takes one for equal spheres.
 void check_mixtures(hid_t file, std::uint32_t layout, const Study& study) {
   const bool mixtures = std::ranges::any_of(
       study.points, [](const StudyPoint& point) { return point.mixture != nullptr; });

@@ -85,7 +85,7 @@ bool keeps_the_same(const StudyPoint& a, const StudyPoint& b) {
          a.snapshots == b.snapshots && a.motion == b.motion && pointers_of(a) == pointers_of(b);
 }
 
-/// What is kept of a point.
+/// Kept data of a point.
 void write_kept(hid_t group, const StudyPoint& point) {
   Texts values;
   for (const auto& [pointer, value] : point.sweep_values) values.push_back(value);
@@ -94,7 +94,7 @@ void write_kept(hid_t group, const StudyPoint& point) {
   make_axis(write_numbers(group, "snapshot_taps", point.snapshots.taps), "snapshot_taps");
   std::vector<std::uint8_t> kept;
   for (const auto field : kept_fields) kept.push_back(point.snapshots.*field);
-  // Those of engines that move spheres in time stand only where one is kept.
+  // Data of engines that move spheres in time exist only if a snapshot keeps them.
   while (kept.size() > n_kept_by_all && kept.back() == 0) kept.pop_back();
   write_attribute<std::uint8_t>(group, "snapshots_keep", kept);
   write_attribute(group, "contact_cut", point.snapshots.contact_cut);
@@ -138,8 +138,8 @@ std::optional<std::vector<double>> numbers_at(const Study& study, const std::str
   return numbers;
 }
 
-/// What a pointer's values are called as a coordinate: its last token where that tells it from
-/// everything else in the table, else all of it with underscores.
+/// Name of a pointer's values as a coordinate: its last token if this is unique in the table, else
+/// all of it with underscores.
 std::string coordinate_name(const std::string& pointer, const Texts& pointers) {
   const auto last_token = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
   const std::string name = last_token(pointer);
@@ -154,7 +154,7 @@ std::string coordinate_name(const std::string& pointer, const Texts& pointers) {
   return whole;
 }
 
-/// What is swept as numbers, a dataset a pointer; returns their names.
+/// Writes swept numbers, one dataset per pointer; returns their names.
 std::string write_coordinates(hid_t sweep, const Study& study, const Texts& pointers,
                               const Hdf5Handle& points) {
   std::string names = "label";

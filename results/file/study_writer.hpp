@@ -13,10 +13,10 @@ void write_h5md_root(hid_t file);
 void write_study(hid_t file, const Study& study);
 void write_provenance(hid_t file, const FileContent& content, RunState state);
 
-/// The same read back. Throw Hdf5Error.
+/// Read the data back. Throw Hdf5Error.
 Study read_study(hid_t file);
 /// True if that would give this study. Only the scenes are compared, so that the answer is no where
-/// they do not tell all: of starts from files.
+/// they are not sufficient: for starts from files.
 bool has_study(hid_t file, const Study& study);
 struct FileProvenance {
   std::string run_id;

@@ -129,7 +129,7 @@ void validate(const Study& study, const FileProvenance& provenance) {
 
 namespace {
 
-/// As far as its realization has come.
+/// Up to the last tap of its realization.
 bool is_followed(const MotionState& motion, const MotionSettings& settings, std::uint64_t rows,
                  std::uint32_t n_spheres) {
   const auto are_there = [&](const std::vector<Vec3>& centres) {

@@ -6,14 +6,14 @@
 #include "results/record.hpp"
 #include "results/study.hpp"
 
-// What every reader relies on, and what only a file that jostle did not write breaks. All throw
+// Conditions that every reader requires, and that only files of other programs violate. All throw
 // Hdf5Error.
 namespace jostle::inline results {
 
 /// Counts, sizes and names of a study, and the shares and processes of its run.
 void validate(const Study& study, const FileProvenance& provenance);
 
-/// What a realization goes on from.
+/// State from which a realization resumes.
 void validate(const RealizationState& state, const StudyPoint& point);
 
 /// True if squares of the coordinates are numbers: a bed that is tapped before it has fallen back

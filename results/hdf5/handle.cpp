@@ -14,7 +14,7 @@ Hdf5Handle file_access() {
   checked(H5Pget_mdc_config(access, &cache));
   cache.set_initial_size = true;
   cache.initial_size = cache.min_size = 2u << 20;
-  cache.max_size = 128u << 20;  // as much as HDF5 allows
+  cache.max_size = 128u << 20;  // the limit of HDF5
   cache.incr_mode = H5C_incr__off;
   cache.decr_mode = H5C_decr__off;
   cache.flash_incr_mode = H5C_flash_incr__add_space;

@@ -10,7 +10,7 @@
 
 namespace jostle::inline results {
 
-/// What HDF5 says is wrong; which file is added by naming_file().
+/// The error message of HDF5; naming_file() adds the file.
 class Hdf5Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

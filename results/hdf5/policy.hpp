@@ -7,7 +7,7 @@
 
 #include "results/hdf5/write.hpp"
 
-// What HDF5 can do and results files never use. The seal is a checksum and no signature: anybody
+// Features of HDF5 that results files never use. The seal is a checksum and no signature: anybody
 // can seal a file that leads elsewhere, in circles, or that claims to hold more than it does. All
 // throw Hdf5Error.
 namespace jostle::inline results {
@@ -26,7 +26,7 @@ void require_plausible_shape(const Shape& shape);
 /// Refuses an object with thousands of attributes, which HDF5 takes hours to list.
 void require_few_attributes(hid_t object);
 
-/// A member of a group, and where in the file it lies.
+/// A member of a group, and its address in the file.
 struct Member {
   std::string name;
   haddr_t address;

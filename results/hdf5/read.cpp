@@ -58,7 +58,7 @@ std::string only(const std::string& name, const std::vector<std::string>& texts)
 
 Hdf5Handle open_to_read(const std::string& path) {
   const Hdf5Handle access = file_access();
-  // What is read is never written in place; and where there is no flock, HDF5 would open nothing.
+  // Files that are read are never written in place; without flock, HDF5 would not open them.
   checked(H5Pset_file_locking(access, false, true));
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
 }
@@ -144,8 +144,8 @@ std::vector<std::string> texts_of_dataset(hid_t dataset, const std::string& name
   const Shape shape = shape_of_space(space);
   const std::size_t n = n_elements(shape);
   if (n == 0) return {};
-  // Each text lies in the file by itself. References to one and the same make more of it than there
-  // is: so many are read at once as cannot take all memory, and counted.
+  // Each text is stored separately. Repeated references to one text can expand it: the number read
+  // at once is limited by memory, and counted.
   constexpr hsize_t most_bytes_at_once = 256u << 20, fewest_at_once = 16;
   const hsize_t bytes_there = size_of_file(dataset);
   const hsize_t at_once = std::max(fewest_at_once, most_bytes_at_once / bytes_there);

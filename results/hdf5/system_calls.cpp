@@ -43,7 +43,7 @@ std::uint64_t start_time_of(long pid) {
   std::istringstream rest(line.substr(line.rfind(')') + 1));
   std::string word;
   rest >> word;
-  if (word == "Z" || word == "X") return 0;  // as in a container, where nobody reaps
+  if (word == "Z" || word == "X") return 0;  // a zombie, as in a container without init
   for (int field = 4; field <= 22; ++field) rest >> word;
   return rest ? std::stoull(word) : 0;
 #else

@@ -18,8 +18,8 @@ struct ChangeTime {
 };
 ChangeTime change_time(const struct stat& status);
 
-/// Tells process `pid` of this host from later ones with its number: the time of its start, in
-/// clock ticks since the system's (field 22 of /proc/PID/stat). 1 for every living process where
+/// Distinguishes process `pid` of this host from later ones with its number: the time of its start,
+/// in clock ticks since the system's (field 22 of /proc/PID/stat). 1 for every living process where
 /// there is no /proc. 0 where there is no such process, or one that has ended and that nobody has
 /// reaped; without /proc only a child of this process is seen to have ended so.
 std::uint64_t start_time_of(long pid);

@@ -16,10 +16,10 @@
 namespace jostle::inline results {
 namespace {
 
-/// What the driver is told through the access properties.
+/// Data that the driver receives through the access properties.
 struct DriverSettings {
   int* error;
-  bool keep;  // what is in the file
+  bool keep;  // size of the file's contents
 };
 
 /// HDF5 sees the first member and hands its address back to every function below.
@@ -136,7 +136,7 @@ herr_t write_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t at, std::size_t n
   const auto* from = static_cast<const std::byte*>(bytes);
   try {
     file.waiting.insert(file.waiting.end(), from, from + n);
-  } catch (const std::bad_alloc&) {  // which must not pass through HDF5
+  } catch (const std::bad_alloc&) {  // these must not pass through HDF5
     remember(file, ENOMEM);
   }
   file.size = std::max(file.size, at + n);
@@ -186,9 +186,9 @@ H5FD_class_t driver_class() {
   return driver;
 }
 
-/// HDF5 1.10 may damage its heap and abort where memory runs out while it writes, so that the want
-/// is found out before: throws std::bad_alloc. It takes 1 MB for a dataset, and as much again for
-/// what waits to be written and to be compressed.
+/// HDF5 1.10 may damage its heap and abort where memory runs out while it writes, so that it is
+/// checked before: throws std::bad_alloc. It takes 1 MB for a dataset, and as much again for data
+/// that wait to be written and compressed.
 void require_memory() {
   constexpr std::size_t enough = 16u << 20;
   ::operator delete(::operator new(enough));

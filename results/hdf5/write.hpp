@@ -51,7 +51,7 @@ Hdf5Handle create_group(hid_t parent, const std::string& name);
 Hdf5Handle write_raw(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type,
                      const Shape& shape, const void* values, const Shape& chunk);
 
-/// The same without its values.
+/// Like write(), without values.
 Hdf5Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type,
                           const Shape& shape, const Shape& chunk);
 /// Writes values from index `first` of the first dimension on, over the whole of the others.

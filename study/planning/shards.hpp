@@ -19,7 +19,7 @@ std::vector<std::string> results_files(std::span<const std::string> named);
 
 /// How a shard stands. `stopped`: in good order, by a signal or a time limit; `dead`: its process
 /// was killed; `missing`: no file holds it. All three go on with a resume. `unreadable`: by its
-/// name a file holds it that cannot be read, and what is in it may be finished.
+/// name a file holds it that cannot be read, and its contents may be finished.
 enum class ShardState { done, running, stopped, dead, missing, unreadable };
 const char* name_of(ShardState state);
 

@@ -16,7 +16,7 @@ class SelfCheckFailure : public std::runtime_error {
 struct SelfCheck {
   std::string name;
   std::function<std::string()> run;  // what was checked, in numbers; any exception is a failure
-  enum class Finds { wrong_numbers, bad_disk } finds;  // what is wrong where it fails
+  enum class Finds { wrong_numbers, bad_disk } finds;  // the fault where it fails
 };
 
 /// Fixed hard cases of the engine, the fits and the results files, of seconds. `folder` exists and

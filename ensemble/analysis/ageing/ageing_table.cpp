@@ -66,7 +66,7 @@ void add_curves(const AgeingCurves& curves, const std::string& of_change, Table&
   add("count", curves.count, "1", "realizations that reached both taps", "");
 }
 
-// What has no limit on a side has diverged, and is no number; scales at a B that is held have no
+// A parameter without a limit on a side has diverged, and has no value; scales at a held B have no
 // errors of their own.
 LogEstimate storable(const AgeingLaw& law, LogEstimate AgeingLaw::*parameter, bool together) {
   const LogEstimate& estimate = law.*parameter;

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
   return complete;
 }
 
-// What the data say of one parameter; nothing where they say it well.
+// Describes how the data constrain one parameter; empty where they constrain it well.
 std::string statement(const char* name, const LogEstimate& estimate) {
   const bool above = estimate.low_95 > 0, below = std::isfinite(estimate.high_95);
   if (above && below) {

@@ -15,7 +15,8 @@ namespace jostle::inline ensemble {
 struct AgeingLaw {
   LogEstimate a_inf, b, tau;  // tau: taps
   double misfit;              // root mean square of A / law - 1 over lags
-  std::string verdict;        // what the curve says of the parameters, or why there is no fit
+  std::string
+      verdict;  // constraints of the curve on the parameters, or the reason of a missing fit
   /// B has no limit and is held at its best value: A_inf and tau, whose intervals are for that B,
   /// are scales of which only ratios between waiting times mean something.
   bool b_is_held = false;
@@ -45,8 +46,8 @@ struct AgeingFits {
 AgeingLaw own_law(const LogCurves& curve);
 
 /// Fits ln A(t, t_W) at every waiting time, then at all together with one B, all lags alike: the
-/// error of a mean of squares goes with the mean. Needs three realizations, and says so. The result
-/// does not depend on the number of threads.
+/// error of a mean of squares goes with the mean. Needs three realizations; the verdict reports it.
+/// The result does not depend on the number of threads.
 AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads = 1);
 
 }  // namespace jostle::inline ensemble

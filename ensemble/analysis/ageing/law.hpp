@@ -10,7 +10,7 @@
 
 // Eq. 6 of Philippe & Bideau 2001, A(t) = A_inf (1 - 1/(1 + B ln(1 + t/tau))), by least squares of
 // ln A, all lags alike, for one or several curves with one B. Lags of a path are not independent:
-// what is said of errors rests on realizations alone.
+// errors come from realizations alone.
 namespace jostle::inline ensemble {
 
 /// ln(1 - 1/(1 + B ln(1 + t/tau))).
@@ -33,7 +33,7 @@ class AgeingLeastSquares {
   bool b_is_held() const { return ln_b_.size() == 1; }
   /// True if the law can be that of the curves. Not where the squares still fall at the best point,
   /// along a tau or B, by more than chance (Student's t, 5 %): curves that rise faster than the
-  /// lag, or steepen, want a B or a 1/tau below 0. The best point then stands on the edge of the
+  /// lag, or steepen, require a B or a 1/tau below 0. The best point is then on the edge of the
   /// search, or on a ridge that leads there, so flat that rounding stops it.
   bool describes() const { return describes_; }
 

@@ -23,7 +23,7 @@ struct LogCurves {
   LogCurves one(std::size_t curve) const;
 };
 
-/// What a curve is of, at equal lag: mean squares of changes, A, or their variance, V
+/// Quantity of a curve at equal lag: mean squares of changes, A, or their variance, V
 /// (ensemble/analysis/ageing/ageing.hpp).
 enum class Changes { mean_square, variance };
 

@@ -7,8 +7,8 @@
 #include "ensemble/analysis/ageing/trends.hpp"
 
 // Tests if curves of all ages are one function of one variable made of lag and age. The function is
-// not given: cubic splines of ln A, a knot a decade of the variable, by least squares over all lags
-// alike. What is said of errors rests on realizations alone.
+// not given: cubic splines of ln A, a knot per decade of the variable, by least squares over all
+// lags with equal weights. Errors come from realizations alone.
 namespace jostle::inline ensemble {
 
 /// A(t, t_W) = F(t / t_W^mu). mu = 0: no ageing; 0 < mu < 1: subageing; 1: full ageing, t_W is the

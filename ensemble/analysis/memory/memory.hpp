@@ -23,7 +23,7 @@ struct LagWindow {
 /// 1, 2 to 3, 4 to 10, 11 to 30, ...: two windows a decade of lags, up to the last, which may end
 /// within one. last >= 1.
 std::vector<LagWindow> lag_windows(std::uint64_t last);
-/// The same with windows that end at these lags, ascending, at least 1.
+/// Like the function above, with windows that end at these lags, ascending, at least 1.
 std::vector<LagWindow> lag_windows(std::span<const std::uint64_t> ends);
 
 /// One way of reaching the common value.
@@ -34,7 +34,7 @@ struct History {
   std::vector<double> after;      // [n_windows, realizations]
 };
 
-/// What two histories differ by after the switch, at equal values at the switch.
+/// Difference of two histories after the switch, at equal values at the switch.
 struct AlignedDifference {
   std::size_t first = 0, second = 0, window = 0;  // histories, window of lags
   /// At equal value at the switch: the intercept of the straight line through the differences of
@@ -54,8 +54,8 @@ struct MemoryTest {
   std::vector<double> strengths{};  // [n_histories], before the switch
 
   static constexpr double level = 0.05;  // false alarms, all tests together
-  /// The difference that would have been found with probability 0.8 in whichever window and between
-  /// whichever histories it stands.
+  /// The difference that is detected with probability 0.8 in every window and between all
+  /// histories.
   double detectable() const;
   /// "phi alone is not the state", "no memory found" or "cannot decide", with test and power;
   /// `control`: what the strengths of the histories are, which it names them by.

@@ -9,8 +9,8 @@
 #include "ensemble/motion/motion_records.hpp"
 #include "ensemble/statistics/log_estimate.hpp"
 
-// What realizations say together of the motion of spheres. A row holds a value a realization, NaN
-// where it has none, which is left out.
+// Motion of spheres averaged over realizations. A row holds one value per realization; NaN values
+// are left out.
 namespace jostle::inline ensemble {
 
 /// Mean of a row, with its standard error (NaN below two realizations).
@@ -25,7 +25,7 @@ std::vector<double> lateral_squares(const MotionRecords& records, std::size_t or
 /// <(dz - <dz>)^2> of each: what is left of <dz^2> once the bed has settled as a whole.
 std::vector<double> vertical_squares(const MotionRecords& records, std::size_t origin,
                                      std::size_t lag);
-/// The same of a layer, about its own mean.
+/// The parameter of a layer, about its own mean.
 std::vector<double> layer_lateral_squares(const MotionRecords& records, std::size_t origin,
                                           std::size_t lag, std::size_t layer);
 std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
@@ -33,7 +33,7 @@ std::vector<double> layer_vertical_squares(const MotionRecords& records, std::si
 
 /// <r^4> / (2 <r^2>^2) - 1 of lateral displacements r in two dimensions: 0 for Gaussian ones.
 /// < > is the mean over spheres and realizations, the error a jackknife's over realizations.
-/// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is of three dimensions.
+/// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is for three dimensions.
 MeanEstimate lateral_non_gaussian(const MotionRecords& records, std::size_t origin,
                                   std::size_t lag);
 /// <z^4> / (3 <z^2>^2) - 1 of vertical displacements z about the mean of each realization.

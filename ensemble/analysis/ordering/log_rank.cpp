@@ -14,7 +14,7 @@ namespace {
 
 constexpr double rounding = 1e-9;
 
-/// As if it had been watched up to `last` alone.
+/// Censors all times at `last`.
 OrderingTime seen_until(const OrderingTime& time, std::uint64_t last) {
   return time.tap > last ? OrderingTime{last, false} : time;
 }

@@ -8,7 +8,7 @@
 #include "ensemble/analysis/ordering/times.hpp"
 #include "ensemble/plan.hpp"
 
-// Which of several ensembles orders first.
+// Finds the ensemble that orders first.
 namespace jostle::inline ensemble {
 
 /// For each time among all of them, [n]: 1 if it ordered, 0 if not, less Nelson & Aalen's
@@ -33,14 +33,14 @@ struct OrderingTimes {
 /// less one drawn at random, always the same. Times beyond the earlier end count as censored there.
 struct EarlierTest {
   double p = 1;
-  double least = 1;  // that so many realizations could give
+  double least = 1;  // smallest p that so many realizations could give
 };
 EarlierTest earlier(const OrderingTimes& first, const OrderingTimes& second, Streams streams);
 inline constexpr std::size_t most_ways = 10'000;
 
-/// Which of k candidates may be the best. Candidate j is not where another beats it at `level` over
-/// k - 1 (multiple comparisons with the best, Hsu 1996; Bonferroni): the truly best one is among
-/// those that may be with at least 1 - `level`, whichever it is.
+/// Finds which of k candidates may be the best. Candidate j is excluded where another beats it at
+/// `level` over k - 1 (multiple comparisons with the best, Hsu 1996; Bonferroni): the true best is
+/// among the remaining ones with probability at least 1 - `level`.
 struct Candidates {
   std::vector<double> p;      // p-value against the most likely winner, times k - 1, at most 1; [k]
   std::vector<bool> may_be;   // [k]

@@ -45,12 +45,13 @@ struct OrderingPoint {
   std::optional<Verdict> steady{};  // steadiness of these taps; absent: too few taps
 };
 
-/// What of the last taps is compared: its name and units, and which taps.
+/// Quantity of the last taps that is compared: name, units, taps.
 struct ComparedValue {
   std::string observable, units, taps;
 };
 
-/// Which point orders first, and which has the largest value in the end: two or more points.
+/// Finds the point that orders first, and the point with the largest final value: two or more
+/// points.
 Table ordering_comparison(const std::string& observable, const OrderingSettings& settings,
                           const ComparedValue& value, const std::vector<OrderingPoint>& points,
                           Streams streams);

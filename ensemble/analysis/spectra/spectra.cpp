@@ -75,9 +75,9 @@ std::size_t segment_of(std::size_t n_taps, const SpectrumOptions& options) {
   return options.segment == 0 ? n_taps : options.segment;
 }
 
-// What the powers at two lines share, summed over all pairs of `segments` segments and divided by
-// their number: by distance of the lines, [n / 2 + 1]. Of a pair of segments `shift` taps apart it
-// is the squared modulus of the transform of their windows' product.
+// Covariance of the powers at two lines, summed over all pairs of `segments` segments and divided
+// by their number: by distance of the lines, [n / 2 + 1]. For a pair of segments `shift` taps apart
+// it is the squared modulus of the transform of their windows' product.
 std::vector<double> shared_power(const SpectrumOptions& options, std::size_t segments) {
   const std::size_t n = options.segment;
   const std::vector<double> weights = weights_of(options.window, n);
@@ -155,7 +155,7 @@ std::vector<double> expected_welch(const SpectrumOptions& options,
   for (auto& line : transform) line = std::norm(line);
   std::vector<double> overlap;
   fft.inv(overlap, transform);
-  // Lags of both signs, folded on to a period of n: lines k / n do not tell them apart.
+  // Lags of both signs, folded on to a period of n: lines k / n do not distinguish them.
   std::vector<double> folded(n, 0.0);
   folded[0] = overlap[0] * covariance(0);
   for (std::size_t lag = 1; lag < n; ++lag) {

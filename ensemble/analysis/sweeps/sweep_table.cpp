@@ -93,7 +93,7 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
                                   : "of independent means (Welch): the streams are not matched");
 }
 
-// As error_of() has each point's by itself, [n_points].
+// Like error_of(), for each point by itself, [n_points].
 std::vector<ErrorOf> errors_of_points(const SweepCurve& curve) {
   std::vector<ErrorOf> errors;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
@@ -117,7 +117,7 @@ Errors numbers(const std::vector<ErrorOf>& errors) {
   return all;
 }
 
-// What pooling presumes.
+// The assumption of pooling.
 void add_scatter(const SweepCurve& curve, Table& table) {
   const double p = curve.p_of_equal_scatter();
   add_value("pooled_sigma_p", p, "1", "of realizations scattering alike at all points", table,

@@ -9,7 +9,7 @@
 #include "ensemble/statistics/log_estimate.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
-// Volumes of steady states and what they say of the compactivity X of Edwards & Oakeshott 1989,
+// Volumes of steady states and the compactivity X of Edwards & Oakeshott 1989,
 // doi:10.1016/0378-4371(89)90034-4: where a volume V is found with probability
 // D(V) exp(-V/X) / Z(X), with one density of states D for all strengths. Volumes are in volumes of
 // a sphere, and so is X.
@@ -36,7 +36,7 @@ class SteadyVolumes {
   double mean(std::size_t left_out) const;
   /// About that mean: within the series and between them, sum of squares over their number.
   double variance(std::size_t left_out) const;
-  /// What a straight line through each series changes by from its first to its last value, in
+  /// Change of a straight line through each series from its first to its last value, in
   /// deviations of the series about it, [realizations].
   const std::vector<double>& drifts() const { return drifts_; }
   double lowest() const { return lowest_; }
@@ -60,8 +60,8 @@ struct Replicates {
   std::vector<double> left_out{};  // [realizations]
 };
 
-/// By the jackknife over realizations, its bias of order 1/M taken away: of a variance about the
-/// mean of finite series all of it, of 1/variance the leading part.
+/// By the jackknife over realizations, without its bias of order 1/M: for a variance about the mean
+/// of finite series all of it, for 1/variance the leading part.
 struct Jackknifed {
   double value = 0;
   ErrorOf error{};  // M - 1 degrees of freedom; none below two realizations
@@ -92,7 +92,7 @@ struct CompactivityStep {
   Replicates curvature{};
 };
 
-/// What the two say of each other and of Edwards' form.
+/// Comparison of the two estimators and of Edwards' form.
 struct CompactivityVerdict {
   double difference_p = 1, curvature_p = 1;  // smallest over the steps, corrected (Holm 1979)
   double detectable = 0;  // largest over the steps: disagreement or curvature, over the largest
@@ -106,7 +106,7 @@ struct CompactivityVerdict {
   static constexpr double least_separation = 0.5;      // deviations
 };
 
-/// What histograms say less what fluctuations say. Of steps that overlap.
+/// Estimate by histograms less that by fluctuations, for steps that overlap.
 Replicates difference_of(const CompactivityStep& step);
 
 /// Between neighbours in the order given, all of the same realizations.
@@ -119,7 +119,7 @@ std::vector<Jackknifed> inverse_compactivity(std::span<const CompactivityStep> s
 /// The drift of all states together, in deviations: of each realization the mean over the states,
 /// which see what each alone does not. None below two realizations.
 Jackknifed drift_together(std::span<const SteadyVolumes> states);
-/// `drift`: of the states together. Of states that drift nothing is decided.
+/// `drift`: of the states together. If they drift, nothing is decided.
 CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps,
                                          const Jackknifed& drift);
 

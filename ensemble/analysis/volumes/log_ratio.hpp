@@ -13,8 +13,8 @@ struct LogRatio {
 };
 
 /// For two histograms, shares of bins, [n_bins], that overlap: by maximum likelihood of each
-/// volume's belonging to one or the other (logistic regression), both counting alike. Each bin
-/// stands at its middle; `centre` and `scale` make the volumes about 0 and 1.
+/// volume's belonging to one or the other (logistic regression), with equal weights. Each bin is
+/// represented by its middle; `centre` and `scale` make the volumes about 0 and 1.
 LogRatio log_ratio(std::span<const double> first, std::span<const double> second,
                    const VolumeBins& bins, double centre, double scale);
 

@@ -27,14 +27,14 @@ struct VolumeState {
   double strength = 0;
   std::uint64_t first_tap = 0, last_tap = 0;
   SteadyState steady{};        // steadiness of the observable
-  SteadyVolumes observable{};  // the same statistics of the observable itself
+  SteadyVolumes observable{};  // statistics of the observable itself
   SteadyVolumes volumes{};     // counted
   bool used() const { return steady.verdict() != Verdict::not_reached; }
 };
 
 /// Mean and variance of observable and volume at each strength, 1/X by both estimators from the
-/// first steady one on, and what they say of each other. States that are not steady have no part in
-/// 1/X and are named. `bins`: what the volumes of those that are were counted in.
+/// first steady one on, and their comparison. States that are not steady have no part in 1/X and
+/// are named. `bins`: bins of the volumes of the others.
 Table volume_table(std::string name, const Column& observable, const std::string& control,
                    const std::string& units, const VolumeOf& volume_of,
                    std::span<const VolumeState> states, const VolumeBins& bins);
