@@ -17,7 +17,7 @@ MOST_OF_OTHERS = 0.05
 
 
 def busy_seconds():
-    """Processor time of all programs since the machine started; None where the system does not tell."""
+    """Processor time of all programs since the machine started; None if the system does not report it."""
     try:
         user, nice, system, _, _, irq, soft_irq = map(int, open("/proc/stat").readline().split()[1:8])
     except OSError:

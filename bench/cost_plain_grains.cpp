@@ -1,6 +1,6 @@
 // "grains COUNT" makes time steps of grains without friction, between periodic sides and on a floor
-// that rests, written out: nothing but lists, forces and motion. What `cost_of_grains` takes more
-// than this is the price of what is there and not used.
+// that rests, written out: nothing but lists, forces and motion. The excess of `cost_of_grains` is
+// the price of unused effects.
 #include <cmath>
 #include <cstdlib>
 #include <numeric>

@@ -1,5 +1,5 @@
-// "taps COUNT" makes taps written out, with nothing between tap and trials. What `cost_of_effect`
-// takes more than this is the price of what is there and not used.
+// "taps COUNT" makes taps written out, with nothing between tap and trials. The excess of
+// `cost_of_effect` is the price of unused effects.
 #include <algorithm>
 #include <cstdlib>
 

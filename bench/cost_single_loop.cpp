@@ -1,5 +1,5 @@
 // "periodic COUNT" makes trials with the one loop that this program knows: periodic sides, polar
-// move. What `cost_of_effect` takes more than this is the price of what is there and not used.
+// move. The excess of `cost_of_effect` is the price of unused effects.
 #include <cstdlib>
 #include <memory>
 

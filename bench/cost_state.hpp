@@ -19,7 +19,7 @@ inline Packing poured_cost_bed(const Container& container) {
   return make_start(SteepestDescentPour{}, container, cost_spheres, random);
 }
 
-/// The same, tapped once.
+/// This bed, tapped once.
 inline Packing cost_bed(const Container& container) {
   RandomStream random(stream_key(cost_seed, 0, 0, Purpose::tap));
   Packing bed = poured_cost_bed(container);

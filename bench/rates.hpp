@@ -6,7 +6,7 @@
 
 namespace jostle::bench {
 
-/// What some trials cost.
+/// Cost of some trials.
 struct Rate {
   std::uint64_t trials = 0;
   double seconds = 0;  // seconds of processor time of the calling thread

@@ -28,7 +28,7 @@ struct ForgetfulSink final : Sink {
   void end(RealizationId, const RealizationState&, const Outcome&) override {}
 };
 
-// The first sweep point of a scene, or nothing where the file is no scene that stands alone.
+// The first sweep point of a scene, or nothing where the file is no complete scene.
 std::optional<Plan> first_point(const std::filesystem::path& file) {
   std::ifstream in(file);
   const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -15,7 +15,7 @@ enum class StandardState {
   lifted_bed,  // poured, lifted by 0.25, relaxed by Metropolis at zero temperature
   dense_60,    // disordered fluid squeezed to a solids fraction of 0.60; Metropolis, 0.1 d
   fluid_55,    // grown to 0.55, 200 sweeps of the same move
-  fluid_45,    // the same at 0.45
+  fluid_45,    // the fluid at 0.45
 };
 
 inline constexpr std::array all_standard_states = {

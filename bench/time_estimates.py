@@ -22,7 +22,7 @@ def run(*arguments):
 
 
 def estimated_seconds(path):
-    """Of the scene's own setting, all realizations."""
+    """Time of the scene's own setting, all realizations."""
     with h5py.File(path) as file:
         tables = file["analysis/cost"]
         return 3600 * float(tables[sorted(tables)[0]]["core_hours"][0])

@@ -138,7 +138,7 @@ std::string what_is_identified(const Fit& fit) {
   return text;
 }
 
-// Laws that draw the same curves are one law: the first of them competes.
+// Laws that draw this curves are one law: the first of them competes.
 std::vector<const Fit*> distinct(const std::vector<Fit>& fits) {
   std::vector<const Fit*> found;
   for (const Fit& fit : fits) {

@@ -21,7 +21,7 @@ struct ParameterTable {
 
 /// The tables of a fit in the order in which every report has them: where the least squares are at
 /// a limit of the law first that of the limit, then that of the law, then that of the law that
-/// draws the same curve.
+/// draws this curve.
 std::vector<ParameterTable> parameter_tables(const Fit& fit);
 
 /// "0.5735(17)", value and half of the 68 % interval; "-" where that is open; "0.5 fixed".

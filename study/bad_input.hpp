@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <string>
 
-// What the functions of study/ refuse. They know no command line: where a message must name an
+// Errors of the functions of study/. They know no command line: where a message must name an
 // option, the caller makes it from the fields below.
 namespace jostle::inline study {
 
-/// What is asked for cannot be done; what() says what, why and what to do.
+/// The request is invalid; what() gives the fault, the reason and what to do.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

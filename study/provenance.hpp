@@ -13,8 +13,8 @@ std::vector<std::string> command_line();
 /// For systems without /proc. Called once, before threads are started.
 void keep_command_line(int argc, char** argv);
 
-/// The file of this program. Where the system does not tell, what its first argument means: a path,
-/// or a name that is looked up along PATH. Throws std::filesystem::filesystem_error.
+/// The file of this program. If the system does not report it, the meaning of its first argument: a
+/// path, or a name that is looked up along PATH. Throws std::filesystem::filesystem_error.
 std::filesystem::path program_path();
 
 /// Arguments as a shell takes them, quoted where they must be.

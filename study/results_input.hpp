@@ -8,7 +8,7 @@
 #include "results/results_file.hpp"
 #include "study/bad_input.hpp"
 
-// What results are read from.
+// Sources of results.
 namespace jostle::inline study {
 
 /// By its first bytes.
@@ -17,10 +17,10 @@ bool is_results_file(const std::string& path);
 /// True if two names are of one file, there already or not.
 bool is_same_file(const std::string& a, const std::string& b);
 
-/// What is read of a run that goes on or was killed: its file alone, or its checkpoints too.
+/// Data that are read of a run in progress or a killed run: its file alone, or its checkpoints too.
 enum class Live { no, yes };
 
-/// A run that goes on or was killed has no data yet where they were looked for.
+/// A run in progress, or a killed run, has no data yet in the selected source.
 class NoTapsYet : public BadInput {
  public:
   NoTapsYet(const std::string& path, Live live);
@@ -32,17 +32,17 @@ class NoTapsYet : public BadInput {
   Live live_;
 };
 
-/// A results file whose data are wanted; it may be unfinished (ResultsFile::state). Throws
+/// A results file to be read; it may be unfinished (ResultsFile::state). Throws
 /// NoTapsYet, and ResultsError for the file.
 ResultsFile open_results(const std::string& path, Live live = Live::no);
 
 /// Throws BadInput where a file is named twice: it would count as more data than there are.
 void require_different(std::span<const std::string> paths);
-/// The same for copies of a file, which hold the same run.
+/// Rejects copies of a file, which hold one run.
 void require_different_runs(std::span<const ResultsFile> files);
 
-/// The sweep points that `wanted` names, by number or as "pointer=value"; all where it is empty.
-/// Throws BadArgument naming what there is.
+/// The sweep points that `wanted` names, by number or as "pointer=value"; all if it is empty.
+/// Throws BadArgument with the list of points.
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
 
 }  // namespace jostle::inline study

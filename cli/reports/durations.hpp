@@ -13,7 +13,7 @@ namespace jostle::inline cli {
 /// last number without a unit ("1h30", which may mean minutes), and above 1e9 s.
 std::optional<Seconds> parse_duration(std::string_view text);
 
-/// Describes the fault with a text that is no duration.
+/// Describes the fault of a text that is no duration.
 std::string duration_fault(std::string_view text);
 
 /// For people, two units at most: "850 ms", "42 s", "3 min 10 s", "5 h 12 min", "2 d 4 h".

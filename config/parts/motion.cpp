@@ -17,7 +17,7 @@ std::vector<std::uint64_t> taps_or(const std::optional<TapChoice>& choice,
   return chosen_taps(choice ? *choice : TapChoice(otherwise));
 }
 
-/// Notes the fault with a list of taps.
+/// Notes the faults of a list of taps.
 class TapCheck {
  public:
   TapCheck(const char* pointer, std::uint64_t taps, std::vector<Fault>& faults)

@@ -209,7 +209,7 @@ HeldOutLaw compared(const Ensemble& ensemble, const Predictions& law, const Pred
   return found;
 }
 
-// Those of X, of laws that draw the same curves the first.
+// Those of X, of laws that draw this curves the first.
 std::vector<FittedLaw> competing_laws(const std::vector<FittedLaw>& laws,
                                       std::vector<std::string>& left_out) {
   std::vector<FittedLaw> competing;

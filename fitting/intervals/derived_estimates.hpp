@@ -5,7 +5,7 @@
 #include "fitting/fit.hpp"
 
 // Estimates in other parameters than those that were fitted: combinations of two of them, and the
-// parameters of a law that draws the same curves.
+// parameters of a law that draws this curves.
 namespace jostle::inline fitting {
 
 /// A minimum and what its errors and intervals rest on. Keeps references.

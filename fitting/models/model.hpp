@@ -41,7 +41,7 @@ using ParameterValues = std::vector<double>;
 class Model;
 struct Limit;
 
-/// A law with other parameters that draws the same curves.
+/// A law with other parameters that draws this curves.
 struct Equivalent {
   std::shared_ptr<const Model> law;
   /// Returns the parameters of `law` for the curve of these; they may be outside its bounds.
@@ -88,7 +88,7 @@ class Model {
   /// The laws that it becomes where some of its parameters are 0 or infinite, fewest parameters
   /// first (fitting/models/limit.hpp).
   virtual std::vector<Limit> limits() const;
-  /// The law that draws the same curves with other parameters, if there is one.
+  /// The law that draws this curves with other parameters, if there is one.
   virtual std::optional<Equivalent> equivalent() const { return std::nullopt; }
   /// The curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }

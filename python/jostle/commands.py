@@ -1,4 +1,4 @@
-"""The program's commands as functions. docs/reference/commands.md says what each does."""
+"""The program's commands as functions. docs/reference/commands.md describes them."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def _output(scene: Scene | Path, output: Path | None) -> str:
     if isinstance(scene, Mapping):
         named = scene.get("name", "scene")
     else:
-        named = "scene"  # what cannot be read is refused by the program, in its words
+        named = "scene"  # the program reports what cannot be read
         with contextlib.suppress(OSError, ValueError, RecursionError), \
                 open(path_text(scene, "scene"), encoding="utf-8") as file:
             read = json.load(file)
@@ -121,8 +121,9 @@ def run(scene: Scene | Path, output: Path | None = None, *, threads: int | None 
 
     output: default the scene's name + .h5, in the current folder. time_limit, checkpoint_every: "90s",
     "30m", "1h30m". wait: how long another process that works on `output` is waited for, in the same form,
-    as in all functions that have it. shard: "i/n". progress: show it on stderr. The other options are those of `jostle run`.
-    KeyboardInterrupt (Ctrl-C) stops the run as the program does: all taps are stored, resume=True goes on.
+    as in all functions that have it. shard: "i/n". progress: show it on stderr. The other options are those of `jostle
+    run`.
+    KeyboardInterrupt (Ctrl-C) stops the run as the program does: all taps are stored, resume=True continues.
     Raises SceneError with every fault; RunStopped after a time limit or a signal, RealizationsFailed: both
     have the results that there are; ProgramError for everything else.
     """
@@ -141,7 +142,7 @@ def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | N
          target: float | None = None, budget: str | None = None, replicates: int | None = None,
          taps: int | None = None, sweep_point: int | str | None = None, resume: bool = False,
          force: bool = False, wait: str | None = None, program: Path | None = None) -> tuple[Results, str]:
-    """What the accuracy of a scene costs: its results file (tables in `.tables`), and the report's text.
+    """Measures the cost of a scene's accuracy. Returns its results file (tables in `.tables`) and the report's text.
 
     output: default NAME-cost.h5. target: recommend the cheapest way to this total error of `observable`.
     """
@@ -217,7 +218,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
 
 @takes_arguments
 def analyse(results: Results | Path | Sequence[Path], what: str,
-            observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None = None,
+            observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None =
+            None,
             waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
             quantity: str | None = None, against: str | None = None, reference: float | None = None,
             spheres: float | None = None, segment: int | None = None, window: str | None = None,
@@ -226,7 +228,7 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
             store: bool = True, live: bool = False, wait: str | None = None,
             program: Path | None = None) -> list[Table]:
     """what: "steady", "spectrum", "ageing", "hysteresis", "ordering", "sweep", "volumes" or "memory" of observables, or
-    "motion", which is of none; docs/reference/analyses.md and docs/reference/volumes.md have the equations.
+    "motion", which has none; docs/reference/analyses.md and docs/reference/volumes.md have the equations.
 
     Kept in the files under /analysis unless store=False.
     """
@@ -246,7 +248,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
               settings: Mapping[str, Any] | None = None, tap: Sequence[int] | None = None,
               sweep_point: int | str | None = None, threads: int | None = None, store: bool = True,
               live: bool = False, wait: str | None = None, program: Path | None = None) -> list[Table]:
-    """What kept packings, or extended XYZ files, look like inside; docs/reference/structure.md says what.
+    """Measures kept packings or extended XYZ files (docs/reference/structure.md).
 
     Kept in a results file under /structure unless store=False.
     """
@@ -260,7 +262,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
 @takes_arguments
 def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool = False,
            force: bool = False, threads: int | None = None, program: Path | None = None) -> Path:
-    """Writes one page for a browser that shows all that results hold; docs/reference/report.md says what. Returns
+    """Writes one page for a browser with all contents of results (docs/reference/report.md). Returns
     `output`."""
     call(["report", *_option("output", path_text(output, "output")),
           *_options(live=_live(results, live), force=force, threads=threads)], _paths(results), program=program)

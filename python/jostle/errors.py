@@ -25,7 +25,7 @@ class ResultsError(JostleError):
 
 
 class NotThere(JostleError, KeyError):
-    """What was asked for is not in the file; the message lists what is."""
+    """The file does not contain the requested item; the message lists its items."""
 
     __str__ = Exception.__str__  # KeyError shows its message in quotes
 
@@ -52,7 +52,7 @@ class ProgramError(JostleError):
     """The program refused or failed.
 
     exit_code: as in docs/reference/commands.md (2 bad input, 4 files, disk, memory); negative: the signal that
-    killed it. stderr: all that it said. command: its command line.
+    killed it. stderr: its messages. command: its command line.
     """
 
     def __init__(self, message: str, exit_code: int = 2, stderr: str = "",
@@ -78,8 +78,8 @@ class UnfinishedRun(ProgramError):
 
 
 class RunStopped(UnfinishedRun):
-    """Stopped by a signal or its time limit (exit code 75): run(..., resume=True) goes on."""
+    """Stopped by a signal or its time limit (exit code 75): run(..., resume=True) continues."""
 
 
 class RealizationsFailed(UnfinishedRun):
-    """Some realizations failed (exit code 3): results.points[i].reasons says why."""
+    """Some realizations failed (exit code 3): results.points[i].reasons has the reasons."""

@@ -1,4 +1,4 @@
-"""What `jostle fit --json` says, as objects."""
+"""The report of `jostle fit --json` as objects."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Fit:
 
     @property
     def restated(self) -> Fit | None:
-        """The same fit in the parameters of the law that draws the same curves (eq. 4 for eq. 3), if any."""
+        """This fit in the parameters of the law with identical curves (eq. 4 for eq. 3), if any."""
         one = self.report.get("restated")
         if one is None:
             return None

@@ -44,7 +44,7 @@ def ensemble_frame(results: Results, observables: Sequence[str]) -> pandas.DataF
 
 
 def _values(results: Results, number: int) -> list[object]:
-    """Of the coordinates of a sweep point, as the axes have them."""
+    """Labels of the coordinates of a sweep point, in the form of the axes."""
     places = np.unravel_index(number, results.sweep.shape) if results.sweep.shape else ()
     found = {name: values[place] for axis, place in zip(results.sweep.axes, places)
              for name, values in axis.coordinates.items()}
@@ -52,7 +52,7 @@ def _values(results: Results, number: int) -> list[object]:
 
 
 def table_frame(table: Table) -> pandas.DataFrame:
-    """The quantities that stand along all axes of most of them: see Table.to_pandas."""
+    """The quantities with the most common set of axes: see Table.to_pandas."""
     along = max((quantity.axes for quantity in table.quantities.values()), key=len, default=())
     return frame_along(table, along)
 

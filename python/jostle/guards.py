@@ -1,4 +1,4 @@
-"""What fails below this package becomes a JostleError with the failure as its cause."""
+"""Turns errors below this package into a JostleError with the failure as its cause."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The program jostle: where it is, and what it says when it refuses."""
+"""The program jostle: its place, and its error messages."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def call(words: Sequence[str], files: Sequence[Path] = (), behind: Sequence[str]
     """Runs the program to its end; an exit code not in `accept` raises what `refusal` makes of it.
 
     words: the command and its options. files: what it works on, which "--" keeps from being options.
-    behind: the words of a subcommand, which stand behind the files.
+    behind: the words of a subcommand, which follow the files.
     folded: texts fit a terminal; else a paragraph is a line.
-    show: what it says on stderr (progress) is shown as it comes. A KeyboardInterrupt is handed on as
-    SIGINT, once: the program stores what it has and ends, and the interrupt goes on from here.
+    show: its messages on stderr (progress) are shown at once. A KeyboardInterrupt is handed on as
+    SIGINT, once: the program stores what it has and ends, and the interrupt is raised again here.
     """
     operands = ["--", *map(operand, files)] if files else []
     command = [program_path(program), *words, *operands, *behind]
@@ -129,7 +129,7 @@ def faults_in(stderr: str) -> list[Fault]:
 
 
 def _refusals_in(stdout: str) -> str:
-    """What a JSON report gives as reasons where nothing came of any table or fit, a line each."""
+    """The reasons in a JSON report without any table or fit, one line each."""
     try:
         report = json.loads(stdout)
     except ValueError:

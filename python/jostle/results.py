@@ -36,7 +36,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
     """Opens a results file to read.
 
     verify: check the SHA-256 of the whole file too; its last line must be there in any case.
-    live: of a run that goes on or was killed, join its checkpoints to what the file has (a copy, made by
+    live: for a run in progress or a killed run, join its checkpoints to the file's data (a copy, made by
     the program in a temporary folder; nothing beside the file is touched).
     Raises ResultsError for what is no results file, or one of another layout. A file that another program
     opened for writing and did not change is verified by the program jostle, with a warning.
@@ -57,7 +57,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
 
 
 def _verify_contents(path: str, program: str | os.PathLike[str] | None) -> None:
-    """Of a file that has lost its last line."""
+    """For a file that has lost its last line."""
     lost = f"{path}: another program opened it for writing and cut off its last line, the checksum"
     try:
         digest_of(path, program)
@@ -119,8 +119,8 @@ class Points(Sequence[Point]):
 class Results:
     """A results file, open to read. Lengths are in sphere diameters, z points up, tap 0 is the start.
 
-    It stays open until `close`, or the end of a `with`; a file that a run replaces meanwhile goes on to be
-    read as it was. `file` is its h5py.File.
+    It stays open until `close`, or the end of a `with`; a file that a run replaces meanwhile is still read in its old
+    state. `file` is its h5py.File.
     """
 
     def __init__(self, path: str, file: h5py.File,
@@ -153,7 +153,7 @@ class Results:
         except ResultsError:
             return f"<jostle results {self.path}: damaged>"
 
-    # What was asked for.
+    # The request.
 
     @cached_property
     def scene(self) -> dict[str, Any]:
@@ -198,7 +198,7 @@ class Results:
         groups = [self.file[f"sweep/point_{number:04}"] for number in numbers]
         return [group for group in groups if "observables" in group]
 
-    # What came of it.
+    # The result.
 
     @property
     def points(self) -> Points:
@@ -234,7 +234,7 @@ class Results:
         return self.points[point].positions(realization, tap)
 
     def contacts(self, point: int = 0, realization: int = 0, tap: int | None = None) -> Contacts:
-        """Of grains: what presses on what, and the moments of the forces."""
+        """Contacts of grains, their forces, and the moments of the forces."""
         return self.points[point].contacts(realization, tap)
 
     def box(self, point: int = 0, realization: int = 0) -> Box:
@@ -243,7 +243,7 @@ class Results:
 
     @property
     def tables(self) -> Tables:
-        """What was derived from the data: fits, analyses, structure."""
+        """Tables derived from the data: fits, analyses, structure."""
         return stored_tables(self.file, self.path)
 
     # How it came about.
@@ -265,7 +265,7 @@ class Results:
 
     @property
     def provenance(self) -> list[dict[str, str]]:
-        """Of every process that worked on the file: version, git_revision, libraries, host, cpu,
+        """For every process that worked on the file: version, git_revision, libraries, host, cpu,
         instruction_set, threads, command_line, started (UTC)."""
         group = self.file["provenance"]
         columns = {name: texts(group[name]) for name in group if name != "process"}

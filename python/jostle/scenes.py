@@ -29,7 +29,7 @@ class Checked:
 @takes_arguments
 def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = None,
           program: Path | None = None) -> Checked:
-    """Raises SceneError with every fault of a scene; else says what it means.
+    """Raises SceneError with every fault of a scene; otherwise describes it.
 
     pilot: also try some taps (up to ten seconds, of grains a minute) for estimates of time and memory.
     Without the program, the JSON Schema is asked where jsonschema is installed; docs/reference/scene.md lists what

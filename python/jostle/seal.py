@@ -12,7 +12,7 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _START = b"\njostle-sha256 "
 _SIZE = len(_START) + 64 + 1
 _PIECE = 4 << 20
-_END_AT = (40, 44, 28, 28)  # where a superblock says where the file ends, by its version
+_END_AT = (40, 44, 28, 28)  # offset of the end of file in a superblock, by its version
 
 
 def _last_line(file: BinaryIO, path: str) -> tuple[bytes, int]:
@@ -36,7 +36,7 @@ def _last_line(file: BinaryIO, path: str) -> tuple[bytes, int]:
 
 
 def has_seal(path: str | os.PathLike[str], whole: bool) -> bool:
-    """Whether the file ends with the line; False where another program opened the file for writing, which
+    """True if the file ends with the line; False where another program opened the file for writing, which
     cuts the line off. `whole`: verify the sum too. Raises ResultsError for every other file.
 
     Reading the whole file takes about a second per gigabyte.

@@ -9,12 +9,12 @@ import numpy as np
 
 from .guards import takes_arguments
 
-LEVEL = math.erf(1 / math.sqrt(2))  # of one standard deviation, 68.27 %
+LEVEL = math.erf(1 / math.sqrt(2))  # probability of one standard deviation, 68.27 %
 
 
 @functools.cache
 def factor(dof: float) -> float:
-    """What a standard error of so many degrees of freedom is multiplied by: 1.84 for 1, 1.06 for 9.
+    """Factor of a standard error with so many degrees of freedom: 1.84 for 1, 1.06 for 9.
     NaN for fewer than 1, 1 for infinitely many."""
     if not dof >= 1:
         return math.nan
@@ -35,6 +35,6 @@ def factor(dof: float) -> float:
 
 @takes_arguments
 def half_width(error: np.ndarray, dof: np.ndarray | float) -> np.ndarray:
-    """error, dof: of one shape, or one dof. What a person reads as the b of `a +- b`."""
+    """Returns the b of `a +- b`. error, dof: of one shape, or one dof."""
     error, dof = np.broadcast_arrays(np.asarray(error, float), np.asarray(dof, float))
     return error * np.vectorize(factor, otypes=[float])(dof) if error.size else error.copy()

@@ -1,4 +1,4 @@
-"""What a study sweeps: its axes, and the values of every point."""
+"""The sweep of a study: its axes, and the values of every point."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from .text import texts
 
-# What /sweep, and datasets over the sweep, call something else.
+# Names with another meaning in /sweep and in datasets over the sweep.
 _TAKEN = {"point", "label", "id", "pointer", "value", "tap", "realization", "status"}
 
 
@@ -62,7 +62,7 @@ def read_sweep(file: h5py.File, scene: dict[str, Any], columns: Sequence[str]) -
 
 
 def _name(pointer: str, pointers: Sequence[str], taken: set[str]) -> str:
-    """The last part of the pointer where it tells what is meant; else all of it, with _."""
+    """The last part of the pointer if it is unique; else all of it, with _."""
     last = _part(pointer)
     alone = [_part(other) for other in pointers].count(last) == 1
     if alone and not last.isdigit() and last not in taken:
@@ -121,7 +121,7 @@ def _swept(scene: dict[str, Any], pointer: str) -> list[Any]:
 
 
 def _dimension(coordinates: dict[str, np.ndarray]) -> str:
-    """The first coordinate that tells all places apart; else the names of all."""
+    """The first coordinate that distinguishes all places; else the names of all."""
     for name, values in coordinates.items():
         if len(set(values.tolist())) == len(values):
             return name
@@ -135,7 +135,7 @@ def _whole(values: list[dict[str, Any]], names: dict[str, str]) -> Axis:
 
 
 def _agree(axes: list[Axis], values: list[dict[str, Any]], names: dict[str, str]) -> bool:
-    """Whether the axes give every point the values that it has."""
+    """True if the axes give every point its values."""
     shape = [axis.size for axis in axes]
     for axis, places in zip(axes, np.indices(shape).reshape(len(shape), -1)):
         for pointer, name in names.items():

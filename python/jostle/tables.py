@@ -36,7 +36,7 @@ class Quantity:
 class Table:
     """axes: name -> its values, [size]. quantities: name -> values along some of the axes; the standard
     error of NAME is the quantity NAME_error, its degrees of freedom NAME_dof. notes: what was asked for,
-    and what was found in words; `verdict` says what came of it, `refused` why nothing did. made: version,
+    and what was found in words; `verdict` has the result, `refused` the reason of a missing one. made: version,
     git_revision, command_line, made (UTC); empty of tables that were not read from a file.
     """
 
@@ -61,8 +61,8 @@ class Table:
         return f"<jostle table {self.name}: {len(self.quantities)} quantities{' along ' if along else ''}{along}>"
 
     def error(self, name: str) -> np.ndarray | None:
-        """The standard error of a quantity; None where it has none. Of few realizations it is rough: an
-        interval is Student's t of NAME_dof degrees of freedom times it."""
+        """The standard error of a quantity; None where it has none. With few realizations it is uncertain: an interval
+        is Student's t of NAME_dof degrees of freedom times it."""
         self[name]
         return self.quantities[f"{name}_error"].values if f"{name}_error" in self.quantities else None
 
@@ -88,7 +88,7 @@ class Table:
                               {"title": self.name, **self.notes})
 
     def to_pandas(self, *along: str) -> pandas.DataFrame:
-        """The quantities that stand along just these axes (default: the most that any has), a row a place.
+        """The quantities with exactly these axes (default: the longest list), one row per place.
         Needs pandas."""
         from .frames import frame_along, table_frame
         return frame_along(self, along) if along else table_frame(self)

@@ -10,7 +10,7 @@ import numpy as np
 
 
 def text(value: Any) -> str:
-    """Of a scalar dataset, an attribute or an element."""
+    """Text of a scalar dataset, an attribute or an element."""
     if isinstance(value, h5py.Dataset):
         value = value[()]
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
@@ -22,7 +22,7 @@ def finite_text(value: float, form: str) -> str:
 
 
 def texts(values: Any) -> list[str]:
-    """Of a dataset or an attribute of one dimension."""
+    """Texts of a dataset or an attribute of one dimension."""
     return [text(value) for value in np.asarray(values)]
 
 

@@ -18,7 +18,7 @@ CONTENTS = {"ensemble": datasets.ensemble, "series": datasets.series}
 
 class JostleBackendEntrypoint(BackendEntrypoint):
     """content: "ensemble" (default: mean, sigma, error and count over realizations) or "series" (every
-    realization). live: with the checkpoints of a run that goes on; it needs the program."""
+    realization). live: with the checkpoints of a run in progress; it needs the program."""
 
     description = "Open results of jostle, the whole sweep as one dataset"
     open_dataset_parameters = ("filename_or_obj", "drop_variables", "content", "live")

@@ -21,7 +21,7 @@ enum class SealState { whole, lost };
 /// neither with the line nor at HDF5's end.
 SealState seal_state(const std::string& path);
 
-/// Verifies the checksum, where there is one. Throws ResultsError saying the fault with the
+/// Verifies the checksum, where there is one. Throws ResultsError that describes the fault of the
 /// file: missing, not HDF5, truncated, changed. `take` is given the whole file, piece by piece,
 /// before that is known: one reading is enough to verify and to copy.
 [[nodiscard]] SealState verify_seal(

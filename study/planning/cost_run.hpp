@@ -8,7 +8,7 @@
 #include "study/planning/cost_study.hpp"
 #include "study/running/run.hpp"
 
-// What a scene's accuracy costs: a pilot over a ladder of settings, in paired replicates.
+// Cost of a scene's accuracy: a pilot over a ladder of settings, in paired replicates.
 namespace jostle::inline study {
 
 /// The pilot of a scene at one point of its sweep.
@@ -25,8 +25,8 @@ struct CostPilot {
 CostPilot make_cost_pilot(const LoadedScene& loaded, const std::string& path,
                           const std::string& point, std::uint64_t pilot_taps);
 
-/// Which of the scene's observables is meant: the named one; where none is named bottom_fraction,
-/// or the first. Throws BadArgument naming those there are.
+/// Selects an observable of the scene: the named one; without a name bottom_fraction, or the first.
+/// Throws BadArgument with the list of observables.
 std::string cost_observable(const Scene& scene, const std::string& wanted);
 
 /// How long the pilot is run: so many replicates, or if 0 as many as fit into the time, at least

@@ -79,7 +79,7 @@ std::string window_name(const BulkFraction& bulk) {
   return finite_text("quantiles {:g} to {:g}{}", quantiles.low, quantiles.high, taper);
 }
 
-/// What the most complete setting may itself be off by.
+/// Possible bias of the most complete setting.
 double doubt_of_reference(const CostOfObservable& cost) {
   if (!is_seen(cost.last_step)) return cost.last_step.error;
   return std::isfinite(cost.remainder.error) ? std::abs(cost.remainder.value) + cost.remainder.error

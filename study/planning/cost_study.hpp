@@ -11,7 +11,7 @@
 
 namespace jostle::inline study {
 
-/// What a setting takes, on one core.
+/// Time of a setting on one core.
 struct SettingTime {
   double start_seconds = 0,
          tap_seconds = 0;  // tap seconds of one realization; a tap of the pilot's second half
@@ -25,14 +25,14 @@ struct WindowEffect {
   PairedBias difference;
 };
 
-/// What the pilot found of one observable, after its last tap.
+/// Results of the pilot for one observable, after its last tap.
 struct CostOfObservable {
   Column label;
   std::vector<PairedBias> biases;          // [n_settings]
   std::vector<SettingCost> setting_costs;  // [n_settings], for the whole run of the scene
-  std::vector<SettingCost> limits;         // likewise, at_limits() of the pilot
+  std::vector<SettingCost> limits;         // at_limits() of the pilot
   PairedBias last_step{};                  // the most complete setting less the one before
-  Remainder remainder;                     // what it still lacks; only where that step is seen
+  Remainder remainder;                     // its remaining bias; only if that step is significant
   std::vector<double> bias_by_tap, bias_error_by_tap;  // [n_settings, n_taps], taps 1 .. n_taps
   /// [n_settings]: since tap n_taps / 2; empty of a pilot of one tap.
   std::vector<Growth> growths;
@@ -54,7 +54,7 @@ class CostStudy {
   std::uint64_t middle_tap() const { return pilot_taps_ / 2; }
   std::uint64_t taps() const { return taps_; }
   const std::vector<SettingTime>& times() const { return times_; }
-  /// What the work of a tap is counted in: "sweeps", or "simulated seconds".
+  /// Unit of the work of a tap: "sweeps", or "simulated seconds".
   std::string work_name() const;
   /// Realizations that failed, which are in no number of the study.
   const std::vector<RealizationSummary>& failed() const { return failed_; }
@@ -68,7 +68,7 @@ class CostStudy {
 
  private:
   void read_times(const ResultsFile& file);
-  /// Which settings have the beds of the scene's own.
+  /// The settings that use the beds of the scene's own.
   std::vector<std::uint64_t> has_beds() const;
   CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
   std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;

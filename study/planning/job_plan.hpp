@@ -10,7 +10,7 @@
 // How the realizations of a scene are divided among the jobs of a batch system.
 namespace jostle::inline study {
 
-/// What a batch system is asked for.
+/// Request to a batch system.
 struct JobRequest {
   Seconds time_limit{0};   // time limit of a job
   std::uint32_t cpus = 1;  // cpus of a job
@@ -18,7 +18,7 @@ struct JobRequest {
   std::uint32_t most_tasks = 1000;  // most tasks of one array of jobs
 };
 
-/// What the scene takes.
+/// Resources of the scene.
 struct SceneCost {
   std::vector<Seconds> realization;  // [n_points], of one on one core
   std::uint32_t realizations = 1;    // realizations of every point
@@ -34,7 +34,7 @@ struct JobPlan {
   Seconds core_time{0};                 // core time of everything
   Seconds longest_task{0};              // with its CPUs
   double efficiency = 1;                // core_time over the time for which CPUs are reserved
-  Seconds notice{0};                    // before the end of the time limit it is told to stop
+  Seconds notice{0};         // the job receives the stop signal so long before its time limit
   std::uint64_t starts = 1;  // starts of the longest task until it is done, the first included
 };
 

@@ -27,8 +27,8 @@ double narrowest_cut(const Plan& plan) {
   return std::max(narrowest, narrowest_for_largest * range_of(plan.kinds).greatest);
 }
 
-/// A width times about `factor`, never below the narrowest; a whole number of `unit`s of it where
-/// a lattice wants that.
+/// A width times about `factor`, never below the narrowest; a whole number of `unit`s where a
+/// lattice requires it.
 double cut_width(double width, double factor, double unit, double least_width) {
   const double least = std::min(width, std::max(least_width, width * factor));
   if (unit == 0) return least;
@@ -69,7 +69,7 @@ Container with_cut_footprint(const Plan& plan, double share) {
   return *container_of(name_of(plan.container), size);
 }
 
-/// What a tap of one strength took.
+/// Cost of a tap of one strength.
 struct TapCost {
   Seconds time{0};
   double sweeps = 0;
@@ -202,7 +202,7 @@ class Pilot {
     const auto n_taps = static_cast<double>(total_taps(plan_));
     const std::uint64_t units = dynamics_->effort().units;
     const double observed = static_cast<double>(bed_.n_spheres) * sizeof(Vec3);
-    // What is followed of the motion, and what a checkpoint makes of it: measured, 4 to 5 times.
+    // Memory of the followed motion, and its multiple in a checkpoint: measured, 4 to 5 times.
     const std::uint64_t followed =
         plan_.motion ? 4 * motion_bytes(*plan_.motion, plan_.n_spheres) : 0;
     return {.n_spheres = bed_.n_spheres,

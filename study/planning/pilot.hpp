@@ -9,7 +9,7 @@
 
 namespace jostle::inline study {
 
-/// What a short trial of a sweep point measured, and what it makes of a realization.
+/// Measurements of a short trial of a sweep point, and the estimate for a realization.
 struct PilotEstimate {
   std::uint32_t n_spheres = 0;  // n spheres of the pilot's packing: a large one is cut down
   std::size_t n_strengths = 0;  // n strengths of taps that were tried
@@ -24,9 +24,9 @@ struct PilotEstimate {
 };
 
 /// Makes the start, applies taps of a few strengths of the protocol in its order and relaxes each,
-/// all within about `budget` units of the engine besides what makes the start; the other taps cost
-/// what lies between. A bed of more than `max_spheres` is cut down (cut_down) and its cost scaled
-/// up in proportion. Throws StartError where the start does not suit the container.
+/// all within about `budget` units of the engine besides what makes the start; the cost of the
+/// other taps is interpolated. A bed of more than `max_spheres` is cut down (cut_down) and its cost
+/// scaled up in proportion. Throws StartError where the start does not suit the container.
 PilotEstimate pilot(const Plan& plan, std::uint64_t budget, std::uint32_t max_spheres = 20'000);
 
 /// A smaller piece of a bed.

@@ -16,8 +16,8 @@ namespace jostle::inline study {
 double replicates_done(std::span<const RealizationSummary> before,
                        std::span<const RealizationSummary> after);
 
-/// As many replicates in all as the budget has room for, at the pace of those done in the time
-/// spent; one more to find the pace. `replicates` are there.
+/// Number of replicates in the budget, at the pace of the finished ones; one more to find the pace.
+/// `replicates` are finished.
 std::uint32_t affordable_replicates(std::uint32_t replicates, Seconds budget, Seconds spent,
                                     double done);
 

@@ -16,9 +16,9 @@ class ScenePilot {
 
   enum class Repeat { none, first_point };
 
-  /// About ten seconds on one core, of grains up to a minute. `tell` hears of each pilot as it
-  /// ends. `repeat`: the first point is tried again at the end, to see how times scatter. Throws
-  /// BadInput where one fails.
+  /// Takes about ten seconds on one core, up to a minute for grains. `tell` is called with each
+  /// finished pilot. `repeat`: the first point is tried again at the end, to see how times scatter.
+  /// Throws BadInput where one fails.
   explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {},
                       Repeat repeat = Repeat::none);
 
@@ -39,7 +39,7 @@ class ScenePilot {
   double bytes(std::size_t threads) const;
 
  private:
-  std::vector<std::size_t> points_;  // that were tried, ascending
+  std::vector<std::size_t> points_;  // tried points, ascending
   std::vector<Seconds> times_;       // times of a realization of each point
   Seconds start_{0};
   std::size_t bytes_ = 0;  // bytes of a realization

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Numbers in names count as numbers: 2.h5 stands before 10.h5.
+/// Numbers in names are compared as numbers: 2.h5 comes before 10.h5.
 bool comes_before(const std::string& a, const std::string& b) {
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
   const auto number_at = [&](const std::string& text, std::size_t at) {
@@ -62,7 +62,7 @@ ShardState state_of(const RunStatus& status) {
   return status.owner ? ShardState::dead : ShardState::stopped;  // a killed process leaves its lock
 }
 
-/// What was done and is left of a sweep point, over all shares.
+/// Finished and remaining work of a sweep point, over all shares.
 struct PointWork {
   double seconds = 0;
   std::uint64_t rows = 0, rows_left = 0;
@@ -113,7 +113,7 @@ std::optional<std::string> path_like(const ShardStatus& other, std::uint32_t ind
          other.path.substr(last + 1);
 }
 
-/// Files that cannot be read hold shards all the same: those that their names tell, and else any.
+/// Files that cannot be read still hold shards: those in their names, otherwise any.
 void place_unreadable(ShardsStatus& study, const std::vector<BadFile>& bad_files) {
   std::vector<std::string> paths;
   for (const BadFile& file : bad_files) paths.push_back(file.path);
@@ -148,8 +148,8 @@ void count_missing(Gathered& study, const Study& stored) {
   }
 }
 
-/// What is left takes what was done took, row by row of the same sweep point, or of all where that
-/// has not begun.
+/// Estimates remaining work from finished rows of the sweep point, or of all points where it has
+/// not begun.
 void estimate_left(Gathered& study) {
   double seconds = 0, rows = 0, rows_left = 0, left = 0;
   for (const PointWork& point : study.points) {

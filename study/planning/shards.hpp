@@ -17,7 +17,7 @@ namespace jostle::inline study {
 /// names. A file stays as it is. Throws BadInput for a folder without any.
 std::vector<std::string> results_files(std::span<const std::string> named);
 
-/// How a shard stands. `stopped`: in good order, by a signal or a time limit; `dead`: its process
+/// State of a shard. `stopped`: in good order, by a signal or a time limit; `dead`: its process
 /// was killed; `missing`: no file holds it. All three go on with a resume. `unreadable`: by its
 /// name a file holds it that cannot be read, and its contents may be finished.
 enum class ShardState { done, running, stopped, dead, missing, unreadable };
@@ -30,7 +30,7 @@ struct ShardStatus {
   std::optional<LockOwner> owner{};  // owner of a lock
   std::uint64_t done = 0, failed = 0, realizations = 0;
   std::uint64_t taps = 0, all_taps = 0;  // recorded and to record; a start is none
-  std::string command{};                 // that worked on it last
+  std::string command{};                 // last process that worked on it
 };
 
 /// All shares of one study.

@@ -7,9 +7,9 @@
 
 namespace jostle::inline study {
 
-/// What the settings of discrete elements come to, a line each: contact time, time step, the
-/// steps per tap takes at least, and of every tap that moves the floor Gamma = a (2 pi f)^2 / g and
-/// the overlap of two spheres that meet at the floor's greatest speed. Empty for other engines.
+/// Derived numbers of the settings of discrete elements, one line each: contact time, time step,
+/// the steps per tap takes at least, and of every tap that moves the floor Gamma = a (2 pi f)^2 / g
+/// and the overlap of two spheres that meet at the floor's greatest speed. Empty for other engines.
 std::vector<std::string> grain_summary(const Plan& plan);
 
 }  // namespace jostle::inline study

@@ -11,7 +11,7 @@
 namespace jostle::inline study {
 namespace {
 
-/// An observer is told of an end that an exception makes, too.
+/// An observer also receives an end by an exception.
 template <class Tell>
 class AtEnd {
  public:
@@ -56,7 +56,7 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   }
   const std::string& output = settings.output;
   const Provenance by = provenance_of_this_run(fmt::to_string(settings.threads));
-  std::error_code unreadable;  // a ring of links, a name too long: said when it is opened
+  std::error_code unreadable;  // a ring of links, a name too long: reported when it is opened
   if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
     store_ = RunStore::create(output, study_, settings.shard, by,
                               settings.take_over || settings.existing == Existing::replace,
@@ -77,7 +77,7 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   }
 }
 
-/// What a resume would change, named; nothing else may differ from the file's scene.
+/// The permitted changes of a resume; nothing else may differ from the file's scene.
 Study SceneRun::study_for(const ResultsFile& file) {
   const std::string differences = scene_differences(file, loaded_);
   if (!differences.empty()) throw OtherScene(settings_.output, differences);

@@ -17,7 +17,7 @@
 
 namespace jostle::inline study {
 
-/// What may be done where the results file is there already.
+/// Permitted actions for an existing results file.
 enum class Existing { keep, resume, replace };
 
 struct RunSettings {
@@ -73,14 +73,14 @@ class OtherShard : public BadInput {
   Shard stored_, asked_;
 };
 
-/// What lies ahead when realizations begin to be computed.
+/// Remaining work when realizations begin to be computed.
 struct WorkAhead {
   std::uint64_t realizations = 0;
   std::uint64_t taps = 0;       // taps of all realizations, without the starts
-  std::string unit = "trials";  // what the engine's work is counted in; empty of several engines
+  std::string unit = "trials";  // unit of the engine's work; empty for several engines
 };
 
-/// Told how a run goes on. Every call comes from the thread that runs.
+/// Receives the progress of a run. Every call comes from the thread that runs.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
@@ -89,7 +89,7 @@ class RunObserver {
   virtual void computing(const Progress& /*progress*/, const WorkAhead& /*ahead*/,
                          std::uint64_t /*pending*/, std::uint64_t /*all*/) {}
   virtual void computed() {}
-  /// So many realizations are in the new file.
+  /// Reports the number of realizations in the new file.
   virtual void storing(std::uint64_t /*done*/, std::uint64_t /*of*/) {}
   virtual void stored() {}
   /// How far the scene's targets are met, after every comparison with the targets.
@@ -99,7 +99,7 @@ class RunObserver {
 /// A run of a scene into a results file, which it opens once and holds, with its lock, to the end.
 class SceneRun {
  public:
-  /// Begins a file, or goes on with one. `loaded` and `observer` must outlive this. Throws
+  /// Begins a file, or resumes one. `loaded` and `observer` must outlive this. Throws
   /// OutputExists, OtherScene, OtherShard; BadArgument for a shard of a scene that has a
   /// target precision; ResultsError.
   SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunObserver& observer);
@@ -108,13 +108,13 @@ class SceneRun {
   /// before the others. Returns whether all of it was computed, not stopped; after a stop the file
   /// may have been left as it was, see left_in_parts(). Throws ResultsError.
   bool compute(std::optional<std::uint32_t> first = std::nullopt);
-  /// The same, and more realizations until the scene's targets are met, if it has any.
+  /// Like run(), with more realizations until the scene's targets are met, if it has any.
   bool compute_until_precise();
   /// Makes room for more realizations of every point: so many in all.
   void extend(std::uint32_t realizations);
 
   const Study& study() const { return study_; }
-  /// As the last fold left it.
+  /// The state after the last fold.
   const ResultsFile& results() const { return store_->results(); }
   /// Every (point, realization), with checkpoints that are newer than the file.
   std::vector<RealizationSummary> realizations() const { return store_->realizations(); }
@@ -123,7 +123,7 @@ class SceneRun {
   bool left_in_parts() const { return left_in_parts_; }
   /// Realizations of this run so far.
   const RunSummary& summary() const { return summary_; }
-  /// What is to be told of the file's lock; empty where all is well.
+  /// Warning about the file's lock; otherwise empty.
   std::string lock_warning() const { return store_->lock_warning(); }
   /// Derived tables that the file had before: they do not outlive the data they were made of.
   const std::vector<std::string>& tables_before() const { return tables_before_; }

@@ -56,7 +56,7 @@ class PackingFiles {
     const std::string path = folder_ / file.path;
     paths_.push_back(path);
     Packing packing = read_packing(path, selector);
-    packed_[packing.centres.data()] = {path, packing.container};  // which moving does not change
+    packed_[packing.centres.data()] = {path, packing.container};  // unchanged by moving the file
     return packing;
   }
   const std::vector<std::string>& paths() const { return paths_; }

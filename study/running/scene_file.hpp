@@ -16,7 +16,7 @@ struct LoadedScene {
   std::string text;           // the file, word for word
   std::string resolved;       // with every default written out
   std::vector<Plan> plans;
-  std::vector<std::string> files;  // what it was read from: the scene, packings it starts from
+  std::vector<std::string> files;  // its inputs: the scene, and packings from which it starts
 };
 
 /// Reads a scene and the packings it starts from. Throws BadInput listing every fault.
@@ -25,7 +25,7 @@ LoadedScene load_scene(const std::string& path);
 /// A scene made of that in `path`: it starts from the same packings. Throws BadInput likewise.
 LoadedScene load_derived(const Scene& scene, const std::string& path);
 
-/// What its results file will hold.
+/// Contents of its future results file.
 Study study_of(const LoadedScene& loaded);
 
 /// "pointer: message", one fault a line.

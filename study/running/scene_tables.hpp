@@ -8,7 +8,7 @@
 
 namespace jostle::inline study {
 
-/// Told of what a scene asks for as it is made; what is left out is not told.
+/// Receives the tables of a scene as they are made, without omitted ones.
 class TablesObserver {
  public:
   virtual ~TablesObserver() = default;
@@ -19,10 +19,10 @@ class TablesObserver {
 
 /// Makes the fits, analyses and structure that the scene of a complete results file asks for, and
 /// how its targets are met, and stores them in one replacement of the file: nothing where it asks
-/// for nothing, or is not one that this version reads. Where one cannot be made, for want of memory
-/// as much as for the disk, those before it are stored first. Returns the names of the tables with
-/// their groups, "fits/...". Throws ResultsError;
-/// LockHeld where another process works on the file for longer than `patience` lasts.
+/// for nothing, or is not one that this version reads. If one cannot be made, because memory or
+/// disk is exhausted, earlier ones are stored first. Returns the names of the tables with their
+/// groups, "fits/...". Throws ResultsError; LockHeld where another process works on the file for
+/// longer than `patience` lasts.
 std::vector<std::string> store_scene_tables(const ResultsFile& file, int threads,
                                             TablesObserver& observer,
                                             const Patience& patience = {});

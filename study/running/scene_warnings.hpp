@@ -7,8 +7,8 @@
 
 namespace jostle::inline study {
 
-/// What a scene may well not mean, though it can be run: angles in degrees, dilations in percent,
-/// results of terabytes. One sentence each.
+/// Warnings of values that are probably not intended, though they can be run: angles in degrees,
+/// dilations in percent, results of terabytes. One sentence each.
 std::vector<std::string> scene_warnings(const LoadedScene& loaded);
 
 }  // namespace jostle::inline study

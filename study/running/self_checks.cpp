@@ -156,7 +156,7 @@ std::string compare_threads(const std::string& folder) {
   return fmt::format("1 and 2 threads: digest {}...", one.substr(0, 16));
 }
 
-/// What was written comes back as it was computed, and damage is noticed.
+/// Checks that written data are read back unchanged, and that damage is detected.
 std::string read_back(const std::string& folder) {
   const std::string path = folder + "/written.h5";
   run_into_file(path, 1);

@@ -7,7 +7,7 @@
 
 namespace jostle::inline study {
 
-/// Something that must hold on every machine does not; what() says what and why.
+/// A self-check failed; what() gives the check and the reason.
 class SelfCheckFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -15,7 +15,8 @@ class SelfCheckFailure : public std::runtime_error {
 
 struct SelfCheck {
   std::string name;
-  std::function<std::string()> run;  // what was checked, in numbers; any exception is a failure
+  std::function<std::string()>
+      run;  // description of the check, in numbers; any exception is a failure
   enum class Finds { wrong_numbers, bad_disk } finds;  // the fault where it fails
 };
 

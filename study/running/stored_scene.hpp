@@ -8,11 +8,11 @@
 // The scene that a results file keeps.
 namespace jostle::inline study {
 
-/// As JSON, every default written out. Throws ResultsError where what is stored is none.
+/// The scene as JSON, with all defaults. Throws ResultsError if the stored text is no scene.
 Json stored_scene(const ResultsFile& file);
 
-/// What keeps the file from being resumed with a scene, as fault_lines() writes it; empty where
-/// nothing does. Throws ResultsError likewise.
+/// Reasons against a resume of the file with a scene, in the form of fault_lines(); empty without.
+/// Throws ResultsError, too.
 std::string scene_differences(const ResultsFile& file, const LoadedScene& loaded);
 
 }  // namespace jostle::inline study

@@ -24,8 +24,8 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
                            const Analyses& analyses, int threads);
 
 /// The last taps of a series, without its start: `n_taps`, or where that is absent a part of them,
-/// 1/divisor, at least `least`. Of the first `rows` rows alone, where that is given. Throws
-/// BadInput where there are not so many.
+/// 1/divisor, at least `least`. Uses only the first `rows` rows, if given. Throws BadInput if there
+/// are fewer.
 AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint64_t> n_taps,
                          std::uint64_t divisor, std::uint64_t least,
                          std::optional<std::uint64_t> rows = std::nullopt);

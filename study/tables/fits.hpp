@@ -58,11 +58,11 @@ std::string refusal_of_all(const FittedCurve& fitted);
 FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSource source,
                       const FitManner& manner);
 
-/// One table a fit, point_PPPP/<observable>/<model>, as results files keep them. `manner` says how
-/// resampled errors were made.
+/// One table per fit, point_PPPP/<observable>/<model>, in the form of results files. `manner`
+/// describes resampled errors.
 std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner);
 
-/// Told of every curve once its fits are made; may be empty.
+/// Called for every curve after its fits; may be empty.
 using FitObserver = std::function<void(const FittedCurve&)>;
 
 /// The fits that a scene asks for, at every sweep point of its results. Throws BadArgument for an

@@ -9,7 +9,7 @@
 
 namespace jostle::inline study {
 
-/// How far a file is from the precision that its scene wants.
+/// Compares the precision of a file with the target of its scene.
 struct PrecisionStatus {
   std::uint32_t realizations = 0, next = 0;  // `next` is the same where no more are to be made
   bool met = false;

@@ -1,4 +1,4 @@
-"""What all figures share."""
+"""Common parts of all figures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def axes_or_current(ax: Axes | None) -> Axes:
 
 
 def label(name: str, units: str) -> str:
-    """As "mean_height (diameter)"; a number without a unit has none."""
+    """A label such as "mean_height (diameter)"; a number without a unit has none."""
     words = name.replace("_", " ")
     return words if units in ("", "1") else f"{words} ({units})"
 

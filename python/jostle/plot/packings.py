@@ -20,7 +20,7 @@ def packing_slice(results: Results, point: int = 0, realization: int = 0, tap: i
                   normal: str = "y", at: float | None = None, ax: Axes | None = None) -> Axes:
     """The discs that a plane cuts out of a packing's spheres.
 
-    tap: None the last that is kept. normal: "x", "y" or "z", the direction that the plane stands across;
+    tap: None the last that is kept. normal: "x", "y" or "z", the normal of the plane;
     at: where on it, diameters (default: the middle of the box). Across periodic sides spheres appear on
     both.
     """

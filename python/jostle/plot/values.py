@@ -14,7 +14,8 @@ def superscript(n: int) -> str:
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """So many significant digits; beyond 1e6 and below 1e-4 with a power of ten; whole numbers below 1e6 as they are."""
+    """A number with so many significant digits; beyond 1e6 and below 1e-4 with a power of ten; whole numbers below 1e6
+    as they are."""
     if value is None or math.isnan(value):
         return "\u2013"
     if math.isinf(value):

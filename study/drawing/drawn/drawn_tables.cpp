@@ -9,7 +9,7 @@
 namespace jostle::inline study {
 namespace {
 
-/// "point_0003" of its name; empty where it is of all points.
+/// "point_0003" of its name; empty for a table of all points.
 std::string point_of(const Table& table) {
   return table.name.starts_with("point_") ? table.name.substr(0, table.name.find('/')) : "";
 }

@@ -14,7 +14,7 @@ std::size_t size_of(const Quantity& quantity) {
 
 using KeptPlaces = std::map<std::string, std::vector<std::size_t>>;
 
-/// The kept values of one that stands along `axes`, outermost first, `lengths` long.
+/// The kept values of a quantity with `axes`, outermost first, `lengths` long.
 template <class Value>
 std::vector<Value> kept_values(const std::vector<Value>& values,
                                const std::vector<std::size_t>& lengths,

@@ -7,14 +7,14 @@
 
 #include "ensemble/analysis/table.hpp"
 
-// What of long series, tables and sweeps goes into a page, so that it opens at once.
+// Selects the part of long series, tables and sweeps for a page, so that it opens at once.
 namespace jostle::inline study {
 
 /// Indices out of 0 .. n - 1, ascending: all where there are at most `most` (>= 1), else so many,
 /// evenly spread, the first and the last among them.
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t most);
 
-/// Those of the values that stand at evenly_spread() places.
+/// The values at evenly_spread() places.
 template <class Value>
 std::vector<Value> spread(const std::vector<Value>& values, std::size_t most) {
   std::vector<Value> chosen;

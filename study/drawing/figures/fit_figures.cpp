@@ -115,7 +115,7 @@ std::vector<FittedLaws> fitted_laws(const std::vector<TableView>& made, std::uin
     auto curve = std::ranges::find(curves, observable, &FittedLaws::observable);
     if (curve == curves.end()) curve = curves.insert(curve, {observable, {}});
     const bool is_known = std::ranges::any_of(curve->laws, [&](const TableView& law) {
-      return law.note("restated_model") == table.path().back();  // the same curve
+      return law.note("restated_model") == table.path().back();  // this curve
     });
     if (!is_known) curve->laws.push_back(table);
   }

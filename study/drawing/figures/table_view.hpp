@@ -18,12 +18,12 @@ class TableView {
     return drawn_->group == group && path_.front() == kind;
   }
   bool is_refused() const { return !note("refused").empty(); }
-  /// For "point_0003/ageing/mean_height"; nothing where it is of all points.
+  /// For "point_0003/ageing/mean_height"; nothing for a table of all points.
   std::optional<std::uint32_t> point() const { return point_; }
   const std::vector<std::string>& path() const { return path_; }  // {"ageing", "mean_height"}
   const std::string& name() const { return drawn_->table.name; }
   const std::string& group() const { return drawn_->group; }
-  /// What was asked for, or else the last word of its path.
+  /// The requested quantity, or else the last word of its path.
   std::string observable() const;
 
   std::vector<std::string> quantities() const;  // their names

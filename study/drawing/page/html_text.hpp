@@ -5,7 +5,7 @@
 
 namespace jostle::inline study {
 
-/// The text as it stands in HTML, also in an attribute in double quotes.
+/// The text escaped for HTML, also for an attribute in double quotes.
 std::string html_text(std::string_view text);
 
 }  // namespace jostle::inline study

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t packing_bytes =
     4'000'000;  // packing bytes of a page of one file; several share it
 
-/// The template with each mark, which stands in it once, replaced.
+/// The template with each of its marks replaced; a mark occurs once.
 std::string filled_template(const std::string& title, const std::string& data) {
   const std::string page = page_template();
   const auto cut = [&](const char* mark) { return page.find(mark); };

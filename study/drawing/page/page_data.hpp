@@ -9,7 +9,7 @@
 
 namespace jostle::inline study {
 
-/// What of one file has room in a page.
+/// The part of one file that fits into a page.
 struct PageRoom {
   DrawnRoom drawn;
   std::size_t packing_bytes = 0;  // bytes of text

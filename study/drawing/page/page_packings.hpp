@@ -15,8 +15,8 @@ namespace jostle::inline study {
 /// `coordination`, a byte a sphere; where contacts are kept `force`, a byte a sphere, 255 for
 /// `greatest_force`, m g: the sum of the normal forces on it; `structure`, a byte (0 disordered, 1
 /// fcc, 2 hcp); `q6` and `local_fraction`, 255 a one. At most about `room` bytes of text: evenly
-/// spread sweep points, taps and realizations, of each the first and the last. What is left out is
-/// said in `left_out`. The columns are computed on so many threads.
+/// spread sweep points, taps and realizations, of each the first and the last. `left_out` describes
+/// the omitted data. The columns are computed on so many threads.
 Json page_packings(const ResultsFile& file, std::size_t room, int threads,
                    std::vector<std::string>& left_out);
 

@@ -8,7 +8,7 @@
 
 namespace jostle::inline study {
 
-/// What was run, by whom, and how far it is: scene, state, seed, digest, cost, failures, sweep
+/// The run, its programs and its progress: scene, state, seed, digest, cost, failures, sweep
 /// points.
 Json page_run(const ResultsFile& file, const DrawnFile& drawn, const std::string& digest,
               std::vector<std::string>& left_out);

@@ -54,7 +54,7 @@ void find_linear(const LawValue& law, const std::vector<Probe>& where,
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     if (std::isfinite(parameters[j].lower) || std::isfinite(parameters[j].upper)) continue;
     parameters[j].linear = std::ranges::all_of(where, [&](const Probe& at) {
-      if (!std::isfinite(law(at.t, at.p.data()))) return true;  // says nothing
+      if (!std::isfinite(law(at.t, at.p.data()))) return true;  // no information
       for (std::size_t k = 0; k <= j; ++k) {
         const bool together = k == j || parameters[k].linear;
         if (together && !no_second_difference(law, at, j, k)) return false;

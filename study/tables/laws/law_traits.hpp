@@ -13,8 +13,8 @@ using LawValue = std::function<double(double t, const double* p)>;
 /// Marks the parameters in which the law is linear, all of them together, among those without
 /// bounds, and gives those units that it determines: X where X grows with them alone, t where a
 /// stretched t needs them stretched alike (Euler's theorem on homogeneous functions). Both are read
-/// off its values about `start` [n_parameters], for t from 1e-3 to 1e4; where these say nothing,
-/// the parameters stay as they are.
+/// off its values about `start` [n_parameters], for t from 1e-3 to 1e4; without information the
+/// parameters are not changed.
 void find_traits(const LawValue& law, const ParameterValues& start,
                  std::vector<Parameter>& parameters);
 

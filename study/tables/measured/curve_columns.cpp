@@ -79,7 +79,7 @@ std::size_t only_column(const std::string& path, const std::vector<std::string>&
                      printable(joined(several, ", "), 100)));
 }
 
-/// Columns of the heading by what their names say.
+/// Columns of the heading by their names.
 struct NamedColumns {
   std::vector<std::size_t> t, x, sigma, laws, others;
 };

@@ -11,7 +11,7 @@ namespace jostle::inline study {
 
 /// The treatment of a t at which some realizations have no value.
 enum class Gaps {
-  use_others,  // the mean is of those that have one
+  use_others,  // the mean uses those that have one
   drop_row     // it is left out
 };
 
@@ -29,8 +29,8 @@ struct MeasuredCurve {
 };
 
 /// Reads a measured curve from a text file: columns t and X, maybe sigma of X; or t and a column of
-/// X per realization, of which the curve is the mean (mean_of_present() where some lack values). A
-/// field that is empty, NaN or NA has no value. Columns go by the names of their heading. Throws
+/// X per realization, of which the curve is the mean (mean_of_present() where values are missing).
+/// A field that is empty, NaN or NA has no value. Columns go by the names of their heading. Throws
 /// BadInput naming line, column and name of a fault, and ResultsError where the file cannot be read
 /// to its end.
 MeasuredCurve read_curve(const std::string& path, const CurveReading& reading = {});

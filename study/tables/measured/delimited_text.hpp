@@ -9,7 +9,7 @@ namespace jostle::inline study {
 /// A line of a text of columns.
 struct DelimitedLine {
   std::size_t number = 0;  // in the file, from 1
-  std::string text;        // as it stands there
+  std::string text;        // unchanged text
   std::vector<std::string> cells;
 };
 

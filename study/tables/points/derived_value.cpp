@@ -68,7 +68,7 @@ ErrorOf error_of_interval(const Table& table, std::size_t place, const std::stri
   return {side / two_sided(interval_levels[0], dof), dof};
 }
 
-const std::string restated_prefix = "restated_";  // parameters of the law that draws the same curve
+const std::string restated_prefix = "restated_";  // parameters of the law that draws this curve
 
 std::optional<ParameterPoint> point_along(const Table& fit, const std::string& name,
                                           const std::string& prefix) {

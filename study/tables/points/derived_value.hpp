@@ -10,7 +10,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
-// What a sweep takes from tables of analyses and fits: one number of a sweep point with its error.
+// A number of a sweep point from tables of analyses and fits, with its error.
 namespace jostle::inline study {
 
 /// Tables just made of a file, not yet stored in it.
@@ -18,7 +18,7 @@ struct MadeTables {
   std::vector<Table> fits = {}, analyses = {};
 };
 
-/// What a kept fit gives to a curve of a parameter against what is swept.
+/// Value of a kept fit for a curve of a parameter against the swept value.
 struct ParameterPoint {
   double value;          // NaN without one
   ErrorOf error;         // Student's t makes the longer side of its 68 % interval of it

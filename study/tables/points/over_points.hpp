@@ -10,22 +10,21 @@
 #include "results/results_file.hpp"
 #include "study/tables/points/point_scenes.hpp"
 
-// Analyses over the sweep points of one file together. What is not possible gives a table with the
-// note "refused" alone. Throw BadArgument for an observable that there is not.
+// Analyses over the sweep points of one file together. An impossible analysis gives a table with
+// only the note "refused". Throw BadArgument for an unknown observable.
 namespace jostle::inline study {
 
-/// What to add where an analysis needs more sweep points than those that were chosen; nothing where
-/// all were.
+/// Advice for an analysis that needs more sweep points than the chosen ones; empty if all were
+/// chosen.
 std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint32_t> points);
 
 /// How far a sweep point has come.
 struct ReachedTaps {
   std::uint64_t planned = 0;  // taps of its protocol
-  std::uint64_t rows = 0;     // that all its realizations have, tap 0 included; 0: none has taps
+  std::uint64_t rows = 0;     // taps of all its realizations, including tap 0; 0: none has taps
 };
 
-/// What points that are compared have in common. Only those of equally long protocols are held
-/// against each other.
+/// Common taps of compared points. Only points with equally long protocols are compared.
 struct SharedTaps {
   std::vector<std::uint64_t> rows;   // [points] whose last taps are compared, the same for all
   std::vector<std::string> reasons;  // [points] why one is left out: it has no taps, or less than

@@ -66,7 +66,7 @@ Physics physics_of(const StudyPoint& studied, const Json& scene, Streams streams
   for (const char* key : {"container", "spheres", "start", "engine", "relax", "relax_start"}) {
     const Json* part = scene.find(key);
     if (std::string_view(key) == "start" && !studied.start_sum.empty())
-      text += studied.start_sum;  // the packing, wherever its file lies
+      text += studied.start_sum;  // the packing, independent of its file's place
     else
       text += part != nullptr ? canonical_text(*part) : "";
     text += '\n';

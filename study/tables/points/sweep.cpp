@@ -85,7 +85,7 @@ std::string pointer_named(const std::string& name, const StudyPoint& swept) {
   return found;
 }
 
-/// What is swept, and the values of the sweep that do not vary with it.
+/// The swept quantity, and the values of the sweep that do not vary with it.
 void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
            std::string against) {
   if (against.empty()) {
@@ -198,8 +198,8 @@ std::vector<std::string> places_of(std::span<const Member> members,
   return places;
 }
 
-/// Means of beds that still move are kinetic: they depend on the number of taps, and so does what
-/// is read off the curve. A maximum says so itself.
+/// Means of beds that still move are kinetic: they depend on the number of taps, and so do results
+/// of the curve. The verdict on a maximum reports it.
 void add_steadiness(std::span<const Member> members, Table& table) {
   if (std::ranges::all_of(members, [](const Member& one) { return one.taps.empty(); })) return;
   const auto moving = places_of(members, Verdict::not_reached);
@@ -221,7 +221,7 @@ void add_steadiness(std::span<const Member> members, Table& table) {
     if (key == "maximum") note += "; " + condition;
 }
 
-/// Which taps are averaged, and which points have no value.
+/// The averaged taps, and points without a value.
 void add_notes(std::span<const Member> members, Table& table) {
   std::vector<std::string> taps;
   std::string left_out;

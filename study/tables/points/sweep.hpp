@@ -13,7 +13,7 @@ namespace jostle::inline study {
 
 class PointScenes;
 
-/// Where a sweep point stands on a curve.
+/// Place of a sweep point on a curve.
 struct SweptPlace {
   double x = 0;
   std::string name, units;  // units of x: a strength of taps as its control parameter
@@ -29,8 +29,8 @@ SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::
 /// points of all files together, each file with its own sweep or none. A strength of taps is drawn
 /// as its control parameter, eps^(1/2) for a dilation. Where other values are swept too, one table
 /// for every combination of them, numbered. Fits and analyses are taken from `made`, of the first
-/// file, else from what the files keep. What is not possible, as of an observable that there is
-/// not, gives a table with the note "refused" alone. Throws ResultsError.
+/// file, else from what the files keep. An impossible analysis, for example of an unknown
+/// observable, gives a table with only the note "refused". Throws ResultsError.
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests);
 

@@ -12,7 +12,7 @@
 namespace jostle::inline study {
 namespace {
 
-/// Quantities of a law, of its limit ("limit_") or of the same curve as another law ("restated_").
+/// Quantities of a law, of its limit ("limit_") or of this curve as another law ("restated_").
 struct Parameters {
   const TableView& table;
   std::string prefix{};

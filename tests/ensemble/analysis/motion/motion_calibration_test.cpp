@@ -170,7 +170,7 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
     CHECK(lateral_of_bed.mean() > 0.5);
     CHECK(vertical_of_bed.mean() > 0.5);
   }
-  // One layer is the whole bed; a sphere alone in its layer says nothing.
+  // One layer is the whole bed; a sphere alone in its layer no information.
   const MotionRecords one = sheared(1, 200, 1, 1, gaussian);
   const double q = one.row("lateral_overlap", 0, 0)[0];
   CHECK(independent_susceptibility(one, "layer_lateral_overlap", 0, 0, 0)[0] ==
