@@ -218,9 +218,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
 
 @takes_arguments
 def analyse(results: Results | Path | Sequence[Path], what: str,
-            observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None, last: int | None =
-            None,
-            waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
+            observable: str | Sequence[str] | None = None, *, sweep_point: int | str | None = None,
+            last: int | None = None, waiting_times: Sequence[int] | None = None, lags: Sequence[int] | None = None,
             quantity: str | None = None, against: str | None = None, reference: float | None = None,
             spheres: float | None = None, segment: int | None = None, window: str | None = None,
             detrend: str | None = None, band: str | None = None, threshold: float | None = None,
