@@ -4,6 +4,7 @@
 //                           bench/grains_against_lammps.py, which compares them
 //   bench_grains threads    one bed on one thread, two beds on two
 //   bench_grains sizes      beds of a thousand to a hundred thousand spheres
+//   bench_grains mixtures   spheres of several sizes beside equal ones
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "bench/stopwatch.hpp"
+#include "engine/bed/mixture.hpp"
 #include "engine/discrete_element/grain_loop.hpp"
 #include "engine/starts/starts.hpp"
 
@@ -64,6 +66,45 @@ GrainLoop settled(const Container& container, const ReducedSettings& units, std:
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   GrainLoop loop(container, units);
   loop.load(make_start(SteepestDescentPour{}, container, n, random));
+  loop.run(count);
+  return loop;
+}
+
+struct Mixture {
+  const char* name;
+  std::vector<MixtureKind> kinds;  // empty: equal spheres, by the kernels that are made for them
+};
+
+std::vector<Mixture> mixtures() {
+  const auto kind = [](const char* name, std::uint32_t count, DiameterLaw diameter) {
+    return MixtureKind{.name = name, .count = count, .diameter = std::move(diameter)};
+  };
+  constexpr std::uint32_t half = n_spheres / 2;
+  const FixedDiameter small{1};
+  return {
+      {"equal spheres", {}},
+      {"diameter 1, as sizes", {kind("all", n_spheres, small)}},
+      {"lognormal, 10 %", {kind("all", n_spheres, LognormalDiameter{1, 0.1})}},
+      {"1 and 1.4, half each", {kind("s", half, small), kind("l", half, FixedDiameter{1.4})}},
+      {"one intruder of 5", {kind("s", n_spheres - 1, small), kind("l", 1, FixedDiameter{5})}},
+      {"four of 10", {kind("s", n_spheres - 4, small), kind("l", 4, FixedDiameter{10})}},
+  };
+}
+
+/// As settled(), of a mixture in a footprint wide enough for it.
+GrainLoop settled_mixture(const Mixture& mixture, const ContactLaw& contact, std::uint64_t count) {
+  RandomStream diameters(stream_key(1, 0, 0, Purpose::sizes));
+  RandomStream places(stream_key(1, 0, 0, Purpose::start));
+  StartSpheres spheres{n_spheres};
+  if (!mixture.kinds.empty()) spheres.sizes = draw_sizes(mixture.kinds, diameters);
+  const double width = mixture.kinds.empty() || range_of(mixture.kinds).greatest < 6 ? 12 : 21;
+  const Packing bed = make_start(SteepestDescentPour{}, PeriodicBox{width, width}, spheres, places);
+  DiscreteElement engine;
+  engine.spheres = contact;
+  engine.steps_per_contact = 40;
+  GrainLoop loop(bed.container, reduced(engine, lightest_masses(bed)), best_instruction_set(),
+                 bed.sizes);
+  loop.load(bed);
   loop.run(count);
   return loop;
 }
@@ -193,6 +234,26 @@ void compare_sizes() {
   }
 }
 
+void compare_mixtures() {
+  for (const auto& [law, contact] : std::vector<Law>{
+           {"walton_braun", WaltonBraun{}}, {"linear_spring_dashpot", LinearSpringDashpot{}}}) {
+    struct Side {
+      const char* name;
+      GrainLoop loop;
+      std::vector<double> rates;
+    };
+    std::vector<Side> sides;
+    for (const Mixture& mixture : mixtures())
+      sides.push_back({mixture.name, settled_mixture(mixture, contact, 20'000), {}});
+    for (int turn = 0; turn < thread_turns; ++turn)
+      for (Side& side : sides) side.rates.push_back(rate(side.loop, steps));
+    for (const Side& side : sides) {
+      fmt::print("{:<22} {:<22} {:6.2f}, ratio {:.2f}\n", law, side.name, median(side.rates),
+                 median(side.rates) / median(sides.front().rates));
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -203,6 +264,8 @@ int main(int argc, char** argv) {
     compare_threads();
   } else if (what == "sizes") {
     compare_sizes();
+  } else if (what == "mixtures") {
+    compare_mixtures();
   } else {
     compare_laws(argc > 1 ? argv[1] : nullptr);
   }

@@ -1,6 +1,6 @@
 """Sphere steps per second of discrete elements and of LAMMPS (gran/hooke/history, one core) on one
 settled bed of 3456 spheres, at rest and thrown upwards, in turns; then two beds on two threads, and
-beds of other sizes: python3 grains_against_lammps.py BENCH_GRAINS [ROUNDS]."""
+beds of other numbers and of several sizes: python3 grains_against_lammps.py BENCH_GRAINS [ROUNDS]."""
 
 import os
 import pathlib
@@ -47,7 +47,7 @@ def main():
     for (law, how), found in ratios.items():
         print(f"{law}, {how}: {statistics.median(found):.2f} times LAMMPS "
               f"({min(found):.2f} to {max(found):.2f}, {len(found)} turns)")
-    for what in ("threads", "sizes"):
+    for what in ("threads", "sizes", "mixtures"):
         print(subprocess.run([bench, what], check=True, text=True, capture_output=True).stdout,
               end="")
 

@@ -62,9 +62,11 @@ class Check {
     if (scene_.grains && all_sound({"/container"}))
       note_if("/engine/discrete_element", engine_fault(*scene_.grains, scene_.container));
     if (!all_sound({"/protocol"})) return;
+    const LightestMasses lightest =
+        all_sound({"/spheres"}) ? lightest_masses(scene_.kinds) : LightestMasses{};
     for (std::size_t i = 0; i < scene_.protocol.size(); ++i) {
       note_if(pointer_to_tap(i),
-              engine_tap_fault(engine_of(scene_), strongest_tap(scene_.protocol[i])));
+              engine_tap_fault(engine_of(scene_), strongest_tap(scene_.protocol[i]), lightest));
     }
   }
 

@@ -4,8 +4,9 @@ namespace jostle::inline engine {
 
 namespace {
 
-std::optional<std::string> motion_fault(const DiscreteElement& grains, const FloorTap auto& tap) {
-  constexpr double least_steps = 20, largest_amplitude = 100;
+std::optional<std::string> motion_fault(const DiscreteElement& grains, const FloorTap auto& tap,
+                                        const LightestMasses& lightest) {
+  constexpr double largest_amplitude = 100;
   const double amplitude = floor_amplitude(tap, grains.gravity / grains.diameter);
   if (amplitude > largest_amplitude)
     return "at this acceleration and frequency the floor moves by " + std::to_string(amplitude) +
@@ -14,10 +15,10 @@ std::optional<std::string> motion_fault(const DiscreteElement& grains, const Flo
   if (grains.spheres.index() != grains.floor.value_or(grains.spheres).index() ||
       grains.spheres.index() != grains.sides.value_or(grains.spheres).index())
     return std::nullopt;  // a fault of its own
-  const double steps = 0.5 / tap.frequency / contact_times(grains).step_seconds;
-  if (steps >= least_steps) return std::nullopt;
+  const double steps = 0.5 / tap.frequency / contact_times(grains, lightest).step_seconds;
+  if (steps >= least_steps_per_half_period) return std::nullopt;
   return "half a period of the floor takes " + std::to_string(steps) + " time steps, " +
-         std::to_string(static_cast<int>(least_steps)) +
+         std::to_string(static_cast<int>(least_steps_per_half_period)) +
          " at least: lower the frequency, or raise stiffness or steps_per_contact";
 }
 
@@ -27,12 +28,13 @@ std::vector<Column> columns(const EngineSettings& settings) {
   return std::visit([](const auto& engine) { return columns(engine); }, settings);
 }
 
-std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap) {
+std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap,
+                                            const LightestMasses& lightest) {
   if (!moves_floor(tap)) return std::nullopt;
   if (const auto* grains = std::get_if<DiscreteElement>(&settings)) {
     return std::visit(
         [&]<class T>(const T& motion) -> std::optional<std::string> {
-          if constexpr (FloorTap<T>) return motion_fault(*grains, motion);
+          if constexpr (FloorTap<T>) return motion_fault(*grains, motion, lightest);
           return std::nullopt;
         },
         tap);
@@ -47,12 +49,6 @@ std::optional<std::string> engine_start_fault(const EngineSettings& settings, co
       std::holds_alternative<DiscreteElement>(settings))
     return std::nullopt;
   return "trials move hard spheres: a packing that overlaps can be given to discrete elements only";
-}
-
-std::optional<std::string> engine_mixture_fault(const EngineSettings& settings) {
-  if (std::holds_alternative<DiscreteElement>(settings))
-    return "discrete elements require equal spheres of diameter 1: use Monte Carlo";
-  return std::nullopt;
 }
 
 const char* unit_name(const EngineSettings& settings) {

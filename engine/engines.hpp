@@ -21,14 +21,12 @@ std::vector<Column> columns(const EngineSettings& settings);
 
 /// Why the engine cannot make this tap; nothing if it can. Only discrete elements follow a floor
 /// that moves; a displacement both can make.
-std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap);
+std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap,
+                                            const LightestMasses& lightest = {});
 
 /// Why the engine cannot begin from this start; nothing if it can. Only discrete elements may
 /// overlap.
 std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start);
-
-/// Why the engine does not move spheres of several sizes; nothing if it does.
-std::optional<std::string> engine_mixture_fault(const EngineSettings& settings);
 
 /// What reports call a unit of the engine, and as many units as there are spheres: "trials" and
 /// "sweeps", "sphere steps" and "time steps".

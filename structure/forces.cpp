@@ -18,10 +18,15 @@ void add(ForceMoment& moment, double arm, const Contact& contact) {
     for (int b = 0; b < 3; ++b) moment[3 * a + b] += arms[a] * forces[b];
 }
 
-/// Of a pair half the distance of the centres, of a wall the distance of the centre from it.
-double arm_of(const Contact& contact, std::uint32_t n_spheres) {
+double radius_of(const Sizes* sizes, std::uint32_t sphere) {
+  return sizes != nullptr ? sizes->radius(sphere) : sphere_radius;
+}
+
+/// How far the bodies of a contact would be apart if they just touched: of two spheres their
+/// centres, of a sphere and a wall its centre from the wall.
+double reach_of(const Contact& contact, std::uint32_t n_spheres, const Sizes* sizes) {
   const bool is_wall = contact.second >= n_spheres;
-  return is_wall ? sphere_radius - contact.overlap : 0.5 * (1 - contact.overlap);
+  return radius_of(sizes, contact.first) + (is_wall ? 0 : radius_of(sizes, contact.second));
 }
 
 }  // namespace
@@ -30,12 +35,8 @@ BedForces bed_forces(const Packing& packing, std::span<const Contact> contacts) 
   const auto n = static_cast<std::uint32_t>(packing.centres.size());
   BedForces forces{{}, std::vector<WallForce>(wall_names(packing.container).size())};
   for (const Contact& contact : contacts) {
-    const double arm = arm_of(contact, n);
-    if (contact.second < n) {
-      add(forces.moment, 2 * arm, contact);
-      continue;
-    }
-    add(forces.moment, arm, contact);
+    add(forces.moment, reach_of(contact, n, packing.sizes.get()) - contact.overlap, contact);
+    if (contact.second < n) continue;
     WallForce& wall = forces.walls.at(contact.second - n);
     wall.normal += contact.normal_force;
     wall.friction = wall.friction + contact.tangential_force;
@@ -43,13 +44,16 @@ BedForces bed_forces(const Packing& packing, std::span<const Contact> contacts) 
   return forces;
 }
 
-std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::uint32_t n_spheres) {
+std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::uint32_t n_spheres,
+                                       const Sizes* sizes) {
   std::vector<ForceMoment> moments(n_spheres, ForceMoment{});
   for (const Contact& contact : contacts) {
     // On the other sphere acts the opposite force with the opposite arm: the same moment.
-    const double arm = arm_of(contact, n_spheres);
-    add(moments.at(contact.first), arm, contact);
-    if (contact.second < n_spheres) add(moments.at(contact.second), arm, contact);
+    const double reach = reach_of(contact, n_spheres, sizes);
+    const double share = (reach - contact.overlap) / reach;  // of each radius
+    add(moments.at(contact.first), share * radius_of(sizes, contact.first), contact);
+    if (contact.second < n_spheres)
+      add(moments.at(contact.second), share * radius_of(sizes, contact.second), contact);
   }
   return moments;
 }

@@ -33,9 +33,11 @@ struct BedForces {
 /// Of a packing and its contacts.
 BedForces bed_forces(const Packing& packing, std::span<const Contact> contacts);
 
-/// Of each sphere, [n_spheres]: that of the bed is their sum. The contact of two spheres lies
-/// halfway between their centres.
-std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::uint32_t n_spheres);
+/// Of each sphere, [n_spheres]: that of the bed is their sum. The contact of two spheres divides
+/// the line of their centres as their radii do: halfway where they are equal. `sizes`: null of
+/// equal spheres.
+std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::uint32_t n_spheres,
+                                       const Sizes* sizes = nullptr);
 
 /// Variance of the velocities about their mean, in bins of height as those of height_histogram:
 /// lateral is half of the variances along x and y together. (diameters / s)^2, up to the highest

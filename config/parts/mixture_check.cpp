@@ -23,13 +23,9 @@ class MixtureCheck {
   }
 
   void engine_takes_sizes() {
-    if (scene_.grains) {
-      note_if("/engine/discrete_element", engine_mixture_fault(*scene_.grains));
-      return;
-    }
+    if (scene_.grains) return;  // discrete elements take any
     trials_take_sizes(scene_.relax, "/relax");
     if (scene_.relax_start) trials_take_sizes(*scene_.relax_start, "/relax_start");
-    if (sound(faults_, "/relax")) note_if("/relax", engine_mixture_fault(engine_of(scene_)));
   }
 
   void start_takes_sizes() {

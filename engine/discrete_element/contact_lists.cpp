@@ -5,8 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/bed/sphere_cells.hpp"
-
 namespace jostle::inline engine {
 
 namespace {
@@ -23,8 +21,14 @@ auto order(const KeptPair& pair) {
 
 }  // namespace
 
-ContactLists::ContactLists(const Container& container, int n_history)
-    : boundary_(container), faces_(boundary_), container_(container), n_history_(n_history) {}
+ContactLists::ContactLists(const Container& container, int n_history,
+                           std::shared_ptr<const Sizes> sizes)
+    : boundary_(container),
+      faces_(boundary_),
+      container_(container),
+      n_history_(n_history),
+      sizes_(std::move(sizes)),
+      skin_unit_(sizes_ ? 2 * sizes_->smallest_radius() : 1) {}
 
 void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers) {
   if (n_spheres_ > 0) {  // else what is to be kept waits already
@@ -33,6 +37,9 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
   }
   n_spheres_ = static_cast<std::uint32_t>(numbers.size());
   numbers_.assign(numbers.begin(), numbers.end());
+  radii_.clear();
+  if (sizes_)
+    for (const std::uint32_t number : numbers_) radii_.push_back(sizes_->radius(number));
   near_ = {};
   floor_ = {};
   sides_ = {};
@@ -42,12 +49,35 @@ void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint
   make_far_slots();
 }
 
-// Each pair, and each of its images, from the first of its two places.
+// Classes from the largest spheres down, one for each factor of two (Krijgsman, Ogarko & Luding,
+// Comput. Part. Mech. 1, 357, 2014).
+std::vector<ContactLists::SizeClass> ContactLists::size_classes(double top) const {
+  const double largest = sizes_ ? sizes_->largest_radius() : sphere_radius;
+  std::vector<std::vector<std::uint32_t>> places;
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
+    std::size_t number = 0;
+    for (double r = 0.5 * largest; radius_at(i) <= r; r *= 0.5) ++number;
+    if (places.size() <= number) places.resize(number + 1);
+    places[number].push_back(i);
+  }
+  std::vector<SizeClass> classes;
+  for (std::vector<std::uint32_t>& of_class : places) {
+    if (of_class.empty()) continue;
+    double widest = 0;
+    for (const std::uint32_t i : of_class) widest = std::max(widest, radius_at(i));
+    const auto n = static_cast<std::uint32_t>(of_class.size());
+    classes.push_back(
+        {widest, std::move(of_class), SphereCells(container_, n, top + 1, 2 * widest)});
+  }
+  return classes;
+}
+
+// Each pair, and each of its images, from the first of its two places, or from the larger sphere.
 void ContactLists::find_far_pairs(std::span<const Row> rows) {
   const Vec3 periods = boundary_.periods();
   double top = 1;
   for (std::uint32_t i = 0; i < n_spheres_; ++i) top = std::max(top, rows[i].of[2]);
-  SphereCells cells(container_, n_spheres_, top + 1);
+  std::vector<SizeClass> classes = size_classes(top);
   std::vector<std::array<std::int32_t, 2>> home(n_spheres_);
   std::vector<Vec3> inside(n_spheres_);
   for (std::uint32_t i = 0; i < n_spheres_; ++i) {
@@ -57,27 +87,38 @@ void ContactLists::find_far_pairs(std::span<const Row> rows) {
     r.y -= home[i][1] * periods.y;
     // Rounding may leave a coordinate at the far end of the box.
     inside[i] = wrapped(boundary_, {r.x, r.y, std::max(r.z, 0.0)});
-    cells.insert(inside[i]);
   }
+  for (SizeClass& of_class : classes)
+    for (const std::uint32_t i : of_class.places) of_class.cells.insert(inside[i]);
   far_.clear();
-  constexpr double reach = 1 + far_skin;
-  for (std::uint32_t i = 0; i < n_spheres_; ++i) {
-    cells.any_near(inside[i], reach, [&](std::uint32_t j, Vec3 image) {
-      if (j <= i || norm_squared(inside[i] - image) >= reach * reach) return false;
-      const auto turn = [&](int axis, double length, double at, double own) {
-        if (length == 0) return 0;
-        const auto images = static_cast<std::int32_t>(std::lround((at - own) / length));
-        return home[i][axis] - home[j][axis] + images;
-      };
-      std::array<std::int32_t, 2> turns = {turn(0, periods.x, image.x, inside[j].x),
-                                           turn(1, periods.y, image.y, inside[j].y)};
-      if (numbers_[i] < numbers_[j]) {
-        far_.push_back({i, j, turns});
-      } else {
-        far_.push_back({j, i, {-turns[0], -turns[1]}});
+  const auto add = [&](std::uint32_t i, std::uint32_t j, Vec3 image) {
+    const auto turn = [&](int axis, double length, double at, double own) {
+      if (length == 0) return 0;
+      const auto images = static_cast<std::int32_t>(std::lround((at - own) / length));
+      return home[i][axis] - home[j][axis] + images;
+    };
+    const std::array<std::int32_t, 2> turns = {turn(0, periods.x, image.x, inside[j].x),
+                                               turn(1, periods.y, image.y, inside[j].y)};
+    if (numbers_[i] < numbers_[j]) {
+      far_.push_back({i, j, turns});
+    } else {
+      far_.push_back({j, i, {-turns[0], -turns[1]}});
+    }
+  };
+  const double skin = far_skin * skin_unit_;
+  for (auto own = classes.begin(); own != classes.end(); ++own) {
+    for (auto with = own; with != classes.end(); ++with) {
+      for (const std::uint32_t i : own->places) {
+        const double reach = radius_at(i) + with->largest_radius + skin;
+        with->cells.any_near(inside[i], reach, [&](std::uint32_t k, Vec3 image) {
+          const std::uint32_t j = with->places[k];
+          if (with == own && j <= i) return false;
+          const double within = radius_at(i) + radius_at(j) + skin;
+          if (norm_squared(inside[i] - image) < within * within) add(i, j, image);
+          return false;
+        });
       }
-      return false;
-    });
+    }
   }
 }
 
@@ -119,6 +160,8 @@ void ContactLists::fill(Near& near, std::size_t n) const {
   near.source.resize(padded, none);
   for (auto& values : near.shift) values.resize(padded, 0.0);
   for (auto& values : near.side) values.resize(padded, 1.0);
+  if (sizes_)
+    for (auto& values : near.size) values.assign(padded, 1.0);
   for (int k = 0; k < n_history_; ++k) near.history[k].resize(padded, 0.0);
 }
 
@@ -126,7 +169,7 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
   const Near old = std::exchange(near_, {});
   const std::vector<std::uint32_t> old_near_of = std::exchange(near_of_, {});
   near_of_.assign(far_.size(), none);
-  constexpr double reach2 = (1 + near_skin) * (1 + near_skin);
+  const double skin = near_skin * skin_unit_;
   const Vec3 periods = boundary_.periods();
   const auto add = [&](std::uint32_t p, const FarPair& pair) {
     near_of_[p] = static_cast<std::uint32_t>(near_.first.size());
@@ -145,17 +188,31 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
     const double x = a[0] - b[0] - pair.turns[0] * periods.x;
     const double y = a[1] - b[1] - pair.turns[1] * periods.y, z = a[2] - b[2];
     const double distance2 = x * x + y * y + z * z;
-    if (distance2 < 1) {
+    const double touches = touching(pair), reach = touches + skin;
+    if (distance2 < touches * touches) {
       add(p, pair);
-    } else if (distance2 < reach2) {
+    } else if (distance2 < reach * reach) {
       apart.push_back(p);
     }
   }
   first_idle_ = near_.first.size();
   for (const std::uint32_t p : apart) add(p, far_[p]);
   fill(near_, near_.first.size());
+  if (sizes_) measure_sizes(near_);
   carry_pairs(old, old_near_of);
   first_idle_ = (first_idle_ + block_size - 1) / block_size * block_size;
+}
+
+void ContactLists::measure_sizes(Near& pairs) const {
+  for (std::size_t at = 0; at < pairs.n; ++at) {
+    const std::uint32_t first = pairs.first[at], second = pairs.second[at];
+    const double a = radii_[first], b = radii_[second];
+    const double m = sizes_->mass(numbers_[first]), n = sizes_->mass(numbers_[second]);
+    pairs.size[touching_distance][at] = a + b;
+    pairs.size[per_diameter][at] = 1 / (a + b);
+    pairs.size[mass_root][at] = std::sqrt(2 * m * n / (m + n));
+    pairs.size[per_smaller_diameter][at] = 0.5 / std::min(a, b);
+  }
 }
 
 // From the near pairs before, or from those that wait; those that remember are not idle.
@@ -249,6 +306,7 @@ ContactArrays ContactLists::arrays(Near& near, std::size_t action_at) {
   out.second = near.second.data();
   for (int k = 0; k < 2; ++k) out.shift[k] = near.shift[k].data();
   for (int k = 0; k < 4; ++k) out.side[k] = near.side[k].data();
+  for (std::size_t k = 0; k < n_contact_sizes; ++k) out.size[k] = near.size[k].data();
   for (int k = 0; k < n_history_; ++k) out.history[k] = near.history[k].data();
   out.action = action_.data() + action_at;
   out.idle = idle_.data() + action_at;
@@ -291,7 +349,9 @@ bool ContactLists::mostly_idle() const {
 std::size_t ContactLists::bytes() const {
   return far_.capacity() * sizeof(FarPair) + far_slots_.capacity() * sizeof(FarSlot) +
          near_of_.capacity() * sizeof(std::uint32_t) + action_.capacity() * sizeof(Row) +
-         near_.first.capacity() * (3 * sizeof(std::uint32_t) + (2 + most_history) * sizeof(double));
+         near_.first.capacity() *
+             (3 * sizeof(std::uint32_t) +
+              (2 + most_history + (sizes_ ? n_contact_sizes : 0)) * sizeof(double));
 }
 
 }  // namespace jostle::inline engine

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/bed/sizes.hpp"
+#include "engine/bed/sphere_cells.hpp"
 #include "engine/discrete_element/kernel/grain_rows.hpp"
 
 namespace jostle::inline engine {
@@ -37,13 +40,18 @@ struct KeptSide {
 
 /// Which spheres may touch, and what they remember. Far pairs, of all that come within `far_skin`,
 /// are found now and then; near ones, of them, whenever spheres have moved by half of `near_skin`
-/// against each other. A sphere sums its contacts in the order of their numbers, so that no result
-/// depends on when lists are made or on how spheres are sorted.
+/// against each other. Skins are in diameters of the smallest sphere. A sphere sums its contacts in
+/// the order of their numbers, so that no result depends on when lists are made or on how spheres
+/// are sorted.
 class ContactLists {
  public:
   static constexpr double far_skin = 0.25, near_skin = 0.03, side_skin = 0.1;
 
-  ContactLists(const Container& container, int n_history);
+  ContactLists(const Container& container, int n_history,
+               std::shared_ptr<const Sizes> sizes = nullptr);
+
+  /// The diameter of the smallest sphere.
+  double skin_unit() const { return skin_unit_; }
 
   /// Everything anew, of the spheres at `rows` with these numbers. Histories stay.
   void find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers);
@@ -83,6 +91,12 @@ class ContactLists {
   void set_deepest(double overlap) { deepest_ = overlap; }
 
  private:
+  /// Spheres within a factor of two in size, in cells of their own.
+  struct SizeClass {
+    double largest_radius = 0;
+    std::vector<std::uint32_t> places;
+    SphereCells cells;
+  };
   struct FarPair {
     std::uint32_t first, second;  // places; the one with the lower number first
     std::array<std::int32_t, 2> turns;
@@ -97,10 +111,12 @@ class ContactLists {
         source;  // source: of pairs the far pair, else the side
     std::array<CacheLines<double>, 2> shift;
     std::array<CacheLines<double>, 4> side;
+    std::array<CacheLines<double>, n_contact_sizes> size;  // empty of equal spheres
     std::array<CacheLines<double>, most_history> history;
   };
 
   void find_far_pairs(std::span<const Row> rows);
+  std::vector<SizeClass> size_classes(double top) const;
   void make_far_slots();
   void find_pairs(std::span<const Row> rows);
   void carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of);
@@ -112,12 +128,23 @@ class ContactLists {
   void add_sides(const Near& near, std::vector<KeptSide>& out) const;
   ContactArrays arrays(Near& near, std::size_t action_at);
   void fill(Near& near, std::size_t n) const;
+  double radius_at(std::uint32_t place) const {
+    return radii_.empty() ? sphere_radius : radii_[place];
+  }
+  double touching(const FarPair& pair) const {
+    return radii_.empty() ? 1 : radii_[pair.first] + radii_[pair.second];
+  }
+  void measure_sizes(Near& pairs) const;
+  void measure_side_sizes(Near& sides) const;
 
   Boundary boundary_;
   Faces faces_;  // of which a contact with a side names one
   Container container_;
   int n_history_;
+  std::shared_ptr<const Sizes> sizes_;  // null: equal spheres
+  double skin_unit_ = 1;
   std::uint32_t n_spheres_ = 0;
+  std::vector<double> radii_;           // of the spheres at each place; empty of equal spheres
   std::vector<std::uint32_t> numbers_;  // of the spheres at each place
   std::vector<FarPair> far_;
   std::vector<std::uint32_t> far_begin_;  // [n_spheres + 1], of far_slots_

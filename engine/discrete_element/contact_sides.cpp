@@ -18,7 +18,7 @@ void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
   waiting_sides_.clear();
   floor_ = {};
   sides_ = {};
-  constexpr double reach = sphere_radius + side_skin;
+  const double skin = side_skin * skin_unit_;
   const auto add = [](Near& near, std::uint32_t place, std::uint32_t side) {
     near.first.push_back(place);
     near.source.push_back(side);
@@ -27,14 +27,28 @@ void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
   for (std::uint32_t i = 0; i < n_spheres_; ++i) by_number[numbers_[i]] = i;
   for (const std::uint32_t i : by_number) {
     const Vec3 r = centre_of(rows[i]);
+    const double reach = radius_at(i) + skin;
     if (r.z - floor_height < reach) add(floor_, i, 0);
     for (std::uint32_t k = 1; k < faces_.size(); ++k)
       if (faces_[k].distance(r) < reach) add(sides_, i, k);
   }
   fill(floor_, floor_.first.size());
   fill(sides_, sides_.first.size());
+  if (sizes_) {
+    measure_side_sizes(floor_);
+    measure_side_sizes(sides_);
+  }
   carry_sides(floor_, kept);
   carry_sides(sides_, kept);
+}
+
+void ContactLists::measure_side_sizes(Near& sides) const {
+  for (std::size_t at = 0; at < sides.n; ++at) {
+    const double radius = radii_[sides.first[at]];
+    sides.size[touching_distance][at] = radius;
+    sides.size[per_diameter][at] = sides.size[per_smaller_diameter][at] = 0.5 / radius;
+    sides.size[mass_root][at] = std::sqrt(sizes_->mass(numbers_[sides.first[at]]));
+  }
 }
 
 void ContactLists::carry_sides(Near& sides, const std::vector<KeptSide>& kept) const {
@@ -67,18 +81,33 @@ std::vector<KeptSide> ContactLists::kept_sides() const {
 }
 
 void ContactLists::measure_sides(std::span<const Row> rows, double floor_height) {
-  const auto set = [](Near& near, std::size_t at, Vec3 normal, double distance) {
-    near.side[0][at] = normal.x;
-    near.side[1][at] = normal.y;
-    near.side[2][at] = normal.z;
-    near.side[3][at] = distance;
+  // Where the numbers of a contact go: normal, distance.
+  struct Columns {
+    double *x, *y, *z, *distance;
+    explicit Columns(Near& near)
+        : x(near.side[0].data()),
+          y(near.side[1].data()),
+          z(near.side[2].data()),
+          distance(near.side[3].data()) {}
+    void set(std::size_t at, Vec3 normal, double from_side) const {
+      x[at] = normal.x;
+      y[at] = normal.y;
+      z[at] = normal.z;
+      distance[at] = from_side;
+    }
   };
+  const Columns floor(floor_), sides(sides_);
   for (std::size_t at = 0; at < floor_.n; ++at)
-    set(floor_, at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
+    floor.set(at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
   for (std::size_t at = 0; at < sides_.n; ++at) {
-    const auto [distance, normal] =
-        faces_[sides_.source[at]].nearest(centre_of(rows[sides_.first[at]]));
-    set(sides_, at, normal, distance);
+    const Face& face = faces_[sides_.source[at]];
+    const Vec3 r = centre_of(rows[sides_.first[at]]);
+    if (face.is_tube) {
+      const auto [distance, normal] = face.nearest(r);
+      sides.set(at, normal, distance);
+    } else {  // a plane's normal goes from the face to its place
+      sides.set(at, face.inward, face.distance(r));
+    }
   }
 }
 

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "engine/bed/mixture.hpp"
 #include "engine/column.hpp"
 #include "engine/dynamics.hpp"
 #include "engine/fields.hpp"
@@ -148,13 +150,28 @@ double steps_of_contact(const DiscreteElement& settings);
 std::optional<std::string> engine_fault(const DiscreteElement& settings,
                                         const Container& container);
 
+/// The lightest bodies that meet in a bed, which make the shortest contacts. In masses of a sphere
+/// of diameter 1 and density 1.
+struct LightestMasses {
+  double sphere = 1;  // the lightest of all: with floor and sides
+  double pair = 0.5;  // of the two lightest together: m1 m2 / (m1 + m2)
+};
+LightestMasses lightest_masses(std::span<const double> masses);
+LightestMasses lightest_masses(const Packing& bed);
+/// Bounds from above, whatever diameters are drawn. Requires kinds without faults; those of equal
+/// spheres where there are none.
+LightestMasses lightest_masses(const std::vector<MixtureKind>& kinds);
+
 /// What the settings come to.
 struct ContactTimes {
-  double mass = 0;             // of a sphere, kg
-  double contact_seconds = 0;  // that two spheres touch in a collision
+  double mass = 0;             // of a sphere of diameter 1 and density 1, kg
+  double contact_seconds = 0;  // that the two lightest spheres touch in a collision
   double step_seconds = 0;
 };
-ContactTimes contact_times(const DiscreteElement& settings);
+ContactTimes contact_times(const DiscreteElement& settings, const LightestMasses& lightest = {});
+
+/// A floor that moves needs so many time steps in half a period, at least.
+inline constexpr double least_steps_per_half_period = 20;
 
 /// What is recorded of every tap, and of the start.
 std::vector<Column> columns(const DiscreteElement& settings);

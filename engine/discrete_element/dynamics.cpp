@@ -34,7 +34,8 @@ class GrainDynamics final : public Dynamics {
 
   void load(const Packing& bed) override {
     packing_ = bed;
-    loop_.emplace(bed.container, units_);
+    units_ = reduced(settings_, lightest_masses(bed));
+    loop_.emplace(bed.container, units_, best_instruction_set(), bed.sizes);
     loop_->load(bed);
     state_ = {};
   }
@@ -47,6 +48,7 @@ class GrainDynamics final : public Dynamics {
   void tap(const Tap& tap, RandomStream& random) override {
     const FloorMotion motion = std::visit(MotionOf{units_.seconds}, tap);
     if (motion.half_periods > 0) {
+      require_resolved(motion);
       begin(motion);
       return;
     }
@@ -89,13 +91,14 @@ class GrainDynamics final : public Dynamics {
     const Energies now = loop.energies();
     const ContactCensus census = loop.census();
     const auto n = static_cast<double>(loop.n_spheres());
+    const double mass = loop.mass();
     const Ledger tap = ledger(now);
     return {loop.time() * units_.seconds,
-            now.kinetic / n,
-            now.elastic / n,
-            (state_.input + tap.floor_work) / n,
-            tap.latched / n,
-            tap.friction / n,
+            now.kinetic / mass,
+            now.elastic / mass,
+            (state_.input + tap.floor_work) / mass,
+            tap.latched / mass,
+            tap.friction / mass,
             tap.dissipated() > 0 ? tap.missing / tap.dissipated()
                                  : std::numeric_limits<double>::quiet_NaN(),
             loop.greatest_overlap(),
@@ -143,14 +146,25 @@ class GrainDynamics final : public Dynamics {
     state_.before = loop_->energies();
   }
 
+  // Repeats the check of the scene, which does not know the sizes of a packing from a file.
+  void require_resolved(const FloorMotion& motion) const {
+    const double steps = 0.5 / motion.frequency / units_.time_step;
+    if (steps >= least_steps_per_half_period) return;
+    throw std::runtime_error("half a period of the floor takes " + std::to_string(steps) +
+                             " time steps of this bed, 20 at least: lower the frequency, or raise "
+                             "stiffness or steps_per_contact");
+  }
+
   // Springs that are pressed much deeper than by weight throw what lies above them. Columns of one
-  // sphere a square diameter press with up to their number n, and hold n^2 / 6 K1 a sphere.
+  // sphere a square diameter press with up to their number n, and hold n^2 / 6 K1 a sphere; those
+  // of diameter d, by the mass of a square diameter, d^4 / m times as much for their mass.
   void require_gentle_start() const {
-    constexpr double most = 1, times = 10;  // m g d a sphere; of what weight holds
-    const auto n = static_cast<double>(loop_->n_spheres());
-    const double column = n / footprint_area(packing_.container);
-    const double by_weight = column * column / (6 * units_.spheres.stiffness);
-    const double held = state_.before.elastic / n;
+    constexpr double most = 1, times = 10;  // m g d for a sphere's mass; of what weight holds
+    const double mass = loop_->mass(), column = mass / footprint_area(packing_.container);
+    const double widest = 2 * packing_.largest_radius();
+    const double softer = widest * solid_volume(packing_) / (sphere_volume * mass);
+    const double by_weight = softer * column * column / (6 * units_.spheres.stiffness);
+    const double held = state_.before.elastic / mass;
     if (held <= most + times * by_weight) return;
     throw std::runtime_error(
         "the overlaps of the start hold " + std::to_string(held) +
@@ -221,8 +235,7 @@ class GrainDynamics final : public Dynamics {
     const double missing = std::abs(tap.missing);
     const double moved = std::max(tap.dissipated(), std::abs(state_.input + tap.floor_work)) +
                          now.kinetic + now.elastic;
-    if (!(missing > widest * moved && missing > least * static_cast<double>(loop_->n_spheres())))
-      return;
+    if (!(missing > widest * moved && missing > least * loop_->mass())) return;
     throw std::runtime_error(
         "the energy ledger of a tap misses " + std::to_string(100 * missing / moved) +
         " % of the greater of what was put in and what was dissipated, and of what still moves or "
@@ -235,8 +248,8 @@ class GrainDynamics final : public Dynamics {
     if (const auto* timed = std::get_if<TimedRest>(&settings_.rest))
       return now - motion_seconds() >= timed->seconds;
     const QuietRest& quiet = std::get<QuietRest>(settings_.rest);
-    const double a_sphere = loop_->kinetic_energy() / static_cast<double>(loop_->n_spheres());
-    if (a_sphere >= quiet.kinetic_energy) {
+    const double per_mass = loop_->kinetic_energy() / loop_->mass();
+    if (per_mass >= quiet.kinetic_energy) {
       state_.quiet_since = -1;
     } else if (state_.quiet_since < 0) {
       state_.quiet_since = now;

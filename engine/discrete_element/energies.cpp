@@ -78,15 +78,31 @@ Approach GrainLoop::approach_of(const KeptPair& pair) const {
   const Vec3 shift = {pair.turns[0] * periods.x, pair.turns[1] * periods.y, 0};
   const Vec3 between = centre_of(first) - centre_of(second) - shift;
   const double distance = std::sqrt(norm_squared(between));
-  return {1 - distance, dot(velocity_of(first) - velocity_of(second), between) / distance};
+  return {radius_of(pair.first) + radius_of(pair.second) - distance,
+          dot(velocity_of(first) - velocity_of(second), between) / distance};
 }
 
 Approach GrainLoop::approach_of(const KeptSide& side) const {
   const Row& row = rows_[place_of_[side.sphere]];
   const Vec3 r = centre_of(row), v = velocity_of(row);
-  if (side.side == 0) return {sphere_radius - (r.z - floor_.height), v.z - floor_.velocity};
+  const double radius = radius_of(side.sphere);
+  if (side.side == 0) return {radius - (r.z - floor_.height), v.z - floor_.velocity};
   const Face& face = lists_.faces()[side.side];
-  return {sphere_radius - face.distance(r), face.recession(r, v)};
+  return {radius - face.distance(r), face.recession(r, v)};
+}
+
+// Dashpots go with the root of the mass that moves.
+LawConstants GrainLoop::constants_of(const KeptPair& pair) const {
+  LawConstants constants = settings_.spheres;
+  const double a = mass_of(pair.first), b = mass_of(pair.second);
+  constants.damping *= std::sqrt(2 * a * b / (a + b));
+  return constants;
+}
+
+LawConstants GrainLoop::constants_of(const KeptSide& side) const {
+  LawConstants constants = side.side == 0 ? settings_.floor : settings_.sides;
+  constants.damping *= std::sqrt(mass_of(side.sphere));
+  return constants;
 }
 
 // What contacts hold and have dissipated, by their histories and what was counted in steps.
@@ -102,10 +118,9 @@ Energies GrainLoop::contact_energies() const {
     sum.friction += one.friction;
   };
   for (const KeptPair& pair : lists_.near_pairs())
-    add(held(settings_.law, settings_.spheres, approach_of(pair), pair.history));
+    add(held(settings_.law, constants_of(pair), approach_of(pair), pair.history));
   for (const KeptSide& side : lists_.near_sides())
-    add(held(settings_.law, side.side == 0 ? settings_.floor : settings_.sides, approach_of(side),
-             side.history));
+    add(held(settings_.law, constants_of(side), approach_of(side), side.history));
   return sum;
 }
 
@@ -132,9 +147,16 @@ Energies GrainLoop::energies() const {
   }
   BedMechanics moving;
   next.add_velocities(moving);
-  for (const Vec3& velocity : moving.velocities) now.kinetic += 0.5 * norm_squared(velocity);
-  for (const Vec3& spin : moving.spins) now.kinetic += 0.5 * sphere_inertia * norm_squared(spin);
-  for (const std::uint32_t at : place_of_) now.potential += settings_.gravity * rows_[at].of[2];
+  const auto n = static_cast<std::uint32_t>(n_spheres());
+  for (std::uint32_t i = 0; i < n; ++i)
+    now.kinetic += 0.5 * mass_of(i) * norm_squared(moving.velocities[i]);
+  for (std::uint32_t i = 0; i < moving.spins.size(); ++i) {
+    const double radii = 2 * radius_of(i);
+    now.kinetic +=
+        0.5 * sphere_inertia * mass_of(i) * radii * radii * norm_squared(moving.spins[i]);
+  }
+  for (std::uint32_t i = 0; i < n; ++i)
+    now.potential += settings_.gravity * mass_of(i) * rows_[place_of_[i]].of[2];
   now.floor_work = next.floor_work_;
   return now;
 }
@@ -148,7 +170,7 @@ ContactCensus GrainLoop::census() {
     const double force = normal_force(settings_.law, settings_.spheres, overlap, pair.history);
     if (!(force > 0)) continue;
     census.contacts += 2;
-    census.mean_overlap += overlap;
+    census.mean_overlap += overlap / (2 * std::min(radius_of(pair.first), radius_of(pair.second)));
     ++pairs;
     const double limit = settings_.spheres.friction * force;
     // The force was that of the positions a step before.

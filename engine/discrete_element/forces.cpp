@@ -43,7 +43,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
     const double distance = std::sqrt(norm_squared(between));
     Contact contact{.first = numbers_[a],
                     .second = numbers_[b],
-                    .overlap = 1 - distance,
+                    .overlap = radius_of(numbers_[a]) + radius_of(numbers_[b]) - distance,
                     .normal = (1 / distance) * between};
     set_force(contact, triple(pairs.action[at], 0), kernels_.has_spin);
     if (has_force(contact)) out.push_back(contact);
@@ -53,7 +53,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
     for (std::size_t at = 0; at < with.n && with.first[at] < n; ++at) {
       Contact contact{.first = numbers_[with.first[at]],
                       .second = n + number_of(at),
-                      .overlap = sphere_radius - with.side[3][at],
+                      .overlap = radius_of(numbers_[with.first[at]]) - with.side[3][at],
                       .normal = {with.side[0][at], with.side[1][at], with.side[2][at]}};
       set_force(contact, triple(with.action[at], 0), kernels_.has_spin);
       if (has_force(contact)) out.push_back(contact);
@@ -72,17 +72,23 @@ void GrainLoop::add_velocities(BedMechanics& out) {
   out.velocities.resize(n_spheres());
   if (kernels_.has_spin) out.spins.resize(n_spheres());
   for (std::uint32_t at = 0; at < n_spheres(); ++at) {
-    Vec3 force = {0, 0, -settings_.gravity}, torque;
+    const std::uint32_t number = numbers_[at];
+    const double per_mass = 1 / mass_of(number);
+    Vec3 force = {0, 0, -settings_.gravity * mass_of(number)}, torque;
     for (std::uint32_t s = all.begin[at]; s < all.begin[at + 1]; ++s) {
       const Row& action = all.action[all.slot[s] >> 1];
       const double sign = (all.slot[s] & 1) != 0 ? -1 : 1;
       force = force + sign * triple(action, 0);
       torque = torque + Vec3{action.of[7], action.of[3], action.of[6]};
     }
-    const std::uint32_t number = numbers_[at];
-    out.velocities[number] = before[number].velocity + half_step * force;
-    if (kernels_.has_spin)
+    out.velocities[number] = before[number].velocity + half_step * per_mass * force;
+    if (!kernels_.has_spin) continue;
+    if (!sizes_) {
       out.spins[number] = before[number].spin + (1 / sphere_inertia) * half_step * torque;
+    } else {  // radius x spin, turned by torque / radius
+      const Vec3 scaled = before[number].spin + 2.5 * half_step * per_mass * torque;
+      out.spins[number] = (1 / radius_of(number)) * scaled;
+    }
   }
 }
 

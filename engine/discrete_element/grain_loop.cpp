@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/kernel_sets.hpp"
@@ -14,10 +16,10 @@ namespace {
 
 constexpr double deepest_possible = 0.2;  // of spheres that press on each other
 
-GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
+GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
   struct Entry {
     InstructionSet set;
-    GrainKernels (*kernels)(GrainLaw);
+    GrainKernels (*kernels)(GrainLaw, GrainSizes);
   };
   constexpr Entry entries[] = {
       {InstructionSet::baseline, baseline::grain_kernels},
@@ -27,7 +29,7 @@ GrainKernels kernels_of(GrainLaw law, InstructionSet set) {
 #endif
   };
   for (const Entry& one : entries) {
-    if (one.set == set) return one.kernels(law);
+    if (one.set == set) return one.kernels(law, sizes);
   }
   throw_not_compiled_in(set);
 }
@@ -57,15 +59,18 @@ std::vector<std::uint32_t> sorted_numbers(const Boundary& boundary,
 }  // namespace
 
 GrainLoop::GrainLoop(const Container& container, const ReducedSettings& settings,
-                     InstructionSet set)
+                     InstructionSet set, std::shared_ptr<const Sizes> sizes)
     : container_(container),
       boundary_(container),
       settings_(settings),
-      kernels_(kernels_of(settings.law, set)),
-      lists_(container, kernels_.n_history) {}
+      sizes_(std::move(sizes)),
+      kernels_(kernels_of(settings.law, sizes_ ? GrainSizes::several : GrainSizes::equal, set)),
+      lists_(container, kernels_.n_history, sizes_) {}
 
 void GrainLoop::load(const Packing& bed) {
-  require_equal_spheres(bed, "discrete elements");
+  const bool same = bed.sizes == sizes_ || (bed.sizes && sizes_ && *bed.sizes == *sizes_);
+  if (!same || (sizes_ && sizes_->size() != bed.centres.size()))
+    throw std::invalid_argument("a loop of grains takes beds of the sizes that it was made for");
   std::vector<GrainState> grains(bed.centres.size());
   for (std::size_t i = 0; i < grains.size(); ++i) grains[i].centre = bed.centres[i];
   lists_.keep({}, {});
@@ -104,7 +109,17 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
   }
   rows_[n].of[2] = -1e3;  // what fills blocks touches nothing
   rows_[n + 1].of[2] = -2e3;
+  if (sizes_) place_sizes();
   have_lists_ = false;
+}
+
+void GrainLoop::place_sizes() {
+  mass_at_.clear();
+  per_mass_at_.clear();
+  for (const std::uint32_t number : numbers_) {
+    mass_at_.push_back(mass_of(number));
+    per_mass_at_.push_back(1 / mass_of(number));
+  }
 }
 
 std::vector<GrainState> GrainLoop::grains() const {
@@ -127,6 +142,7 @@ std::vector<GrainState> GrainLoop::grains() const {
 
 void GrainLoop::store(Packing& bed) const {
   bed.container = container_;
+  bed.sizes = sizes_;
   bed.centres.resize(numbers_.size());
   const Vec3 periods = boundary_.periods();
   const auto into = [](double x, double period) {
@@ -167,7 +183,9 @@ SphereArrays GrainLoop::spheres() {
           .dissipated = dissipated_.data(),
           .begin = lists_.begin().data(),
           .slot = lists_.slots().data(),
-          .action = lists_.action()};
+          .action = lists_.action(),
+          .mass = mass_at_.data(),
+          .per_mass = per_mass_at_.data()};
 }
 
 void GrainLoop::run(std::uint64_t steps) {
@@ -224,15 +242,15 @@ double GrainLoop::farthest_since(const std::vector<Vec3>& reference, const Vec3&
 
 // The paths bound how far spheres have come; where the bound is reached, the distance itself tells.
 bool GrainLoop::near_lists_hold() {
-  constexpr double skin = ContactLists::near_skin;
-  if (!have_lists_ || !(side_path_ < ContactLists::side_skin)) return false;
+  const double skin = ContactLists::near_skin * lists_.skin_unit();
+  if (!have_lists_ || !(side_path_ < ContactLists::side_skin * lists_.skin_unit())) return false;
   if (pair_path_ < skin) return true;
   pair_path_ = 2 * farthest_since(near_reference_, near_drift_);
   return pair_path_ < 0.6 * skin;
 }
 
 void GrainLoop::renew_lists() {
-  constexpr double room = ContactLists::far_skin - ContactLists::near_skin;
+  const double room = (ContactLists::far_skin - ContactLists::near_skin) * lists_.skin_unit();
   const bool far_holds = have_lists_ && 2 * farthest_since(far_reference_, far_drift_) < room;
   const std::size_t n = numbers_.size();
   if (!far_holds) {
@@ -261,12 +279,21 @@ void GrainLoop::renew_lists() {
 double GrainLoop::kinetic_energy() const {
   double sum = 0;
   const bool apart = kernels_.sees_full_step;
-  for (const std::uint32_t at : place_of_) {
+  for (std::uint32_t number = 0; number < place_of_.size(); ++number) {
+    const std::uint32_t at = place_of_[number];
     const Row& row = apart ? half_rows_[at] : rows_[at];
     const double spin_z = apart ? half_spin_z_[at] : spin_z_[at];
-    sum += norm_squared(velocity_of(row)) + sphere_inertia * norm_squared(spin_of(row, spin_z));
+    sum += mass_of(number) * norm_squared(velocity_of(row)) +
+           inertia_of(number) * norm_squared(spin_of(row, spin_z));
   }
   return 0.5 * sum;
+}
+
+double GrainLoop::mass() const {
+  if (!sizes_) return static_cast<double>(n_spheres());
+  double sum = 0;
+  for (const double mass : sizes_->masses()) sum += mass;
+  return sum;
 }
 
 bool GrainLoop::is_sound() const {

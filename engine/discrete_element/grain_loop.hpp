@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,7 @@ struct Energies {
 struct ContactCensus {
   double contacts = 0;      // a sphere, with force; those with floor and sides count once
   double sliding = 0;       // of those between spheres with friction, the share at mu N
-  double mean_overlap = 0;  // of those between spheres, diameters
+  double mean_overlap = 0;  // of those between spheres, diameters of the smaller
 };
 
 /// How deep two bodies lie in each other, and how fast they part along their normal.
@@ -44,7 +45,7 @@ struct Approach {
 /// A sphere as it goes on from step to step.
 struct GrainState {
   Vec3 centre;                       // not brought into the box
-  Vec3 velocity, spin;               // half a step before
+  Vec3 velocity, spin;               // half a step before; spins of sizes are radius x spin
   Vec3 seen_velocity, seen_spin;     // as the contact law sees them
   double friction = 0, latched = 0;  // dissipated since the loop was loaded
 };
@@ -53,12 +54,14 @@ struct GrainState {
 /// every instruction set, and however spheres are sorted and lists are made.
 class GrainLoop {
  public:
+  /// Sizes of the spheres, or null for equal ones.
   GrainLoop(const Container& container, const ReducedSettings& settings,
-            InstructionSet set = best_instruction_set());
+            InstructionSet set = best_instruction_set(),
+            std::shared_ptr<const Sizes> sizes = nullptr);
 
-  /// Takes over a bed at rest.
+  /// Takes over a bed at rest. Throws std::invalid_argument for one of other sizes than the loop's.
   void load(const Packing& bed);
-  /// [n_spheres] centres, brought into the box, in the order of load().
+  /// [n_spheres] centres, brought into the box, in the order of load(), and their sizes.
   void store(Packing& bed) const;
   std::vector<GrainState> grains() const;  // in the order of load()
   /// Moves every centre, as a tap that is a displacement does; velocities stay.
@@ -82,11 +85,14 @@ class GrainLoop {
   /// of the positions: those half a step before, with half a step of what acts. Spins of laws with
   /// friction alone. Times in sqrt(diameter / gravity).
   BedMechanics mechanics() const;
+  /// In diameters of the smaller of the two spheres.
   double greatest_overlap() const { return lists_.deepest(); }
   void forget_greatest_overlap() { lists_.set_deepest(0); }
   /// Whether all spheres are where spheres can be.
   bool is_sound() const;
   std::size_t n_spheres() const { return numbers_.size(); }
+  /// Of all spheres, in masses of a sphere of diameter 1 and density 1.
+  double mass() const;
   std::uint64_t pair_tests() const { return pair_tests_; }
   std::size_t bytes() const;
 
@@ -104,6 +110,7 @@ class GrainLoop {
 
  private:
   void place(const std::vector<GrainState>& grains);
+  void place_sizes();
   void step();
   void find_forces();
   Energies contact_energies() const;
@@ -113,12 +120,24 @@ class GrainLoop {
   bool near_lists_hold();
   Approach approach_of(const KeptPair& pair) const;
   Approach approach_of(const KeptSide& side) const;
+  double radius_of(std::uint32_t sphere) const {
+    return sizes_ ? sizes_->radius(sphere) : sphere_radius;
+  }
+  double mass_of(std::uint32_t sphere) const { return sizes_ ? sizes_->mass(sphere) : 1; }
+  /// Of the square of what grains() has as spin.
+  double inertia_of(std::uint32_t sphere) const {
+    return sizes_ ? 4 * sphere_inertia * sizes_->mass(sphere) : sphere_inertia;
+  }
+  /// Those of the contact, for the masses that meet there.
+  LawConstants constants_of(const KeptPair& pair) const;
+  LawConstants constants_of(const KeptSide& side) const;
   double farthest_since(const std::vector<Vec3>& reference, const Vec3& drift) const;
   SphereArrays spheres();
 
   Container container_;
   Boundary boundary_;
   ReducedSettings settings_;
+  std::shared_ptr<const Sizes> sizes_;  // null: equal spheres
   GrainKernels kernels_;
   ContactLists lists_;
 
@@ -126,6 +145,7 @@ class GrainLoop {
   std::vector<std::uint32_t> place_of_;  // of each sphere
   std::vector<Row> rows_, half_rows_;    // [n_spheres + 2]
   std::vector<double> spin_z_, half_spin_z_, dissipated_;
+  std::vector<double> mass_at_, per_mass_at_;  // [n_spheres] by place; empty of equal spheres
 
   FloorMotion motion_;
   std::uint64_t steps_ = 0;

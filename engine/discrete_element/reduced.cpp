@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/elementary.hpp"
@@ -84,7 +86,7 @@ GrainLaw law_of(const DiscreteElement& settings, const ContactLaw& floor, const 
 
 }  // namespace
 
-ReducedSettings reduced(const DiscreteElement& settings) {
+ReducedSettings reduced(const DiscreteElement& settings, const LightestMasses& lightest) {
   const ContactLaw& floor = settings.floor ? *settings.floor : settings.spheres;
   const ContactLaw& sides = settings.sides ? *settings.sides : settings.spheres;
   if (floor.index() != settings.spheres.index() || sides.index() != settings.spheres.index())
@@ -94,17 +96,19 @@ ReducedSettings reduced(const DiscreteElement& settings) {
   out.law = law_of(settings, floor, sides);
   out.seconds = std::sqrt(settings.diameter / settings.gravity);
   double shortest = std::numeric_limits<double>::infinity();
-  const auto constants = [&](const ContactLaw& law, double mass) {
+  // All times of a contact go with the root of the mass.
+  const auto constants = [&](const ContactLaw& law, double mass, double least_mass) {
     const LawConstants made = std::visit(MakeConstants{unit, mass}, law);
     const Lasting lasts =
         std::visit([&](const auto& one) { return LastingOf{mass}(one, made); }, law);
-    shortest = std::min({shortest, lasts.whole, lasts.faster});
-    if (mass < 1) out.contact_time = lasts.whole;
+    const double root = std::sqrt(least_mass / mass);
+    shortest = std::min({shortest, root * lasts.whole, root * lasts.faster});
+    if (mass < 1) out.contact_time = root * lasts.whole;
     return made;
   };
-  out.spheres = constants(settings.spheres, 0.5);
-  out.floor = constants(floor, 1);
-  out.sides = constants(sides, 1);
+  out.spheres = constants(settings.spheres, 0.5, lightest.pair);
+  out.floor = constants(floor, 1, lightest.sphere);
+  out.sides = constants(sides, 1, lightest.sphere);
   out.time_step = shortest / steps_of_contact(settings);
   for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
   return out;
@@ -115,8 +119,37 @@ double steps_of_contact(const DiscreteElement& settings) {
   return settings.steps_per_contact.value_or(has_dashpots ? 160 : 40);
 }
 
-ContactTimes contact_times(const DiscreteElement& settings) {
-  const ReducedSettings units = reduced(settings);
+LightestMasses lightest_masses(std::span<const double> masses) {
+  double first = std::numeric_limits<double>::infinity(), second = first;
+  for (const double mass : masses) {
+    if (mass < second) second = mass;
+    if (second < first) std::swap(first, second);
+  }
+  if (masses.empty()) return {};
+  if (masses.size() == 1) return {first, 0.5 * first};
+  return {first, first * second / (first + second)};
+}
+
+LightestMasses lightest_masses(const Packing& bed) {
+  return bed.sizes ? lightest_masses(bed.sizes->masses()) : LightestMasses{};
+}
+
+LightestMasses lightest_masses(const std::vector<MixtureKind>& kinds) {
+  std::vector<double> masses;
+  for (const MixtureKind& kind : kinds) {
+    const auto add = [&](double d) { masses.push_back(kind.density * (d * d * d)); };
+    if (const auto* listed = std::get_if<ListedDiameters>(&kind.diameter)) {
+      std::ranges::for_each(listed->values, add);
+    } else {
+      for (std::uint32_t k = 0; k < std::min(kind.count, 2u); ++k)
+        add(range_of(kind.diameter).greatest);
+    }
+  }
+  return lightest_masses(masses);
+}
+
+ContactTimes contact_times(const DiscreteElement& settings, const LightestMasses& lightest) {
+  const ReducedSettings units = reduced(settings, lightest);
   return {sphere_mass(settings), units.contact_time * units.seconds,
           units.time_step * units.seconds};
 }

@@ -13,12 +13,14 @@ struct ReducedSettings {
   LawConstants spheres, floor, sides;
   double gravity = 1;
   double time_step = 0;
-  double seconds = 1;       // of the unit of time
-  double contact_time = 0;  // of two spheres: (pi / 2) sqrt(m / 2 K1) (1 + e) of Walton & Braun; of
-                            // the linear spring half a period of the damped oscillation
+  double seconds = 1;  // of the unit of time
+  double contact_time =
+      0;  // of the two lightest spheres: (pi / 2) sqrt(m / 2 K1) (1 + e) of Walton
+          // & Braun; of the linear spring half a period of the damped oscillation
 };
 
-/// Throws std::invalid_argument where spheres, floor and sides have not one kind of law.
-ReducedSettings reduced(const DiscreteElement& settings);
+/// Constants are those of spheres of mass 1, the time step that of the lightest. Throws
+/// std::invalid_argument where spheres, floor and sides have not one kind of law.
+ReducedSettings reduced(const DiscreteElement& settings, const LightestMasses& lightest = {});
 
 }  // namespace jostle::inline engine

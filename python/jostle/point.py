@@ -322,7 +322,7 @@ class Point:
             raise NotThere(f"{self._results.path}: no contacts of sweep point {self.index}; they are kept "
                            "of discrete_element where \"snapshots\" keeps \"contacts\"")
         group = self._particles(realization)
-        return contacts_of(group, self.n_spheres, self._kept_tap(group, tap))
+        return contacts_of(group, self.diameters(realization), self._kept_tap(group, tap))
 
     def _kept_tap(self, group: h5py.Group, tap: int | None) -> int:
         taps = group["position/step"][()].tolist()

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -37,14 +39,27 @@ struct FloorOf {
 // Overlaps that beds reach, over that of two spheres at the floor's speed: 2.5 to 3.6 was seen.
 constexpr double in_beds = 4;
 
+// The greatest overlap of two like spheres that meet at one speed, in their diameters, over that of
+// spheres of diameter 1 and mass 1.
+double deepest_of(const Sizes& sizes) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    deepest = std::max(deepest, std::sqrt(sizes.mass(i)) / sizes.diameter(i));
+  return deepest;
+}
+
 }  // namespace
 
 std::vector<std::string> grain_summary(const Plan& plan) {
   const auto* engine = std::get_if<DiscreteElement>(&plan.engine);
   if (engine == nullptr) return {};
-  const ContactTimes times = contact_times(*engine);
+  // Of the first realization, where every one draws its own.
+  const std::shared_ptr<const Sizes> sizes = sizes_of(plan, 0);
+  const ContactTimes times =
+      contact_times(*engine, sizes ? lightest_masses(sizes->masses()) : LightestMasses{});
   std::vector<std::string> lines{finite_text("contact time {:.3g} s, time step {:.3g} s",
                                              times.contact_seconds, times.step_seconds)};
+  const double deepest = sizes ? deepest_of(*sizes) : 1;
   std::set<std::string> known;
   const double stiffness =
       std::visit([](const auto& law) { return law.stiffness; }, engine->spheres);
@@ -54,7 +69,8 @@ std::vector<std::string> grain_summary(const Plan& plan) {
     const double omega = 2 * std::numbers::pi * floor->frequency;
     const double gamma = floor->amplitude * engine->diameter * omega * omega / engine->gravity;
     const double speed = floor->amplitude * engine->diameter * omega;
-    const double overlap = speed * std::sqrt(times.mass / (2 * stiffness)) / engine->diameter;
+    const double overlap =
+        deepest * speed * std::sqrt(times.mass / (2 * stiffness)) / engine->diameter;
     const std::string line = finite_text(
         "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap {:.2g} "
         "d where two spheres meet at it and up to some {:.2g} d in beds, "

@@ -98,6 +98,32 @@ SCENES = {
         until={"targets": [{"observable": "mean_height", "standard_error": 0.01}], "at_most": 12}),
 }
 
+SOFT = {"walton_braun": {"stiffness": 1e4, "friction": 0.3}}
+DASHPOTS = {"linear_spring_dashpot": {"stiffness": 1e4, "restitution": 0.5}}
+SCENES |= {
+    "grains": scene(
+        engine={"discrete_element": {"contact": SOFT, "rest": {"timed": {"seconds": 0.1}}}},
+        protocol=[taps({"half_sine": {"amplitude": 0.4, "frequency": 7.5}}), taps({"lift": 0.3}, 1)],
+        snapshots={"taps": [0, 3]}),
+    "grains_in_cylinder": scene(
+        container={"sides": "cylinder", "diameter": 4.5}, start={"random_settle": {}},
+        engine={"discrete_element": {"contact": DASHPOTS, "rest": {"timed": {"seconds": 0.1}}}},
+        protocol=[taps({"dilate": 0.1}, 1)], snapshots={"taps": [0, 1]}),
+    "grains_of_several_sizes": scene(
+        container={"sides": "walls", "width": 4},
+        spheres=[{"name": "small", "count": 50, "diameter": {"lognormal": {"mean": 0.7, "deviation": 0.07}}},
+                 {"name": "large", "count": 6, "diameter": 1.5, "density": 2},
+                 {"name": "intruder", "count": 1, "diameter": 2.5, "place": [2, 2]}],
+        engine={"discrete_element": {"contact": SOFT, "rest": {"timed": {"seconds": 0.1}}}},
+        protocol=[taps({"half_sine": {"amplitude": 0.4, "frequency": 7.5}})],
+        observe=["mean_height", {"kind_height": {"kind": "intruder"}}], snapshots={"taps": [0, 2]}),
+    "dashpots_of_several_sizes": scene(
+        spheres=[{"name": "small", "count": 40}, {"name": "large", "count": 8, "diameter": 1.5}],
+        engine={"discrete_element": {"contact": DASHPOTS, "rest": {"timed": {"seconds": 0.1}}}},
+        protocol=[taps({"lift": 0.3}, 1)], observe=["mean_height", "segregation"],
+        snapshots={"taps": [0, 1]}),
+}
+
 
 class Digests(Case):
     def digest_of(self, text, name, *arguments):

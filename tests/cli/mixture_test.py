@@ -21,6 +21,19 @@ SCENE = {
     "snapshots": {"taps": [0, 3, 6]},
 }
 
+SHORTER = {"protocol": [{"tap": {"dilate": 0.1}, "count": 3}], "snapshots": {"taps": [0, 3]}}
+# Soft springs, and a rest that ends after a while: short taps.
+ENGINE = {"discrete_element": {"contact": {"walton_braun": {"stiffness": 5e3, "friction": 0.3}},
+                               "rest": {"timed": {"seconds": 0.3}}}}
+
+
+def grains(**changes):
+    keep = ["positions", "velocities", "contacts", "forces"]
+    scene = changed(SCENE, engine=ENGINE, realizations=2, snapshots={"taps": [0, 2], "keep": keep},
+                    protocol=[{"tap": {"lift": 0.5}, "count": 2}])
+    del scene["relax"]
+    return changed(scene, **changes)
+
 
 def scattered():
     """Spheres of the kinds above, none of which overlap, as extended XYZ."""
@@ -49,8 +62,8 @@ class Mixtures(Case):
         self.write(scattered(), "start.xyz")
         self.write(SCENE)
 
-    def same_digests(self, scene):
-        """A run on one thread, on two, in shards and resumed with more taps."""
+    def same_digests(self, scene, shorter):
+        """A run on one thread, on two, in shards and resumed with more taps than `shorter` has."""
         self.write(scene)
         self.run_scene("-o", "one.h5", "--threads", "1")
         expected = self.digest("one.h5")
@@ -60,14 +73,69 @@ class Mixtures(Case):
             self.run_scene("-o", f"share{share}.h5", "--shard", f"{share}/2")
         self.jostle("merge", "share1.h5", "share2.h5", "-o", "merged.h5")
         self.assertEqual(self.digest("merged.h5"), expected)
-        self.write(changed(scene, protocol=[{"tap": {"dilate": 0.1}, "count": 3}], snapshots={"taps": [0, 3]}))
+        self.write(changed(scene, **shorter))
         self.run_scene("-o", "resumed.h5")
         self.write(scene)
         self.run_scene("-o", "resumed.h5", "--resume")
         self.assertEqual(self.digest("resumed.h5"), expected)
 
     def test_threads_shards_and_resumes_give_the_same_digest(self):
-        self.same_digests(SCENE)
+        self.same_digests(SCENE, SHORTER)
+
+    def test_grains_of_several_sizes_give_the_same_digest_however_they_are_run(self):
+        keep = grains()["snapshots"]["keep"]
+        shorter = {"protocol": [{"tap": {"lift": 0.5}, "count": 1}], "snapshots": {"taps": [0], "keep": keep}}
+        self.same_digests(grains(), shorter)
+        expected = self.digest("one.h5")
+        self.run_scene("-o", "baseline.h5", environment={"JOSTLE_INSTRUCTION_SET": "baseline"})
+        self.assertEqual(self.digest("baseline.h5"), expected)
+
+    def test_contacts_of_grains_are_those_of_their_radii(self):
+        self.write(grains())
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            radius = file["spheres/point_0000/diameter"][()] / 2
+            density = file["spheres/point_0000/density"][()][file["spheres/point_0000/kind"][()]]
+            weight = (density * (2 * radius) ** 3).sum()
+            columns = file["observables/point_0000"]
+            self.assertTrue((np.abs(columns["ledger_error"][1:]) < 0.02).all())
+            for realization in range(2):
+                group = file[f"particles/point_0000_realization_{realization:05}"]
+                r, kept = group["position/value"][-1], group["contacts"]
+                last = slice(int(kept["offset"][-1]), None)
+                first, second = (kept[name][last].astype(int) for name in ("first", "second"))
+                walls = second >= len(r)
+                way = r[first] - np.where(walls[:, None], r[first] * [1, 1, 0], r[np.minimum(second, len(r) - 1)])
+                way[:, :2] -= WIDTH * np.round(way[:, :2] / WIDTH)
+                reach = radius[first] + np.where(walls, 0, radius[np.minimum(second, len(r) - 1)])
+                np.testing.assert_allclose(kept["overlap"][last], reach - np.linalg.norm(way, axis=1), atol=1e-12)
+                self.assertGreater(walls.sum(), 3)
+                on_floor = file["snapshots/point_0000/wall_normal_force"][-1, realization, 0]
+                self.assertAlmostEqual(on_floor / weight, 1, delta=0.3)
+                self.assertAlmostEqual(on_floor, kept["normal_force"][last][walls].sum(), delta=1e-9 * weight)
+
+    def test_grains_are_tapped_from_a_pour_by_a_floor_that_moves(self):
+        kinds = [{**KINDS[0], "diameter": {"lognormal": {"mean": 1, "deviation": 0.1}}}, *KINDS[1:]]
+        self.write(grains(spheres=kinds, start={"pour": "steepest_descent"},
+                          protocol=[{"tap": {"half_sine": {"amplitude": 0.4, "frequency": 7.5}}, "count": 2}]))
+        told = self.jostle("check", "scene.json", "--no-pilot").stdout
+        self.assertIn("time step", told)
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            self.assertEqual(np.unique(file["spheres/point_0000/diameter"][:, :60]).size, 120)
+            columns = file["observables/point_0000"]
+            self.assertTrue((columns["input_energy"][1:] > 0.1).all())
+            self.assertTrue((np.abs(columns["ledger_error"][1:]) < 0.02).all())
+            self.assertTrue((columns["greatest_overlap"][:] < 0.2).all())
+
+    def test_a_floor_that_the_time_step_of_heavy_spheres_does_not_resolve_is_refused(self):
+        tap = [{"tap": {"half_sine": {"amplitude": 0.001, "frequency": 400}}, "count": 2}]
+        for diameter, code in ((1, 0), (6, BAD_INPUT)):
+            self.write(grains(spheres=[{"name": "only", "count": 9, "diameter": diameter}], observe=["mean_height"],
+                              container={"sides": "periodic", "width": 20}, start={"random_settle": {}}, protocol=tap))
+            done = self.jostle("check", "scene.json", "--no-pilot", expect=code)
+            if code:
+                self.assertIn("half a period of the floor takes", done.stderr)
 
     def test_the_commands_that_a_run_names_next_take_mixtures(self):
         told = self.run_scene("-o", "a.h5").stdout.split("\nnext:\n")[1]
@@ -83,7 +151,7 @@ class Mixtures(Case):
                  "spheres": [{**small, "count": 60}, {**large, "count": 12}, {**intruder, "place": [3, 3]}],
                  "protocol": [{"tap": {"dilate": 0.1}, "count": 6}], "snapshots": {"taps": [0, 3, 6]}}
         scene.pop("$schema")
-        self.same_digests(scene)
+        self.same_digests(scene, SHORTER)
         with h5py.File(self.folder / "one.h5") as file:
             diameters = file["spheres/point_0000/diameter"][()]
             self.assertEqual(diameters.shape, (3, 73))
@@ -158,7 +226,6 @@ class Mixtures(Case):
                               ({"structure": {"profile": {}}}, "/structure: measures of structure"),
                               ({"container": {"sides": "periodic", "width": 5}}, "must exceed 5"),
                               ({"relax": {"polar": {}, "sampler": "skipping"}}, "/relax/sampler"),
-                              ({"engine": {"discrete_element": {}}, "relax": None}, "discrete elements"),
                               ({"observe": [{"kind_height": {"kind": "larg"}}]}, 'named "larg"')):
             for spheres in (KINDS, 73):
                 self.write(changed(SCENE, spheres=spheres, **changes))

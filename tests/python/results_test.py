@@ -96,6 +96,27 @@ class Read(Case):
         np.testing.assert_array_equal(results.contacts().first, results.contacts(0, 0, 2).first)
         self.assertRaisesRegex(jostle.NotThere, "tap 1; kept: 0, 2", results.contacts, 0, 0, 1)
 
+    def test_force_moments_of_a_mixture_have_the_arms_of_its_radii(self):
+        scene = changed(GRAINS, realizations=1, container={"sides": "periodic", "width": 6}, spheres=[
+            {"name": "small", "count": 50}, {"name": "large", "count": 8, "diameter": 1.8, "density": 0.5}],
+            engine={"discrete_element": {"contact": {"walton_braun": {"stiffness": 1e4}}}})
+        results = self.open(made(scene))
+        contacts = results.contacts()
+        np.testing.assert_array_equal(contacts.diameters, [1] * 50 + [1.8] * 8)
+        moments = contacts.force_moments()
+        stored = results.points[0].snapshots["force_moment"][1, 0]
+        np.testing.assert_allclose(moments.sum(axis=0), stored, rtol=1e-9, atol=1e-9)
+        # The trace by hand, of one large sphere.
+        one = int(contacts.second[(contacts.second >= 50) & (contacts.second < 58)][0])
+        trace = 0
+        for i, force in enumerate(contacts.normal_force):
+            first, second = contacts.first[i], contacts.second[i]
+            if one not in (first, second):
+                continue
+            reach = 0.5 * contacts.diameters[first] + (0.5 * contacts.diameters[second] if second < 58 else 0)
+            trace += force * 0.9 * (1 - contacts.overlap[i] / reach)
+        self.assertAlmostEqual(np.trace(moments[one]), trace, delta=1e-9 * abs(trace))
+
     def test_scene_sweep_and_provenance(self):
         self.assertEqual(json.loads(self.results.scene_verbatim), TINY)
         self.assertEqual(self.results.scene["relax"]["max_sweeps"], 1_000_000)

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
 using namespace jostle;
 
@@ -65,6 +66,28 @@ TEST_CASE("the force-moment tensor is the sum of arm times force") {
   for (std::size_t k = 0; k < 9; ++k)
     CHECK(each[0][k] + each[1][k] + each[2][k] == Approx(forces.moment[k]));
   CHECK(each[2] == ForceMoment{});
+}
+
+// Radii 0.3, 0.9 and 0.5: a contact divides the line of the centres as the radii do.
+TEST_CASE("the force-moment tensor of spheres of several sizes has the arms of their radii") {
+  Packing mixed = corner;
+  mixed.sizes = std::make_shared<const Sizes>(std::vector{0.6, 1.8, 1.0});
+  const BedForces forces = bed_forces(mixed, contacts);
+  const auto radius = [&](std::uint32_t i) { return i < 3 ? mixed.sizes->radius(i) : 0; };
+  double trace = 0;
+  for (const Contact& one : contacts)
+    trace += one.normal_force * (radius(one.first) + radius(one.second) - one.overlap);
+  CHECK(forces.moment[0] + forces.moment[4] + forces.moment[8] == Approx(trace));
+  const std::vector<ForceMoment> each = force_moments(contacts, 3, mixed.sizes.get());
+  for (std::size_t k = 0; k < 9; ++k)
+    CHECK(each[0][k] + each[1][k] + each[2][k] == Approx(forces.moment[k]));
+  double of_first = 0;
+  for (const Contact& one : contacts) {
+    const double reach = radius(one.first) + radius(one.second);
+    const double share = (reach - one.overlap) / reach;
+    if (one.first == 0 || one.second == 0) of_first += one.normal_force * share * 0.3;
+  }
+  CHECK(each[0][0] + each[0][4] + each[0][8] == Approx(of_first));
 }
 
 TEST_CASE("granular temperature is the variance of velocities by height") {

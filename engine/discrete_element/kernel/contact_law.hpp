@@ -94,7 +94,7 @@ JOSTLE_INLINE N cube_root_of(const N& x) {
   return x * inverse * inverse;
 }
 
-/// Where two bodies meet: sphere i, and sphere j or a side.
+/// Where two bodies meet: sphere i of diameter 1, and such a sphere j or a side.
 template <class N>
 struct Meeting {
   Vector3<N> normal;    // from the other body to sphere i
@@ -102,6 +102,25 @@ struct Meeting {
   Vector3<N> arm;       // from the contact to the centre of sphere i
   Vector3<N> velocity;  // of sphere i relative to the other body, of the centres
   Vector3<N> spin;      // sum of the spins
+
+  /// The angle by which the bodies turn about their normal in a step, in the mean.
+  JOSTLE_INLINE N twist(double time_step) const { return (0.5 * time_step) * dot(spin, normal); }
+  /// A dashpot's coefficient, of constants for the masses of such bodies.
+  JOSTLE_INLINE double damping_of(double constant) const { return constant; }
+};
+
+/// The same of spheres of several sizes. Spins are radius x angular velocity, so that surfaces
+/// slide with (u_i + u_j) x arm whatever the radii; the arm is that of a sphere over its radius.
+template <class N>
+struct SizedMeeting : Meeting<N> {
+  N per_diameter;  // 1 / (sum of the radii), or 1 / (diameter) at a side
+  N mass_root;     // square root of the mass of the two together over that of equal spheres
+
+  // Mean angular velocity, each weighted by its radius.
+  JOSTLE_INLINE N twist(double time_step) const {
+    return (time_step * per_diameter) * dot(this->spin, this->normal);
+  }
+  JOSTLE_INLINE N damping_of(double constant) const { return constant * mass_root; }
 };
 
 /// What acts on sphere i, and what the contact dissipated in the step: on the other body acts the
@@ -127,10 +146,10 @@ struct Projected {
   Vector3<N> force;
   N change;
 };
-template <class N>
-JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2, const Meeting<N>& at,
+template <class N, class At>
+JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2, const At& at,
                                      double time_step) {
-  const N twist = (0.5 * time_step) * dot(at.spin, at.normal);
+  const N twist = at.twist(time_step);
   const N out = dot(old, at.normal);  // of the plane
   const N twist2 = twist * twist, tilt2 = out * out * inverse2;
   return {old + scaled(twist, cross(at.normal, old)) - scaled(out, at.normal),
@@ -145,9 +164,8 @@ struct TangentialForce {
 };
 
 /// The force `old` in the present plane, with the length that it had.
-template <class N>
-JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const Meeting<N>& at,
-                                        double time_step) {
+template <class N, class At>
+JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const At& at, double time_step) {
   const N zero{};
   const N length = square_root(dot(old, old));
   const N inverse = 1.0 / select(length > zero + least_force, length, zero + 1.0);
@@ -166,6 +184,7 @@ struct WaltonBraunLaw {
   static constexpr bool sees_full_step = false;  // but the velocity half a step before: the history
                                                  // takes the displacement of the step
   static constexpr bool arm_is_radius = false;   // but half the distance: keeps angular momentum
+  static constexpr bool has_dashpots = false;
   static constexpr int n_history = friction ? 6 : 1;
 
   N greatest;             // overlap since the bodies touched
@@ -191,7 +210,8 @@ struct WaltonBraunLaw {
     return any_of(at.overlap > zero) || any_of(greatest > zero);
   }
 
-  JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
+  template <class At>
+  JOSTLE_INLINE ContactAction<N> operator()(const At& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
     const N before = greatest;
@@ -218,7 +238,8 @@ struct WaltonBraunLaw {
     return 1.0 - (1.0 - share) * (1.0 + reversal) / (1.0 + share);
   }
 
-  JOSTLE_INLINE void shear(const Meeting<N>& at, const LawConstants& law, const N& normal_force,
+  template <class At>
+  JOSTLE_INLINE void shear(const At& at, const LawConstants& law, const N& normal_force,
                            ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
     const auto touching = at.overlap > zero;
@@ -289,6 +310,7 @@ struct LinearLaw {
   static constexpr bool has_spin = friction;
   static constexpr bool sees_full_step = true;  // the dashpots' velocity is that of the positions
   static constexpr bool arm_is_radius = true;
+  static constexpr bool has_dashpots = true;
   static constexpr int n_history = friction ? 3 : 0;
 
   Vector3<N> spring;  // force on the other body, with the whole displacement of the last step
@@ -307,13 +329,15 @@ struct LinearLaw {
     return any_of(at.overlap > zero) || any_of(dot(spring, spring) > zero);
   }
 
-  JOSTLE_INLINE ContactAction<N> operator()(const Meeting<N>& at, const LawConstants& law) {
+  template <class At>
+  JOSTLE_INLINE ContactAction<N> operator()(const At& at, const LawConstants& law) {
     const N zero{};
     const auto touching = at.overlap > zero;
     const N speed = dot(at.velocity, at.normal);
-    const N resisting = law.stiffness * at.overlap - law.damping * speed;
+    const auto damping = at.damping_of(law.damping);
+    const N resisting = law.stiffness * at.overlap - damping * speed;
     const N normal_force = select(touching, resisting, zero);
-    const N damped = (law.damping * law.time_step) * speed * speed;
+    const N damped = (damping * law.time_step) * speed * speed;
     ContactAction<N> act;
     act.dissipated_normally = select(touching, damped, zero);
     act.force = scaled(normal_force, at.normal);
@@ -324,7 +348,8 @@ struct LinearLaw {
   }
 
  private:
-  JOSTLE_INLINE void shear(const Meeting<N>& at, const LawConstants& law, const N& speed,
+  template <class At>
+  JOSTLE_INLINE void shear(const At& at, const LawConstants& law, const N& speed,
                            const N& normal_force, ContactAction<N>& act) {
     const N zero{}, one = zero + 1.0;
     const auto touching = at.overlap > zero;
@@ -337,7 +362,8 @@ struct LinearLaw {
     const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // as long as it was
     const Vector3<N> trial = start + scaled(stretch, velocity);
     // Half the last displacement comes after this step's positions.
-    const N ahead = zero + (law.shear_damping - 0.5 * law.tangential * law.time_step);
+    const N ahead =
+        zero + (at.damping_of(law.shear_damping) - 0.5 * law.tangential * law.time_step);
     const Vector3<N> resisting = trial + scaled(ahead, velocity);
     const N size2 = dot(resisting, resisting);
     const N limit = law.friction * greater(normal_force, zero - normal_force);

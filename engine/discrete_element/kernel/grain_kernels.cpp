@@ -1,5 +1,7 @@
 // Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
 // It must instantiate nothing that another translation unit could pick up.
+#include <type_traits>
+
 #include "engine/discrete_element/kernel/contact_law.hpp"
 #include "engine/discrete_element/kernel/grain_rows.hpp"
 #include "engine/discrete_element/kernel/lanes.hpp"
@@ -100,8 +102,8 @@ template <bool spin>
 }
 
 // Whether there was anything to do.
-template <class Law>
-[[gnu::always_inline]] inline bool act(const Meeting<Wide>& meeting, const ContactArrays& contacts,
+template <class Law, class At>
+[[gnu::always_inline]] inline bool act(const At& meeting, const ContactArrays& contacts,
                                        std::size_t at, const LawConstants& constants,
                                        double share) {
   Law law;
@@ -117,6 +119,7 @@ template <class Law>
 }
 
 // Whether any of a block's spheres may have come to touch: in half the time of their meeting.
+template <bool several>
 [[gnu::always_inline]] inline bool may_touch(const SphereArrays& spheres,
                                              const ContactArrays& contacts, std::size_t at) {
   constexpr double reach2 = 1 + 1e-9;  // beyond the rounding of either way to compute distances
@@ -133,7 +136,12 @@ template <class Law>
     const Half x = __builtin_shufflevector(a, b, 0, 1, 4, 5) - half_at(contacts.shift[0] + k);
     const Half y = __builtin_shufflevector(c, d, 0, 1, 4, 5) - half_at(contacts.shift[1] + k);
     const Half z = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-    near |= (HalfBits)(x * x + y * y + z * z < Half{} + reach2);
+    Half within = Half{} + reach2;
+    if constexpr (several) {
+      const Half touching = half_at(contacts.size[touching_distance] + k);
+      within = reach2 * (touching * touching);
+    }
+    near |= (HalfBits)(x * x + y * y + z * z < within);
   }
   return (near[0] | near[1] | near[2] | near[3]) != 0;
 }
@@ -151,17 +159,30 @@ template <class Law>
 }
 
 // A pass of its own: beside a law's many numbers its own would be put aside and fetched again.
+template <bool several>
 [[gnu::noinline]] void find_idle(const ContactArrays& contacts, const SphereArrays& spheres) {
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    if (contacts.idle[at] != 0 && may_touch(spheres, contacts, at)) set_idle(contacts, at, false);
+    if (contacts.idle[at] != 0 && may_touch<several>(spheres, contacts, at))
+      set_idle(contacts, at, false);
   }
 }
 
-template <template <class, bool> class LawOf, bool friction>
+template <bool several>
+using MeetingOf = std::conditional_t<several, SizedMeeting<Wide>, Meeting<Wide>>;
+
+// What a block's contacts have of the sizes of their spheres.
+template <class Law>
+[[gnu::always_inline]] inline void read_sizes(SizedMeeting<Wide>& meeting,
+                                              const ContactArrays& contacts, std::size_t at) {
+  meeting.per_diameter = Wide::at(contacts.size[per_diameter] + at);
+  if constexpr (Law::has_dashpots) meeting.mass_root = Wide::at(contacts.size[mass_root] + at);
+}
+
+template <template <class, bool> class LawOf, bool friction, bool several>
 void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
            const LawConstants& constants) {
   using Law = LawOf<Wide, friction>;
-  find_idle(contacts, spheres);
+  find_idle<several>(contacts, spheres);
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
     if (contacts.idle[at] != 0) continue;
@@ -169,21 +190,29 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
     const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
                                    m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
     const Wide distance = square_root(dot(between, between));
-    Meeting<Wide> meeting;
+    MeetingOf<several> meeting;
     meeting.normal = scaled(1.0 / distance, between);
-    meeting.overlap = 1.0 - distance;
     meeting.velocity = {m.of[4], m.of[5], m.of[6]};
-    if constexpr (Law::has_spin) {
-      meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
-      meeting.spin = {m.of[3], m.of[7], m.spin_z};
+    if constexpr (Law::has_spin) meeting.spin = {m.of[3], m.of[7], m.spin_z};
+    if constexpr (several) {
+      read_sizes<Law>(meeting, contacts, at);
+      meeting.overlap = Wide::at(contacts.size[touching_distance] + at) - distance;
+      if constexpr (Law::has_spin)
+        meeting.arm = Law::arm_is_radius ? meeting.normal : scaled(meeting.per_diameter, between);
+      deepest =
+          greater(deepest, meeting.overlap * Wide::at(contacts.size[per_smaller_diameter] + at));
+    } else {
+      meeting.overlap = 1.0 - distance;
+      if constexpr (Law::has_spin)
+        meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
+      deepest = greater(deepest, meeting.overlap);
     }
-    deepest = greater(deepest, meeting.overlap);
     set_idle(contacts, at, !act<Law>(meeting, contacts, at, constants, 0.5));
   }
   keep_deepest(contacts, deepest);
 }
 
-template <template <class, bool> class LawOf, bool friction>
+template <template <class, bool> class LawOf, bool friction, bool several>
 void sides(const ContactArrays& contacts, const SphereArrays& spheres,
            const LawConstants& constants) {
   using Law = LawOf<Wide, friction>;
@@ -191,32 +220,58 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
     const Columns m = of_spheres<Law::has_spin>(spheres, contacts, at);
     const Wide distance = Wide::at(contacts.side[3] + at);
-    Meeting<Wide> meeting;
+    MeetingOf<several> meeting;
     meeting.normal = {Wide::at(contacts.side[0] + at), Wide::at(contacts.side[1] + at),
                       Wide::at(contacts.side[2] + at)};
-    meeting.overlap = 0.5 - distance;
+    if constexpr (several) {
+      read_sizes<Law>(meeting, contacts, at);
+      meeting.overlap = Wide::at(contacts.size[touching_distance] + at) - distance;
+    } else {
+      meeting.overlap = 0.5 - distance;
+    }
     meeting.velocity = {m.of[4], m.of[5], m.of[6] - contacts.side_velocity};
     if constexpr (Law::has_spin) {
-      meeting.arm = scaled(Law::arm_is_radius ? Wide(0.5) : distance, meeting.normal);
+      if constexpr (several) {
+        meeting.arm = Law::arm_is_radius
+                          ? meeting.normal
+                          : scaled((2.0 * meeting.per_diameter) * distance, meeting.normal);
+      } else {
+        meeting.arm = scaled(Law::arm_is_radius ? Wide(0.5) : distance, meeting.normal);
+      }
       meeting.spin = {m.of[3], m.of[7], m.spin_z};
     }
-    deepest = greater(deepest, meeting.overlap);
+    if constexpr (several) {
+      deepest = greater(deepest, meeting.overlap * meeting.per_diameter);
+    } else {
+      deepest = greater(deepest, meeting.overlap);
+    }
     act<Law>(meeting, contacts, at, constants, 1.0);
   }
   keep_deepest(contacts, deepest);
 }
 
 // A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
-// step back, go a step on, and then the positions. Moment of inertia 1/10.
-template <bool spin, bool full_step, bool all>
+// step back, go a step on, and then the positions. Moment of inertia 1/10; of several sizes 2/5 of
+// mass and radius squared.
+template <bool spin, bool full_step, bool all, bool several>
 [[gnu::always_inline]] inline void advance_those(const SphereArrays& spheres, Advance& step) {
   constexpr Half sign_of[2] = {{1, 1, 1, 1}, {-1, -1, -1, 1}};
-  const double dt = step.time_step, turn = 10 * dt;
-  const Half kick = {dt, dt, dt, turn}, twist = {0, 0, 0, turn}, move = {dt, dt, dt, 0};
-  const Half weight = {0, 0, 0 - step.gravity, 0};
+  const double dt = step.time_step;
+  double turn = (several ? 2.5 : 10) * dt;
+  Half kick = {dt, dt, dt, turn}, twist = {0, 0, 0, turn};
+  const Half kick_of_1 = kick, twist_of_1 = twist, move = {dt, dt, dt, 0};
+  const double turn_of_1 = turn;
+  Half weight = {0, 0, 0 - step.gravity, 0};
   const Half drift = {step.drift[0], step.drift[1], step.drift[2], 0};
   double fastest = 0;
   for (std::size_t i = 0; i < spheres.n; ++i) {
+    if constexpr (several) {
+      const double per_mass = spheres.per_mass[i];
+      weight[2] = 0 - step.gravity * spheres.mass[i];
+      kick = per_mass * kick_of_1;
+      twist = per_mass * twist_of_1;
+      turn = per_mass * turn_of_1;
+    }
     Half force = weight, rest = {};
     if (all || spheres.acted_upon[i] != 0) {
       for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
@@ -258,35 +313,44 @@ template <bool spin, bool full_step, bool all>
   step.fastest_squared = fastest;
 }
 
-template <bool spin, bool full_step>
+template <bool spin, bool full_step, bool several>
 void advance(const SphereArrays& spheres, Advance& step) {
   if (spheres.acted_upon == nullptr) {
-    advance_those<spin, full_step, true>(spheres, step);
+    advance_those<spin, full_step, true, several>(spheres, step);
   } else {
-    advance_those<spin, full_step, false>(spheres, step);
+    advance_those<spin, full_step, false, several>(spheres, step);
   }
 }
 
-template <template <class, bool> class LawOf, bool friction>
+template <template <class, bool> class LawOf, bool friction, bool several>
 GrainKernels kernels_of() {
   using Law = LawOf<Wide, friction>;
-  return {
-      pairs<LawOf, friction>, sides<LawOf, friction>, advance<Law::has_spin, Law::sees_full_step>,
-      Law::n_history,         Law::has_spin,          Law::sees_full_step};
+  return {pairs<LawOf, friction, several>,
+          sides<LawOf, friction, several>,
+          advance<Law::has_spin, Law::sees_full_step, several>,
+          Law::n_history,
+          Law::has_spin,
+          Law::sees_full_step};
+}
+
+template <template <class, bool> class LawOf, bool friction>
+GrainKernels kernels_for(GrainSizes sizes) {
+  return sizes == GrainSizes::equal ? kernels_of<LawOf, friction, false>()
+                                    : kernels_of<LawOf, friction, true>();
 }
 
 }  // namespace
 
-GrainKernels grain_kernels(GrainLaw law) {
+GrainKernels grain_kernels(GrainLaw law, GrainSizes sizes) {
   switch (law) {
     case GrainLaw::walton_braun:
-      return kernels_of<WaltonBraunLaw, true>();
+      return kernels_for<WaltonBraunLaw, true>(sizes);
     case GrainLaw::walton_braun_smooth:
-      return kernels_of<WaltonBraunLaw, false>();
+      return kernels_for<WaltonBraunLaw, false>(sizes);
     case GrainLaw::linear:
-      return kernels_of<LinearLaw, true>();
+      return kernels_for<LinearLaw, true>(sizes);
     case GrainLaw::linear_smooth:
-      return kernels_of<LinearLaw, false>();
+      return kernels_for<LinearLaw, false>(sizes);
   }
   return {};
 }

@@ -14,7 +14,8 @@ namespace jostle::inline engine {
 /// One cache line, in two halves, so that what changes what has the same place in its half. Of a
 /// sphere: x, y, z, spin x; velocity, spin y. Of a contact: force on its first sphere, torque y on
 /// each; what it dissipated by friction and normally, halved where two spheres share it, torque z,
-/// torque x.
+/// torque x. Of spheres of several sizes spins are radius x angular velocity, and torques are
+/// divided by the radius, which makes them the same for both spheres.
 struct alignas(64) Row {
   double of[8] = {};
 };
@@ -22,6 +23,18 @@ struct alignas(64) Row {
 /// A vector whose elements begin at a cache line, as kernels load them.
 template <class T>
 using CacheLines = std::vector<T, LargePageAllocator<T>>;
+
+/// Whether kernels take the radii and masses of the spheres, or 1/2 and 1.
+enum class GrainSizes { equal, several };
+
+/// What contacts of spheres of several sizes are like, each in an array of its own.
+enum ContactSize : std::size_t {
+  touching_distance,    // the sum of the radii; at a side the radius
+  per_diameter,         // 1 / (sum of the radii); at a side 1 / diameter
+  mass_root,            // square root of the mass of both together over that of spheres of mass 1
+  per_smaller_diameter  // 1 / (the diameter of the smaller sphere)
+};
+inline constexpr std::size_t n_contact_sizes = 4;
 
 /// The most numbers that a law remembers of a contact.
 inline constexpr std::size_t most_history = 6;
@@ -34,15 +47,16 @@ inline constexpr std::size_t smallest_block = 4, block_size = 16;
 struct ContactArrays {
   std::size_t n = 0;
   const std::uint32_t* first = nullptr;
-  const std::uint32_t* second = nullptr;  // of pairs
-  std::array<const double*, 2> shift{};   // of pairs: periods in x and y
-  std::array<const double*, 4> side{};    // of sides: normal, distance
+  const std::uint32_t* second = nullptr;              // of pairs
+  std::array<const double*, 2> shift{};               // of pairs: periods in x and y
+  std::array<const double*, 4> side{};                // of sides: normal, distance
+  std::array<const double*, n_contact_sizes> size{};  // of several sizes, by ContactSize
   std::array<double*, most_history> history{};
   Row* action = nullptr;
   // Of pairs: in every fourth 1 if the kernel's block has neither history nor action.
   std::uint8_t* idle = nullptr;
   double side_velocity = 0;   // of the floor, upwards
-  double* deepest = nullptr;  // the greatest overlap, raised
+  double* deepest = nullptr;  // the greatest overlap, raised; in diameters of the smaller sphere
 };
 
 /// The spheres, [n_spheres + 2]: the last two touch nothing.
@@ -56,6 +70,8 @@ struct SphereArrays {
   const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
   const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
   const Row* action = nullptr;
+  const double* mass = nullptr;              // of several sizes: [n]
+  const double* per_mass = nullptr;          // likewise: 1 / mass
   const std::uint8_t* acted_upon = nullptr;  // [n] 0 where all actions are 0; null: not known
 };
 
@@ -78,13 +94,13 @@ struct GrainKernels {
 enum class GrainLaw { walton_braun, walton_braun_smooth, linear, linear_smooth };
 
 namespace baseline {
-GrainKernels grain_kernels(GrainLaw law);
+GrainKernels grain_kernels(GrainLaw law, GrainSizes sizes = GrainSizes::equal);
 }
 namespace avx2 {
-GrainKernels grain_kernels(GrainLaw law);
+GrainKernels grain_kernels(GrainLaw law, GrainSizes sizes = GrainSizes::equal);
 }
 namespace avx512 {
-GrainKernels grain_kernels(GrainLaw law);
+GrainKernels grain_kernels(GrainLaw law, GrainSizes sizes = GrainSizes::equal);
 }
 
 }  // namespace jostle::inline engine

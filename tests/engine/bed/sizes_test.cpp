@@ -175,15 +175,6 @@ TEST_CASE("heights of a mixture are weighted by volume") {
   CHECK(window.high == Approx(7.5).margin(0.02));
 }
 
-TEST_CASE("discrete elements reject spheres of several sizes by name") {
-  Packing packing{PeriodicBox{9, 9}, {{1, 1, 1}, {4, 4, 0.5}}};
-  packing.sizes = sizes_of({2, 1});
-  CHECK_THROWS_WITH(make_dynamics(DiscreteElement{}, {})->load(packing),
-                    Catch::Matchers::StartsWith("discrete elements require equal spheres"));
-  packing.sizes = nullptr;
-  CHECK_NOTHROW(make_dynamics(DiscreteElement{}, {})->load(packing));
-}
-
 TEST_CASE("sizes of diameter 1 change nothing") {
   RandomStream random(stream_key(7, 0, 0, Purpose::sizes));
   Packing packing = random_mixture(PeriodicBox{5, 5}, 40, 1, 1, random);

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/bed/random.hpp"
@@ -19,10 +22,11 @@ inline GrainState grain(Vec3 centre, Vec3 velocity = {}, Vec3 spin = {}) {
 }
 
 /// `finer`: how many times shorter than by default the time step is.
-inline ReducedSettings settings(const ContactLaw& law, double gravity = 0, double finer = 1) {
+inline ReducedSettings settings(const ContactLaw& law, double gravity = 0, double finer = 1,
+                                const LightestMasses& lightest = {}) {
   DiscreteElement engine;
   engine.spheres = law;
-  ReducedSettings out = reduced(engine);
+  ReducedSettings out = reduced(engine, lightest);
   out.gravity = gravity;
   out.time_step /= finer;
   for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
@@ -31,8 +35,9 @@ inline ReducedSettings settings(const ContactLaw& law, double gravity = 0, doubl
 
 inline GrainLoop loop_of(const Container& container, const ReducedSettings& settings,
                          const std::vector<GrainState>& grains,
-                         InstructionSet set = best_instruction_set()) {
-  GrainLoop loop(container, settings, set);
+                         InstructionSet set = best_instruction_set(),
+                         std::shared_ptr<const Sizes> sizes = nullptr) {
+  GrainLoop loop(container, settings, set, std::move(sizes));
   GrainLoop::State state;
   state.grains = grains;
   loop.restore(state);
@@ -42,6 +47,35 @@ inline GrainLoop loop_of(const Container& container, const ReducedSettings& sett
 /// Until two spheres that met have parted, or one has left the floor.
 inline void run_contact(GrainLoop& loop, const ReducedSettings& settings) {
   loop.run(static_cast<std::uint64_t>(4 * settings.contact_time / settings.time_step));
+}
+
+/// Spheres of these diameters, each of a kind and a density of its own.
+inline std::shared_ptr<const Sizes> sizes_of(const std::vector<double>& diameters,
+                                             const std::vector<double>& densities) {
+  std::vector<std::uint32_t> kinds;
+  std::vector<SphereKind> of_kinds;
+  for (const double density : densities) {
+    kinds.push_back(static_cast<std::uint32_t>(kinds.size()));
+    of_kinds.push_back({"kind" + std::to_string(kinds.size()), density});
+  }
+  return std::make_shared<const Sizes>(diameters, kinds, of_kinds);
+}
+
+/// Of a bed under gravity, whose lightest spheres tell the step.
+inline ReducedSettings settings_for(const ContactLaw& law, const Packing& bed, double finer = 1) {
+  return settings(law, 1, finer, lightest_masses(bed));
+}
+
+/// The bed at rest.
+inline GrainLoop loop_for(const Packing& bed, const ReducedSettings& units,
+                          InstructionSet set = best_instruction_set()) {
+  GrainLoop loop(bed.container, units, set, bed.sizes);
+  loop.load(bed);
+  return loop;
+}
+
+inline std::uint64_t steps_of(double time, const ReducedSettings& units) {
+  return static_cast<std::uint64_t>(time / units.time_step);
 }
 
 inline double length(Vec3 a) {
