@@ -171,7 +171,8 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: accept
   }
 }
 
-TEST_CASE("rejection-free sampling has the law of looking at every trial: 4096 spheres", "[nightly]") {
+TEST_CASE("rejection-free sampling has the law of looking at every trial: 4096 spheres",
+          "[nightly]") {
   std::ifstream file(std::string(TEST_DATA) + "/dep_L32_N4096_s1.dat");
   file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   const PeriodicBox box{16, 16};
