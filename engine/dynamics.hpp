@@ -82,8 +82,8 @@ class Dynamics {
   /// All that the engine needs besides the bed to resume bit for bit. The bytes begin with their
   /// version.
   virtual std::vector<std::byte> save() const = 0;
-  /// Resumes, with the bed loaded before, from the state of save(). Throws StateError where the
-  /// bytes are of another engine or another version.
+  /// Resumes, with the bed loaded before, from the state of save(). Throws StateError for the bytes
+  /// of another engine or another version.
   virtual void restore(std::span<const std::byte> state) = 0;
 };
 

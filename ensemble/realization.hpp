@@ -31,9 +31,9 @@ std::unique_ptr<Dynamics> dynamics_of(const Plan& plan, std::uint32_t index);
 /// rows and snapshots do not depend on how it was sliced.
 class Realization {
  public:
-  /// Begins, or resumes from a state that `state()` gave for the same plan and index. Of the
-  /// plan, only taps at the end may have been added since. `plan` must outlive the realization.
-  /// Throws StateError for a state of another engine or version.
+  /// Begins, or resumes from a state that `state()` gave for the same plan and index. Only taps at
+  /// the end of the plan may have been added since. `plan` must outlive the realization. Throws
+  /// StateError for a state of another engine or version.
   Realization(const Plan& plan, std::uint32_t index,
               std::optional<RealizationState> resumed = std::nullopt);
   /// By mechanics of the caller's own, which have loaded nothing yet; the plan's engine is unused.

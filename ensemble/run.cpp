@@ -77,8 +77,8 @@ class EnsembleRun {
   std::exception_ptr sink_failure_;  // the first
 };
 
-// Exceptions here come from the sink, a foreign state or lack of memory: `attempt`
-// keeps what else a realization throws.
+// Exceptions here come from the sink, a foreign state or lack of memory: `attempt` keeps other
+// exceptions of a realization.
 void EnsembleRun::work() noexcept {
   try {
     while (!stopping()) {

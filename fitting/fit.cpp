@@ -47,7 +47,7 @@ class Fitter {
   bool descend(const ParameterValues& start, int number);
   ParameterValues refined() const;
   DependentErrors describe_fit(Fit& fit) const;
-  /// False where a profile found a lower minimum; the search then goes on from there.
+  /// False where a profile found a lower minimum; the search then continues there.
   bool find_intervals(const DependentErrors& errors, Fit& fit);
   void void_intervals(Fit& fit) const;
   void remark_on_order(Fit& fit) const;

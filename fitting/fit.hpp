@@ -116,7 +116,7 @@ struct Fit {
   /// In the parameters of the equivalent law, where there is one and it has the curve.
   std::optional<RestatedFit> restated;
   /// The fitted law, where the least squares are at a limit of the law. Statistics, fitted values
-  /// and errors are of this law, and other parameters of the law have no value.
+  /// and errors refer to this law, and other parameters of the law have no value.
   std::optional<LimitingFit> limit;
   /// [n_parameters, n_parameters]; rows and columns of fixed parameters are 0. Scaled by the
   /// residual variance where no errors were given, absolute where they were.

@@ -38,7 +38,7 @@ struct MeasuredQuantity {
   std::string_view long_name{};
   std::string_view source{};  // paper and equation; empty where it is our own
   Pooling pooling = Pooling::mean;
-  std::vector<double> weights{};  // as many as values where `pooling` is weighted; 0: no value
+  std::vector<double> weights{};  // one per value where `pooling` is weighted; 0: no value
   /// Its value at places that only another packing has, as heights above this one's surface: 0
   /// where there is nothing to find, NaN where there is nothing to measure.
   double beyond = 0;

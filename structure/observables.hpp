@@ -81,7 +81,7 @@ struct BulkFraction {
 };
 
 /// Share of fcc and hcp spheres in the bulk (bulk_of() in measure.hpp): equal to fcc + hcp of
-/// structure's part "order" where no region is set. In [0, 1]; NaN where no sphere lies there.
+/// structure's part "order" where no region is set. In [0, 1]; NaN without spheres there.
 struct CrystallineFraction {
   bool operator==(const CrystallineFraction&) const = default;
 

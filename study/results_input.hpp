@@ -14,7 +14,7 @@ namespace jostle::inline study {
 /// By its first bytes.
 bool is_results_file(const std::string& path);
 
-/// True if two names are of one file, there already or not.
+/// True if two names refer to one file, existing or not.
 bool is_same_file(const std::string& a, const std::string& b);
 
 /// Data that are read of a run in progress or a killed run: its file alone, or its checkpoints too.

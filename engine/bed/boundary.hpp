@@ -38,8 +38,8 @@ struct Boundary : ContainerShape {
 struct Face {
   const char* name;  // "floor", "x_min", "x_max", "y_min", "y_max" or "tube"
   Vec3 inward;       // unit normal of a plane into the container; zero for a tube
-  double place = 0;  // distance of the origin from a plane; for a tube its radius, and where
-                     // its axis stands
+  double place =
+      0;  // distance of the origin from a plane; for a tube its radius, and the place of its axis
   bool is_tube = false;
 
   /// How far a point is from a face (negative outside), and the unit normal into the container
@@ -80,10 +80,10 @@ class Faces {
   std::size_t size_ = 0;
 };
 
-/// Area of the part of the footprint that lies at least `from_sides` away from walls.
+/// Area of the part of the footprint at least `from_sides` away from walls.
 double footprint_area(const Boundary& boundary, double from_sides);
 
-/// True if (x, y) lies at least `from_sides` away from walls.
+/// True if (x, y) is at least `from_sides` away from walls.
 bool in_footprint(const Boundary& boundary, Vec3 r, double from_sides);
 
 /// Brings r, any number of periods away, into the box.

@@ -12,10 +12,10 @@
 
 namespace jostle::inline engine {
 
-/// Spheres in cells at least `cutoff` wide, so that all spheres within the cutoff of a point lies
-/// in its cell or a neighbouring one. Holds the positions that it received: build it anew, or
-/// relocate spheres, after they have moved. A periodic direction with room for fewer than three
-/// cells gets a single one (all pairs), so that no image is met twice.
+/// Spheres in cells at least `cutoff` wide, so that all spheres within the cutoff of a point are in
+/// its cell or a neighbouring one. Holds the positions that it received: build it anew, or relocate
+/// spheres, after they have moved. A periodic direction with room for fewer than three cells gets a
+/// single one (all pairs), so that no image is met twice.
 class CellGrid {
  public:
   /// The grid over positions 0 .. n - 1, `position(i)` in diameters and wrapped.

@@ -8,7 +8,7 @@
 // Solids fractions in closed form: a plane cuts a sphere into segments of known volume.
 namespace jostle::inline engine {
 
-/// Volume of the part of a sphere centred at height z that lies in [low, high], diameters cubed.
+/// Volume of the part of a sphere centred at height z in [low, high], diameters cubed.
 /// Requires low <= high and diameter > 0.
 double sphere_volume_in_slab(double z, double low, double high, double diameter = 1);
 

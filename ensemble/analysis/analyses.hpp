@@ -163,8 +163,8 @@ struct SweepSettings {
 /// Volumes and compactivities over the points of a sweep.
 struct VolumesSettings {
   std::optional<std::uint64_t> last = std::nullopt;  // absent: the last quarter
-  std::string
-      against;  // like sweeps Spheres of the volume; absent: those of the observable's window.
+  std::string against;                               // as in sweeps
+  /// Spheres of the volume; absent: those of the observable's window.
   std::optional<double> spheres = std::nullopt;
   bool operator==(const VolumesSettings&) const = default;
 

@@ -15,9 +15,9 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double least_error_dof = 10;  // of a curve alone
+constexpr double least_error_dof = 10;  // memory of a single curve
 
-// Of every realization from the mean, in errors of the mean: [n_points, n_realizations].
+// Deviations of every realization from the mean, in errors of the mean: [n_points, n_realizations].
 Eigen::MatrixXd deviations(const Curve& curve) {
   const std::size_t m = curve.n_realizations;
   Eigen::MatrixXd matrix(static_cast<Eigen::Index>(curve.x.size()), static_cast<Eigen::Index>(m));

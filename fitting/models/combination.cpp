@@ -11,7 +11,7 @@ CombinedModel::CombinedModel(const Model& model, const Combination& combination)
   kept.meaning = combination.meaning;
   kept.unit = combination.unit;
   kept.lower = 0;
-  kept.linear = false;  // so that it is profiled in its logarithm, like its factors
+  kept.linear = false;  // its logarithm is profiled, like its factors
 }
 
 ParameterValues CombinedModel::combined(ParameterValues p) const {

@@ -38,7 +38,7 @@ std::string this_host() {
 }
 
 /// "host pid start_time", for a Slurm job then "slurm cluster id restarts name", and "storing"
-/// where it is held briefly, in one line. Whether it is alive is not in it.
+/// where it is held briefly, in one line. It does not contain whether the process is alive.
 std::optional<LockOwner> parse_owner(const std::string& text) {
   const std::size_t end = text.find('\n');
   if (end != std::string::npos && end + 1 < text.size()) return std::nullopt;

@@ -52,7 +52,7 @@ void put_in_front(std::list<std::string>& rest, const fs::path& path) {
 
 /// Goes along a path as the kernel does, from folder to folder, and looks at every link.
 void require_trusted_way(const std::string& path) {
-  constexpr int most_links = 40;  // as many as Linux follows
+  constexpr int most_links = 40;  // the limit of Linux
   fs::path here = fs::path(path).root_path();
   std::list<std::string> rest;
   put_in_front(rest, path);

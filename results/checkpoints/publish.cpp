@@ -106,7 +106,7 @@ void publish(const std::string& path, std::span<const std::byte> bytes) {
 }
 
 std::string end_of_links(const std::string& path) {
-  constexpr int most_links = 40;  // as many as Linux follows
+  constexpr int most_links = 40;  // the limit of Linux
   std::filesystem::path end(path);
   for (int links = 0; links < most_links; ++links) {
     struct stat status;

@@ -124,7 +124,7 @@ class Displacements {
   struct Use {
     double even_share = 0;   // share of central spheres with that place in the region, evenly
                              // spread spheres counted along
-    double grown_share = 0;  // that share, for a region grown beyond floor and surface
+    double grown_share = 0;  // the share for a region grown beyond floor and surface
     double pairs = 0;        // per volume of displacements, of an uncorrelated packing
   };
   Use operator()(Vec3 way) const {

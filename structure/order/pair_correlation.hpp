@@ -21,8 +21,8 @@ struct PairCorrelationSettings {
 double widest_pairs(const Container& container);
 
 /// Heights of central spheres: r_max above the lowest centres that the floor allows and below 2<Z>,
-/// but at least the middle half of the heights up to there, and all of these where no centre lies
-/// in that half. All of a fully periodic box.
+/// but at least the middle half of the heights up to there, and all of these where that half has no
+/// centre. All of a fully periodic box.
 HeightWindow bulk_heights(const Packing& packing, double r_max);
 
 /// Pairs of centres against their distance, in bins [k width, (k + 1) width). A bin begins 1e-9 of
@@ -56,7 +56,7 @@ struct PairCorrelation {
 /// region: the accessible footprint (accessible.hpp) between the lowest centres and the surface,
 /// 2<Z> - 1/2 or the highest centre below it, and within r_max of `heights`.
 ///
-/// Neighbours are counted around central spheres whose shell lies in that region. Shells that
+/// Neighbours are counted around central spheres whose shell is in that region. Shells that
 /// exceed half a period count all pairs with the edge correction below. No neighbours are given
 /// where sides, floor or surface cut every shell: the correction would be too large where spheres
 /// crowd at them.
@@ -74,7 +74,7 @@ struct PairCorrelation {
 /// of a pair at d are denser than the mean by n(-d) / n over what evenly spread points have, the
 /// pair itself not counted (adapted intensity: Stoyan & Stoyan 2000, Scand. J. Statist. 27, 641).
 ///
-/// `density`: that of the accessible footprint between the heights sampled, weighted by 1 at
+/// `density`: the area of the accessible footprint between the heights sampled, weighted by 1 at
 /// heights of central spheres and falling linearly to 0 at the last height sampled. Volumes of
 /// spheres are counted, not centres: the density does not jump where a height cuts a layer.
 ///

@@ -55,10 +55,10 @@ struct VoidProbability {
 };
 /// Up to sigma = 1, where spheres of radius sigma R do not overlap, exactly: one minus the part of
 /// the region that they fill. Beyond by `points` random points, of which those count whose sphere
-/// lies where centres may be (border correction: Baddeley & Gill 1997, Ann. Statist. 25, 263):
-/// 1/2 + sigma R away from floor and walls, and sigma R below 2<Z> - 1/2. A sphere that reaches
-/// into the layer beside a wall, where no centre can be, would more often be empty. NaN where no
-/// point counts.
+/// is in the region of possible centres (border correction: Baddeley & Gill 1997, Ann. Statist. 25,
+/// 263): 1/2 + sigma R away from floor and walls, and sigma R below 2<Z> - 1/2. A sphere that
+/// reaches into the layer beside a wall, where no centre can be, would more often be empty. NaN
+/// where no point counts.
 VoidProbability void_probability(const Packing& packing, const Region& region,
                                  std::span<const double> sigma, std::uint64_t points,
                                  StreamKey key);

@@ -60,7 +60,7 @@ class CellReader {
     for (const int neighbour : neighbours_) {
       const auto n_corners = static_cast<std::size_t>(face_vertices_[at++]);
       const Vec3 first = corner(face_vertices_[at]);
-      Vec3 normal;  // of length twice the area
+      Vec3 normal;  // length is twice the area
       for (std::size_t k = at + 2; k < at + n_corners; ++k)
         normal = normal +
                  cross(corner(face_vertices_[k - 1]) - first, corner(face_vertices_[k]) - first);

@@ -102,7 +102,7 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<PilotSetting> settings
 }
 
 void CostStudy::read_times(const ResultsFile& file) {
-  std::vector<Work> work(settings_.size());  // of all realizations that did not fail
+  std::vector<Work> work(settings_.size());  // time of all realizations that did not fail
   std::vector<double> done(settings_.size());
   for (const RealizationSummary& one : file.realizations()) {
     if (one.status == RealizationStatus::failed) {

@@ -13,7 +13,7 @@ class TablesObserver {
  public:
   virtual ~TablesObserver() = default;
   virtual void fitted(const FittedCurve&) {}
-  virtual void analysed(const Table&) {}  // of analyses and of structure
+  virtual void analysed(const Table&) {}  // tables of analyses and of structure
   virtual void without_structure(const std::string& /*reason*/) {}
 };
 

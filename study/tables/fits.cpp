@@ -42,7 +42,7 @@ ResampledErrors resampled_errors(const Model& model, const RealizationCurves& be
   return errors;
 }
 
-constexpr double noticed_difference = 1.25;  // of two errors of one parameter
+constexpr double noticed_difference = 1.25;  // ratio of two errors of one parameter
 
 // Where errors of resampled realizations differ from those of the profiles, and by how much at
 // most.

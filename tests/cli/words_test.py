@@ -46,7 +46,7 @@ UNIT = (r"(?:[\d}%]|bytes|columns|contacts|cores|cycles|entries|files|GB|hours|j
 START = re.compile(r"(?:Of|What|Whether|That|As|So|Which|Likewise|The same|The others)\b(?![.-])")
 SENTENCES = re.compile(r"(?:^|(?<=[a-z)\d\"'`][.!?] ))(?=\w)")
 PRIVATE = re.compile(
-    r"\b(?:says?|said|tells?|telling|told|stands?(?! for)|stood|lies|hangs? on|hung on|hold against|"
+    r"\b(?:says?|said|tells?|telling|told|stands?(?! for)|stood|lies(?! (?:within|inside|outside|above|below|beyond|between)\b)|hangs? on|hung on|hold against|"
     r"held against|mends?|mended|lacks?|lacked|wants?|wanted|wanting|goes on|went on|"
     r"know better|knows better|(?:is|are|was|were) of (?!the order)|clock of the wall|"
     r"taken away|surroundings|flatter(?:s|ed)?|(?:is|are) no (?:more )?(?:fault|loss|text|one)\b)\b", re.I)

@@ -8,8 +8,8 @@
 namespace jostle::inline engine {
 
 /// Directions are sorted into rings of the angle from the downward vertical, each cut into sectors
-/// of the azimuth. z counts downward throughout. Metropolis steps want finer bins: there it is the
-/// cube of a length that a bin too wide overestimates.
+/// of the azimuth. z counts downward throughout. Metropolis steps require finer bins: there it is
+/// the cube of a length that a bin too wide overestimates.
 inline constexpr int n_rings = 8;
 inline constexpr int polar_sectors = 16, cubic_sectors = 32;
 

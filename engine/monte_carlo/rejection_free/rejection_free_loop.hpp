@@ -99,7 +99,7 @@ class RejectionFreeLoop final : public TrialLoop {
   // a step that adapts grows short.
   static constexpr double several = 3;
   static constexpr std::uint64_t window_sweeps = 25;
-  // Beyond this share of candidates the bounds are of no use.
+  // Above this share of candidates the bounds do not pay.
   static constexpr double most_candidates = 0.3;
 
   std::uint64_t until_decision() const {

@@ -19,7 +19,8 @@ namespace {
 
 constexpr double least_mu = -1, most_mu = 2, mu_step = 0.05;
 constexpr double refuted = significance_level;
-constexpr Eigen::Index fewest_realizations = 4;  // of three, intervals hold the truth too seldom
+constexpr Eigen::Index fewest_realizations =
+    4;  // with three realizations, intervals contain the truth too seldom
 const double decade = std::log(10.0);
 
 /// Cubic B-splines with equal intervals, about a decade each, [n_points, n_splines].
@@ -88,8 +89,8 @@ Eigen::VectorXd ln_lags(const LogCurves& curves) {
       .log();
 }
 
-/// What of a column is beyond the others, [n_points]; nothing where that is rounding: where curves
-/// do not overlap, or have no more points than the function has parameters.
+/// Residual of a column after projection on the others, [n_points]; nothing where that is rounding:
+/// where curves do not overlap, or have no more points than the function has parameters.
 std::optional<Eigen::VectorXd> weights_beyond(const Eigen::VectorXd& column,
                                               const Eigen::MatrixXd& others) {
   constexpr double rounding = 1e-9;
@@ -156,7 +157,7 @@ class PowerOfAge {
   double best() const { return best_; }
   const std::vector<double>& values() const { return values_; }
   SmoothCurve at(double mu) const { return {curves_, ln_t_ - mu * ln_age_, scales_}; }
-  /// What a larger mu changes.
+  /// The derivative by mu.
   Eigen::VectorXd by_mu(const SmoothCurve& curve) const {
     return -curve.slope.cwiseProduct(ln_age_);
   }
@@ -171,7 +172,7 @@ class PowerOfAge {
   const LogCurves& curves_;
   Eigen::VectorXd ln_t_, ln_age_;  // [n_points]
   Eigen::MatrixXd scales_;
-  std::vector<double> values_;  // of mu, the grid
+  std::vector<double> values_;  // grid of mu
   double best_;
 };
 
@@ -227,9 +228,9 @@ AgeingExponent ageing_exponent(const LogCurves& all,
     return no_exponent(cannot_decide("fewer than two waiting times above 0 have curves"));
   }
   const PowerOfAge power(ages, Eigen::MatrixXd(ages.t_w.size(), 0));
-  // Without a scale mu makes up for much of one that is there, and a test about the best mu sees
-  // little; fitted together the two are so alike, where A is nearly a power, that errors are too
-  // small. What both find is there, what neither finds is not.
+  // Without a scale, mu compensates much of an existing one, and a test about the best mu has
+  // little power. Fitted together the two are so alike, where A is nearly a power, that errors are
+  // too small. A scale is accepted if both find it, and excluded if neither does.
   const TestedChange change{name + " at equal t/t_W^mu", "collapse refuted",
                             "collapse not refuted"};
   const AgeTrend about_mu = scale_that_ages(ages, power, change);

@@ -43,8 +43,8 @@ class TableView {
   /// Half widths along the last axis, at one place of the first.
   std::vector<double> half_width_row(const std::string& quantity, std::size_t i) const;
 
-  std::string units(const std::string& name) const;      // name of a quantity or an axis
-  std::string long_name(const std::string& name) const;  // likewise
+  std::string units(const std::string& name) const;      // units of a quantity or an axis
+  std::string long_name(const std::string& name) const;  // long name of a quantity or an axis
   std::string source(const std::string& quantity) const;
   std::string note(const std::string& key) const;
 

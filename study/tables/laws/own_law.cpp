@@ -20,7 +20,7 @@ namespace jostle::inline study {
 
 namespace {
 
-constexpr double step = 1e-4;  // of a difference, relative
+constexpr double step = 1e-4;  // relative rounding of a difference
 
 std::vector<std::string> names_of(const OwnLaw& law) {
   std::vector<std::string> names;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// What R, pandas and spreadsheets write where there is no value.
+/// Words of R, pandas and spreadsheets for a missing value.
 bool is_gap(const std::string& cell) {
   static constexpr std::array words = {"", "nan", "na", "n/a", "null", "none"};
   std::string lower;
@@ -48,7 +48,7 @@ class Reader {
     const std::string& cell = line.cells[column];
     if (is_gap(cell)) return missing;
     if (const auto number = read_number(cell)) return *number;
-    // Of "1 0,5" the comma divides, and a cell has two numbers.
+    // In "1 0,5" the comma divides, and a cell has two numbers.
     const bool is_divided =
         cell.find_first_of(" \t") != std::string::npos && has_decimal_comma(line.text);
     fail(line, column, fmt::format("\"{}\" is not a number", printable(cell, 100)),
