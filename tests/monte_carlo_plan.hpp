@@ -16,7 +16,7 @@ inline const MonteCarlo& monte_carlo(const Plan& plan) {
   return std::get<MonteCarlo>(plan.engine);
 }
 
-/// What Monte Carlo recorded of a tap in the column of that name.
+/// Monte Carlo's record of a tap in the column of that name.
 inline double diagnostic(const TapRow& row, std::string_view name) {
   const std::vector<Column> all = columns(MonteCarlo{});
   const auto found = std::ranges::find(all, name, &Column::name);

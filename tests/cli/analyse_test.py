@@ -43,7 +43,7 @@ class Analysed(Case):
             blocks = table["quantities"]["blocks"]["values"]
             self.assertEqual(blocks, [192, 96, 48, 24, 12, 6])
 
-        # The same mean from the ensemble's own curve.
+        # This mean from the ensemble's own curve.
         curve = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "160",
                              "--no-store", "--sweep-point", "1", "--csv", "out.csv")["tables"]
         self.assertEqual(len(curve), 1)
@@ -372,7 +372,7 @@ class Analysed(Case):
             self.assertGreater(unknown, 0)
             self.assertEqual(value.attrs["note_taps"], "111 to 160")
 
-        # What is zipped with the swept value is no sweep of its own, what is crossed is.
+        # A value zipped with the swept value is no sweep of its own; a crossed one is.
         crossed = changed(scene, name="crossed", analyse={}, fits=[], realizations=2, sweep={
             "zip": {"/protocol/0/tap/dilate": [0.01, 0.04], "/protocol/0/count": [20, 24]},
             "/spheres": [48, 40]})

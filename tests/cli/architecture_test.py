@@ -1,6 +1,6 @@
-"""The arrows between folders: engine <- structure <- ensemble; fitting stands alone; config and
-results stand on those; study joins them; cli is its command line;
-bench measures. Read off the include lines, whatever CMake links."""
+"""The arrows between folders: engine <- structure <- ensemble; fitting is independent; config and results use those;
+study joins them; cli is its command line; bench measures. Read from the include lines, independent of the links of
+CMake."""
 
 import os
 import pathlib
@@ -27,7 +27,7 @@ MAY_INCLUDE = {
 STUDY_MAY_INCLUDE = {"tables": set(), "running": {"tables"}, "drawing": {"tables", "running"},
                      "planning": {"tables", "running"}}
 
-# What else only some may see.
+# Other headers that only some folders may include.
 RESERVED = {
     r"hdf5|H5\w*\.h": {"results"},
     r"openssl/": {"results"},
@@ -56,7 +56,7 @@ def includes():
                 yield path.relative_to(SOURCE), quote, name
 
 
-# What stands in an anonymous namespace may have any name.
+# Types in an anonymous namespace may have any name.
 ANONYMOUS = re.compile(r"^namespace \{.*?^\}  // namespace$", re.DOTALL | re.MULTILINE)
 # A class, struct, union or enumeration that is defined here: neither declared nor specialised.
 DEFINED = re.compile(r"(?<!template <>\n)^(?:template <[^>\n]+> )?(?:class|struct|union|enum class|enum)"

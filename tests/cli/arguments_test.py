@@ -352,7 +352,7 @@ class Streams(Refused):
 
 
 class OneMessage(Case):
-    """An error is one line, whatever stands on the command line and however narrow a terminal is."""
+    """An error is one line, for any command line and any width of the terminal."""
 
     def test_words_with_newlines(self):
         self.write(TINY)

@@ -24,7 +24,7 @@ class Script(Case):
         return dict(re.findall(r"^#SBATCH --([\w-]+)=(.*)$", text, re.M))
 
     def run_task(self, task, restarts=0, wait=True, scontrol="exit 0", **environment):
-        """What Slurm does with one task of tiny.sbatch. scontrol's arguments go to a file."""
+        """The work of Slurm for one task of tiny.sbatch. scontrol's arguments go to a file."""
         (self.folder / "bin").mkdir(exist_ok=True)
         (self.folder / "bin/scontrol").write_text(f'#!/bin/sh\necho "$@" >>requeued\n{scontrol}\n')
         (self.folder / "bin/scontrol").chmod(0o755)
@@ -311,7 +311,7 @@ class Status(Case):
         shown = self.jostle("status", "shards", expect=BROKEN).stdout
         self.assertIn("unreadable   1: 3", shown)
         self.assertNotIn("3/4", shown)
-        # A name that tells no number: it may hold any of them, and none is done again.
+        # A name without a number: it may hold any of them, and none is repeated.
         damaged.rename(self.folder / "shards/copy.h5")
         study = json.loads(self.jostle("status", "shards", "--json", expect=BROKEN).stdout)["studies"][0]
         self.assertEqual(study["unread"], ["shards/copy.h5"])

@@ -238,7 +238,7 @@ KIN = {
 PARTICLES = "particles/point_0000_realization_00000"
 TAKEN = "snapshots/point_0000"
 
-# Of a file of grains, whose snapshots keep more.
+# A file of grains, whose snapshots keep more.
 OF_GRAINS = {
     "velocities of other numbers": lambda file: replace(
         file, f"{PARTICLES}/velocity/value", np.zeros((2, 19, 3))),

@@ -32,7 +32,7 @@ def blocks(page):
 
 class DocumentedNumbers(Case):
     def printed(self, page):
-        """What the page's commands print, run in the order of the page in a folder with the shipped scenes."""
+        """Output of the page's commands, run in the order of the page in a folder with the shipped scenes."""
         folder = self.folder / "pages"
         shutil.copytree(SOURCE / "config", folder / "config")
         (folder / "bin").mkdir()

@@ -1,4 +1,4 @@
-"""What the documents must keep to: one version everywhere, an index of every page, links that lead somewhere."""
+"""Rules of the documents: one version everywhere, an index of every page, links with existing targets."""
 
 import json
 import os
@@ -14,7 +14,7 @@ PAGES = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "do
 
 
 def anchors(text):
-    """What a #... may name: headings as GitHub writes them."""
+    """Valid anchors: headings in GitHub's form."""
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", one.lower()).replace(" ", "-") for one in headings}
 

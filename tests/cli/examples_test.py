@@ -25,7 +25,7 @@ QUICK = {
     "observe": ["mean_height", "bottom_fraction", "corrected_fraction", "bulk_fraction"],
     "snapshots": {"taps": [0, 100]},
 }
-# As many taps as the papers' scenes have, and no more spheres than they need.
+# The taps of the papers' scenes, with as few spheres as possible.
 LONG = changed(QUICK, container={"sides": "periodic", "width": 3}, spheres=30,
                snapshots={"taps": [0, 99]},
                protocol=[{"tap": {"dilate": 0.02}, "count": 2000}],
@@ -37,7 +37,7 @@ UP_AND_DOWN = [{"ramp": {"dilate": {"sqrt_from": 0.1, "sqrt_to": 0.5, "sqrt_step
 THEN_COMMON = [{"tap": {"dilate": 0.05}, "count": 9}, {"tap": {"dilate": 0.02}, "count": 100}]
 TWO_WAYS = {"zip": {"/protocol/0/tap/dilate": [0.05, 0.1], "/protocol/0/count": [9, 5]}}
 
-# What a test has no time or no place for, and what stands for it.
+# Parts that are too long for a test, and their replacements.
 INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed --json":
            "jostle bench fluid_0.45 --json", "--budget 30m": "--replicates 2",
            "--folder /scratch/me": "--folder .",
@@ -45,7 +45,7 @@ INSTEAD = {"jostle bench": "jostle bench fluid_0.45", "jostle bench tapped_bed -
            "jostle merge low.h5 high.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force"}
 
 
-# The same for the documentation. What takes minutes runs on a bed that takes seconds.
+# Replacements in the documentation. Long commands run on a bed that takes seconds.
 INSTEAD_IN_DOCS = {
     **INSTEAD,
     "jostle run config/scenes/quickstart.json": "jostle run config/scenes/quickstart.json --force",
@@ -83,7 +83,7 @@ def documented(page):
 
 
 def examples(text):
-    """The commands of a help text; what stands after two blanks is said of them."""
+    """The commands of a help text; text after two blanks describes them."""
     return [re.split(r"\s{2,}", line.strip())[0] for line in text.splitlines()
             if line.startswith("  jostle ")]
 

@@ -25,7 +25,7 @@ class Export(Case):
         self.run_scene()
 
     def centres(self, point=0, realization=0, frame=-1):
-        """Of the results file, as h5py reads them."""
+        """Positions in the results file, read by h5py."""
         with h5py.File(self.folder / "tiny.h5") as file:
             group = f"particles/point_{point:04}_realization_{realization:05}"
             return file[group + "/position/value"][frame].tolist()

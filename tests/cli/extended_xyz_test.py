@@ -33,7 +33,7 @@ class ExtendedXyz(Case):
         self.expected = self.read_by_all(frame(self.rows))
 
     def read_by_all(self, text, tap=None, frames=1):
-        """What every command makes of a file: structure's numbers, an export's centres, a start's."""
+        """Results of every command for a file: structure's numbers, an export's centres, a start's."""
         self.write(text, "a.xyz")
         tap = frames - 1 if tap is None else tap
         printed = self.jostle("structure", "a.xyz", "--settings", REGION, "--tap", tap, "--json").stdout
@@ -182,7 +182,7 @@ class ExtendedXyz(Case):
             for rows in ([[*row, 0.3] for row in self.rows],
                          [[*row, 0.3 if i == 47 else model] for i, row in enumerate(self.rows)]):
                 self.refused_by_all(frame(rows, header), f"{name} is .*0.3.* Rename the column if it holds no sizes")
-        self.read_alike(frame(self.rows, HEADER + " r=3 d=2 sigma=0.1 size=7"))  # of a frame: anything
+        self.read_alike(frame(self.rows, HEADER + " r=3 d=2 sigma=0.1 size=7"))  # any comment of a frame
 
     def test_names_of_the_corner(self):
         for key in ("cell_origin", "box_origin", "Cell_Origin", "lattice_origin"):

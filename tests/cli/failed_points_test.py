@@ -1,5 +1,4 @@
-"""Sweeps of which a point, or every point, has failed or lags behind: what is left is analysed, and
-says so."""
+"""Sweeps with a failed or late point, or only such points: the rest is analysed, and the output reports it."""
 import signal
 import time
 import unittest
@@ -7,7 +6,7 @@ import unittest
 import h5py
 from support import BAD_INPUT, UNFOLDED, Case, changed
 
-# A crystal stands between periodic sides that its rows fit: not in 4 d along y.
+# A crystal needs periodic sides that fit its rows: not 4 d along y.
 WIDTHS = [3.4641016151377544, 4, 5.196152422706632, 6.928203230275509]
 SCENE = {
     "name": "widths",

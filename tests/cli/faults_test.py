@@ -1,5 +1,5 @@
-"""Surroundings that break under a run: what was checkpointed stays, the message says what to do,
-and a resume ends with the digest of a straight run."""
+"""Failures of the environment during a run: checkpoints stay, the message has the remedy, and a resume ends with the
+digest of an uninterrupted run."""
 
 import hashlib
 import os
@@ -28,7 +28,7 @@ GROWTH = {"name": "growth", "seed": 1999, "realizations": 1, "spheres": 20000,
           "start": {"grow": {}}, "protocol": [{"tap": {"lift": 0}, "count": 1}],
           "relax": {"metropolis": {}, "stop": {"sweeps": 10}}, "observe": [],
           "snapshots": {"taps": [0, 1]}}
-SEAL = len("\njostle-sha256 \n") + 64  # what a results file ends with
+SEAL = len("\njostle-sha256 \n") + 64  # the last line of a results file
 OPTIONS = ("--no-progress", "--threads", "2", "--checkpoint-every", "0")
 # Pauses a run in its midst, until SIGCONT: it has written about twenty checkpoints of a hundred.
 PAUSE = {**SHIM, "JOSTLE_FAULT_ACTION": "pause", "JOSTLE_FAULT_AT": "100"}
@@ -54,7 +54,7 @@ needs_mounts = unittest.skipUnless(MOUNTS, "no process may mount here: unshare -
 
 
 def limit_memory(megabytes):
-    """Of addresses, of this process."""
+    """Limit of addresses of this process."""
     resource.setrlimit(resource.RLIMIT_AS, (megabytes << 20, megabytes << 20))
 
 
@@ -276,7 +276,7 @@ class Limits(Faults):
                 self.assertEqual(self.digest("tiny.h5"), straight)
 
     def least_memory(self):
-        """Of a process that only says its version, to a megabyte."""
+        """Memory of a process that only prints its version, to a megabyte."""
         least, most = 0, 1 << 10
         while most - least > 1:
             middle = (least + most) // 2

@@ -94,7 +94,7 @@ class FilesTogether(Case):
         for r in (0, 1):
             self.jostle("export", "tiny.h5", "--format", "extxyz", "--realization", r, "--tap", "all", "-o", f"r{r}.xyz")
         asked = ["--part", "coordination"]
-        self.jostle("structure", "r0.xyz", "r1.xyz", *asked)  # that start from one crystal
+        self.jostle("structure", "r0.xyz", "r1.xyz", *asked)  # scenes that start from one crystal
         lines = (self.folder / "r0.xyz").read_text().splitlines()
         n = len(lines) // 2
         turned = "\n".join(lines[n:n + 2] + lines[:n + 1:-1][:n - 2]) + "\n"

@@ -140,7 +140,7 @@ class Grains(Case):
         force = contacts["normal_force"][here][:, None] * contacts["normal"][here]
         force = force + contacts["tangential_force"][here]
         pairs = second < 80
-        # Normals lead from one centre to the other, and overlaps are what the distance lacks.
+        # Normals lead from one centre to the other, and overlaps are the missing distance.
         centres = group["position/value"][frame]
         between = centres[first[pairs]] - centres[second[pairs]]
         distance = np.linalg.norm(between, axis=1)

@@ -71,7 +71,7 @@ class Grow(Case):
             self.assertEqual(file["sweep/dilate"][:].tolist(), [0.02, 0.05, 0.2, 0.1])
             scene = file["scene/verbatim"][()].decode()
         self.assertEqual(self.digest_at_once(scene), self.digest("all.h5"))
-        # and it goes on as any run
+        # and it continues like any run
         self.write(swept(0.02, 0.05, 0.2, 0.1, 0.3, name="all"))
         self.run_scene("-o", "all.h5", "--resume")
         self.assertEqual(self.info("all.h5")["points"][4]["values"], {POINTER: 0.3})

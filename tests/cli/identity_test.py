@@ -1,4 +1,4 @@
-"""The same numbers for any number of threads, for shards, and for runs made longer."""
+"""Numbers are equal for any number of threads, for shards, and for extended runs."""
 
 import unittest
 

@@ -54,7 +54,7 @@ class Install(Case):
         self.import_the_package(prefix)
 
     def import_the_package(self, prefix):
-        """From where it was installed, with the program that stands beside it, and as xarray's engine."""
+        """The installed package, with the program installed beside it, and as xarray's engine."""
         script = ("import jostle, xarray\n"
                   "assert jostle.__file__.startswith(%r), jostle.__file__\n"
                   "ensemble = xarray.open_dataset('tiny.h5', engine='jostle')\n"
@@ -66,7 +66,7 @@ class Install(Case):
         self.assertEqual(done.stdout.strip(), self.digest("tiny.h5"), done.stderr)
 
     def run_own_sink(self, program):
-        """What is run into memory is analysed and fitted to the numbers of the program."""
+        """A run into memory is analysed and fitted with the numbers of the program."""
         scene = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}])
         del scene["sweep"], scene["snapshots"]
         self.write(scene, "own.json")

@@ -10,7 +10,7 @@ import unittest
 
 from support import BROKEN, OK, SHIM, TINY, Case, changed, some
 
-# As few writes as a run can have, checkpoints after its taps included.
+# The fewest writes of a run, including checkpoints after its taps.
 SHORT = changed(TINY, realizations=1, spheres=24, container={"sides": "periodic", "width": 3},
                 protocol=[{"tap": {"dilate": 0.05}, "count": 1}], observe=["mean_height"],
                 snapshots={"taps": [1]})
@@ -35,7 +35,7 @@ class Kill(Case):
         return folder
 
     def finish(self, folder, straight):
-        """What a killed run left opens, and finishes to the straight run's digest."""
+        """The file of a killed run opens, and finishes to the digest of an uninterrupted run."""
         if (folder / "tiny.h5").exists():
             self.jostle("info", "tiny.h5", folder=folder)
         self.run_scene("--resume", folder=folder)

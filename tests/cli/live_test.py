@@ -1,4 +1,4 @@
-"""The curves of a run that goes on, from its checkpoints."""
+"""The curves of a run in progress, from its checkpoints."""
 
 import json
 import os
@@ -38,7 +38,7 @@ class Live(Case):
         return process
 
     def look(self):
-        """What every command shows of the run, and that none of them touches its file."""
+        """Output of every command for the run; none of them changes its file."""
         before = (self.folder / "endless.h5").read_bytes()
         text = self.jostle("info", "endless.h5").stdout
         self.assertRegex(text, r"curves +so far, with the last checkpoints")

@@ -68,7 +68,7 @@ class Jobs(Case):
             (self.folder / "bin" / name).unlink()
         self.resume(owner, BROKEN)
         self.slurm([])
-        self.resume("elsewhere 1 1", BROKEN)  # of no job, as earlier versions wrote it
+        self.resume("elsewhere 1 1", BROKEN)  # a lock without a job, in the form of earlier versions
 
     @unittest.skipUnless(os.getuid() == 0, "only root gives files away")
     def test_of_another_users_job_slurm_is_not_asked(self):
@@ -152,7 +152,7 @@ class WithoutFlock(Case):
         for run in runs:
             run.communicate(timeout=600)
             codes.append(run.returncode)
-        # Who comes when another has ended goes on; never are two at work at once.
+        # A process that arrives after another has ended continues; two never work at once.
         self.assertTrue({STOPPED, OK} & set(codes), codes)
         self.assertLessEqual(set(codes), {STOPPED, BROKEN, OK})
         self.assertEqual([name for name in self.files() if "lock" in name], [])

@@ -1,4 +1,4 @@
-"""The same bytes on every machine: with each instruction set that this one has, and with the
+"""Equal bytes on every machine: with each instruction set of this one, and with the
 variants of the C library's functions that it would choose here switched off."""
 
 import pathlib

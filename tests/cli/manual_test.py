@@ -1,4 +1,4 @@
-"""Manual pages and completions say what the program's own helps say."""
+"""Manual pages and completions agree with the program's own help texts."""
 
 import os
 import pathlib
@@ -59,7 +59,7 @@ class Manual(Case):
 
 class Bash(Case):
     def complete(self, *words):
-        """What bash offers for the last of the words."""
+        """Offers of bash for the last of the words."""
         script = (f'source "{MANUAL}/bash/jostle"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _jostle; '
                   'printf "%s\\n" "${COMPREPLY[@]}"')
         done = subprocess.run(["bash", "-euc", script, "bash", "jostle", *words], cwd=self.folder,
@@ -120,7 +120,7 @@ class Zsh(Case):
             self.skipTest("zsh is not installed")
 
     def specs(self, command):
-        """What the completion hands to zsh's _arguments for a command."""
+        """Specifications that the completion passes to zsh's _arguments for a command."""
         script = ('_arguments() { print -rl -- "$@"; state=argument }; _files() { }; _describe() { }; '
                   f'words=({command} x); source {MANUAL}/zsh/_jostle')
         done = subprocess.run(["zsh", "-f", "-c", script], capture_output=True, text=True)

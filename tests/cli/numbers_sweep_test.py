@@ -10,7 +10,7 @@ class AllTexts(Texts):
 
 
 add_tests(AllTexts, [name for name in SCENES if name not in QUICK])
-del Texts  # which has no test of its own
+del Texts  # without a test of its own
 
 
 if __name__ == "__main__":

@@ -104,7 +104,7 @@ def few_snapshots(last):
 
 LOOP = [0.02, 0.04, 0.06, 0.04, 0.02]
 SCENES = {
-    # crystalline_fraction is 0 at every tap: its verdicts said "-nan times the scatter".
+    # crystalline_fraction is 0 at every tap: its verdicts contained "-nan times the scatter".
     "constant": scene(protocol=protocol(0.05, count=130), snapshots=few_snapshots(130)),
     "motionless": scene(protocol=protocol(0, count=40)),
     "single realization": scene(realizations=1, protocol=protocol(0.05, count=64),
@@ -168,7 +168,7 @@ class Texts(Case):
         return done
 
     def look_at_file(self, name):
-        """Of CSV: a missing number is an empty field, and every block has one number of fields."""
+        """CSV: a missing number is an empty field, and every block has one number of fields."""
         path = self.folder / name
         if path.exists():
             with path.open(newline="") as file:

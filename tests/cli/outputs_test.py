@@ -219,10 +219,10 @@ class Sources(Case):
         resolves = re.compile(r"\b(?:read_symlink|readlink|realpath)\(")
         found = {name: len(resolves.findall(text)) for name, text in self.sources()}
         self.assertEqual({name: n for name, n in found.items() if n > 0},
-                         {"cli/files/output_file.cpp": 1,  # whether it is a descriptor
+                         {"cli/files/output_file.cpp": 1,  # true for a descriptor
                           "results/checkpoints/output_path.cpp": 1,
                           "results/checkpoints/publish.cpp": 1,  # to read
-                          "study/provenance.cpp": 1})  # of /proc/self/exe
+                          "study/provenance.cpp": 1})  # the content of /proc/self/exe
         followed = {name: text.count("end_of_links(") for name, text in self.sources()}
         self.assertEqual({name for name, n in followed.items() if n > 0},
                          {"results/checkpoints/output_path.cpp", "results/checkpoints/publish.cpp",

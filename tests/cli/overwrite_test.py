@@ -1,4 +1,4 @@
-"""What no command destroys: its input, its results, and files it was not told to replace."""
+"""No command destroys its input, its results, or files that it should not replace."""
 
 import unittest
 

@@ -17,7 +17,7 @@ def includes(header, quote):
 
 
 def internal_headers():
-    """What the public headers include, from header to header: names from the root."""
+    """Headers included by the public headers, recursively: names from the root."""
     found, waiting = set(), public_headers()
     while waiting:
         names = set(includes(waiting.pop(), '"')) - found

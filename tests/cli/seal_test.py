@@ -1,5 +1,5 @@
-"""Results files that other programs opened for writing: HDF5 cuts off their last line, the checksum. What is
-as jostle wrote it is used, with a warning; what differs is refused and named."""
+"""Results files that other programs opened for writing: HDF5 removes their last line, the checksum. Unchanged
+contents are used, with a warning; changes are rejected by name."""
 
 import random
 import sys
@@ -235,7 +235,7 @@ class Seal(Case):
                 self.assertIn("user block", self.jostle(*command, expect=BROKEN).stderr)
 
     def test_files_without_hashes_of_their_contents(self):
-        """As earlier versions wrote them, and other programs."""
+        """Files of earlier versions and of other programs."""
         self.make()
         self.change(lambda file: file.__delitem__("provenance/contents"))
         self.assertIn("no hashes of its contents", self.jostle("info", "file.h5", expect=BROKEN).stderr)

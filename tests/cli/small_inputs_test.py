@@ -10,7 +10,7 @@ import numpy as np
 from support import BAD_INPUT, BROKEN, SOURCE, Case
 
 DATA = SOURCE / "tests/data"
-FRACTION, NEIGHBOURS, HEIGHT = 0.5780, 6.127, 1.9315  # of bed.xyz
+FRACTION, NEIGHBOURS, HEIGHT = 0.5780, 6.127, 1.9315  # the spheres of bed.xyz
 
 
 class SmallInputs(Case):

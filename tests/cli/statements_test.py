@@ -1,4 +1,4 @@
-"""What analyses state: with the level of the test, the condition, and no sums of different things."""
+"""Statements of analyses: the level of the test, the condition, and no sums of different quantities."""
 
 import json
 import re

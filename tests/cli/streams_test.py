@@ -1,5 +1,5 @@
-"""What is read comes from a whole file, and what is printed reaches its reader whole, or the exit code
-says so: every read of an input and every write to standard output fails once, is short, or is
+"""Input is read from a whole file, and output reaches its reader completely, or the exit code reports it: every read
+of an input and every write to standard output fails once, is short, or is
 interrupted. And nothing that a terminal takes for a command leaves the program."""
 
 import json

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 JOSTLE = os.environ["JOSTLE"]
-# Surroundings of a program whose calls the shim answers; one with sanitizers wants its own runtime first.
+# Environment of a program whose calls the shim answers; with sanitizers their runtime must come first.
 SHIM = {"LD_PRELOAD": os.environ["FAULT_SHIM"], "ASAN_OPTIONS": "verify_asan_link_order=0"}
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 # Built without intrinsics and without what only Linux has.
@@ -34,7 +34,7 @@ TINY = {
     "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]},
 }
 
-# Of the program's surroundings only what it needs, and nothing that configures it.
+# Only the necessary part of the environment, and nothing that configures the program.
 PLAIN = {key: value for key, value in os.environ.items()
          if not key.startswith(("JOSTLE", "SLURM"))}
 

@@ -40,7 +40,7 @@ class TargetPrecision(Case):
         self.assertAlmostEqual(max(values[0], values[2]) / height, 1, places=12)
         self.assertAlmostEqual(max(values[1], values[3]) / bottom, 1, places=12)
 
-        # The same number and bytes on two threads, and in pieces.
+        # Equal number and bytes on two threads, and in pieces.
         digest = self.digest("tiny.h5")
         self.run_scene("--threads", "2", "-o", "two.h5")
         self.assertEqual(self.digest("two.h5"), digest)

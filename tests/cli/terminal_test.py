@@ -1,4 +1,4 @@
-"""What people read: widths, colours, curves and the commands that come next."""
+"""Output for people: widths, colours, curves and the next commands."""
 
 import fcntl
 import os
@@ -34,7 +34,7 @@ BRAILLE = re.compile("[\u2801-\u28ff]")
 
 class Terminal(Case):
     def at_a_terminal(self, *arguments, columns=80, **environment):
-        """What the program writes to a terminal so wide."""
+        """Output of the program on a terminal of this width."""
         inner, outer = pty.openpty()
         fcntl.ioctl(outer, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         surroundings = {**PLAIN, "TERM": "xterm", "LC_ALL": "C.UTF-8", **environment}
@@ -69,7 +69,7 @@ class Terminal(Case):
 
     def test_reports_are_as_wide_as_asked_for(self):
         for scene, file in ((BED, "tiny.h5"), (SWEEP, "swept.h5")):
-            # A command stands in one line, however long its words are.
+            # A command is in one line, for any length of its words.
             self.assert_narrow(self.run_bed(scene).split("\nnext:\n")[0], 80)
             for width in (66, 80) if EVERY else (66,):
                 for words in LISTING:

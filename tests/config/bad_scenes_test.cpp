@@ -4,7 +4,7 @@
 
 namespace jostle {
 
-// Every NAME.json of the folder has a NAME.faults beside it: what the user is told, line by line.
+// Every NAME.json of the folder has a NAME.faults beside it: the messages, line by line.
 TEST_CASE("Every bad scene is refused with all its faults, pointers and messages") {
   const auto files = json_files(bad_scenes);
   CHECK(files.size() >= 40);

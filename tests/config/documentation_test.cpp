@@ -50,7 +50,7 @@ void add_words(const Json& schema, std::set<std::string>& words) {
   }
 }
 
-/// What a page of Markdown writes as code.
+/// Code in a page of Markdown.
 std::set<std::string> words_of_code(const std::string& page) {
   const std::regex code("```[^`]*```|`[^`]*`"), word("[A-Za-z0-9_$]+");
   std::set<std::string> words;
@@ -75,7 +75,7 @@ TEST_CASE("The reference of scenes has every key and every word of the schema") 
     INFO(word);
     CHECK(quoted.contains(word));
   }
-  // The keys of a scene have a row each, and no row is of a key that there is not.
+  // Each key of a scene has a row, and each row has an existing key.
   const std::string rows =
       page.substr(page.find("## Keys"), page.find("### container") - page.find("## Keys"));
   std::set<std::string> listed, known;

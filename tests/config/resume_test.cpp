@@ -23,7 +23,7 @@ std::vector<Fault> faults_of_resume(const std::string& was, const std::string& i
   return resume_faults(parse_scene(was), *now.scene, now.points);
 }
 
-/// What resume says to a change of the scene above.
+/// Message of a resume after a change of the scene above.
 template <class Change>
 std::string faults_of(const Change& change) {
   EditedScene is = EditedScene::parse(run);
@@ -152,7 +152,7 @@ TEST_CASE("A resume takes more values of what is swept, in any order") {
   CHECK(faults_of([](EditedScene& scene) {
           scene["sweep"]["/protocol/0/tap/dilate"] = {0.005, 0.02, 0.03, 0.01};
         }).empty());
-  // As another kind of axis, with equal points.
+  // Another kind of axis, with equal points.
   CHECK(faults_of([](EditedScene& scene) {
           scene["sweep"] =
               EditedScene::parse(R"({"zip": {"/protocol/0/tap/dilate": [0.01, 0.02, 0.05]}})");
@@ -206,7 +206,7 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
       lines(join(low, with(R"({"/spheres": [500], "/protocol/0/tap/dilate": [0.1]})")).faults),
       Catch::Contains("/sweep: the same must be swept"));
   CHECK_FALSE(join(with("{}"), with("{}")).scene);
-  // What the sweep replaces may differ.
+  // Values that the sweep replaces may differ.
   EditedScene base = low;
   base["spheres"] = 300;
   CHECK(join(base, high).scene);

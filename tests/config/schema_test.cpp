@@ -101,15 +101,15 @@ bool is_beyond_schema(const Fault& fault) {
       [&](const std::string& part) { return fault.message.find(part) != std::string::npos; });
 }
 
-/// Whether schema and parser agree: the schema refuses exactly what the parser refuses for more
-/// than the rules above.
+/// Tests if schema and parser agree: the schema rejects exactly what the parser rejects, except for
+/// the rules above.
 bool agree(SchemaValidator& schema, const std::string& text, const PlainJson& scene) {
   const ParsedScene parsed = parse_scene(text);
   const bool refused = !std::all_of(parsed.faults.begin(), parsed.faults.end(), is_beyond_schema);
   return schema.accepts(scene) != refused;
 }
 
-/// What a value is replaced with.
+/// Replacements of a value.
 const std::vector<PlainJson> replacements{
     nullptr,
     true,
@@ -147,7 +147,7 @@ std::string name_of_file(const std::filesystem::path& scene) {
   return name + scene.stem().string();
 }
 
-/// Calls visit(mutant) for the scene with one value replaced, taken away or added.
+/// Calls visit(mutant) for the scene with one value replaced, removed or added.
 template <class Visit>
 void for_each_mutant(const PlainJson& scene, const Visit& visit) {
   const PlainJson leaves = scene.flatten();

@@ -1,4 +1,4 @@
-"""Builds and runs jostle on another Debian than this one, as its README says, in a chroot of its own.
+"""Builds and runs jostle on another Debian by the commands of its README, in a chroot of its own.
 
 ./dev test-elsewhere debian13 [--tests | --user | --pip] calls it, with SOURCE (the checkout) and BUILD (where the chroots
 are kept). The tracked files of the checkout are copied in, `./dev run config/scenes/quickstart.json` installs

@@ -77,7 +77,7 @@ class Bits {
   std::vector<std::uint64_t> bits_;
 };
 
-/// What a record says of a realization, without what it says of the run: costs and checkpoints.
+/// Data of a realization in a record, without those of the run: costs and checkpoints.
 inline Bits bits(const RecordedRealization& record) {
   Bits all;
   for (const TapRow& row : record.rows) all.add(row);

@@ -44,7 +44,7 @@ TEST_CASE("A realization runs by mechanics that are not Monte Carlo, with column
     CHECK(row.diagnostics[0] > 1);  // a gap shrinks by a factor e a step: 14 steps, more or less
     CHECK(row.diagnostics[0] < 100);
     CHECK(row.diagnostics[1] == 0);
-    // At rest the file stands closed on the floor.
+    // At rest the file of spheres is closed on the floor.
     CHECK(row.observables[0] == Approx(4).margin(1e-6));
   }
   CHECK(record.rows[1].observables != record.rows[2].observables);

@@ -14,7 +14,7 @@ double corrected_fraction(const Packing& packing) {
   return Observer({CorrectedFraction{}}, packing)(packing).front();
 }
 
-// Its first row, and what it then says of a fitting.
+// Its first row, and then its record of a fitting.
 struct FirstRow {
   TapRow row;
   std::optional<FittingReport> fitting;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t realizations = 4;
 
-// What a sink of one's own may be: it keeps nothing but the block.
+// An example of an own sink: it keeps only the block.
 class FoldingSink : public Sink {
  public:
   explicit FoldingSink(SeriesBlock& block) : block_(block) {}

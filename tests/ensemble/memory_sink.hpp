@@ -17,7 +17,7 @@ struct RecordedRealization {
   std::optional<Outcome> outcome;
   unsigned checkpoints = 0;
 
-  // What is durable: appended before the last checkpoint.
+  // Durable rows: appended before the last checkpoint.
   std::size_t durable_rows = 0, durable_snapshots = 0;
 };
 

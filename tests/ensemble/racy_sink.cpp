@@ -18,8 +18,8 @@ class RacySink : public Sink {
   unsigned long rows() const { return rows_; }
 
   std::optional<RealizationState> begin(RealizationId) override {
-    // Both realizations are begun before either goes on, so that two threads take part. Relaxed, so
-    // that the wait orders nothing else.
+    // Both realizations are begun before either continues, so that two threads take part. Relaxed,
+    // so that the wait orders nothing else.
     begun_.fetch_add(1, std::memory_order_relaxed);
     while (begun_.load(std::memory_order_relaxed) < 2) std::this_thread::yield();
     return std::nullopt;

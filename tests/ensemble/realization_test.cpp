@@ -149,7 +149,7 @@ TEST_CASE("A start can settle in a way of its own, and taps then begin as after 
   CHECK(other.snapshots[0].centres == record.snapshots[0].centres);
   CHECK(diagnostic(other.rows[1], "sweeps") == 11);
 
-  // The same taps from the bed that it left.
+  // Equal taps from the bed at its end.
   Plan given = plan;
   given.start =
       GivenPacking{std::make_shared<const std::vector<Vec3>>(record.snapshots[0].centres)};

@@ -215,7 +215,7 @@ TEST_CASE("laws at the edge of their parameters end in words, not in NaN") {
       const Fit& edge = std::get<Fit>(result);
       CHECK_FALSE(has_nan(edge));
       if (noise == 0) continue;
-      // As good as the truth, whatever the parameters.
+      // The fit is as good as the truth, for any parameters.
       CHECK(std::sqrt(edge.reduced_chi2) < 1.5 * noise);
       if (truth[3] == 4) {
         CHECK(std::abs(edge.estimates[3].value - 4) < 4 * edge.estimates[3].standard_error);

@@ -74,8 +74,8 @@ void check_coverage(int n_realizations, double rho, double tau, int ensembles) {
   CHECK(at_limit > 0.2 * ensembles);
   CHECK(held[0] >= 0.60 * ensembles - margin(0.60));
   CHECK(held[1] >= 0.90 * ensembles - margin(0.90));
-  // 1/tau >= 0 is a bound at which the truth lies, where its estimate lies in half of the
-  // ensembles: intervals hold the truth in up to (1 + level) / 2 of them (Chernoff 1954,
+  // 1/tau >= 0 is a bound that equals the truth, and the estimate of half of the ensembles:
+  // intervals hold the truth in up to (1 + level) / 2 of them (Chernoff 1954,
   // doi:10.1214/aoms/1177728725).
   CHECK(held[0] <= 0.84 * ensembles + margin(0.84));
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const double nan = std::nan("");
 
-/// The value and the error that a text says, read as a person reads it.
+/// The value and the error in a text, read as a person reads it.
 std::pair<double, double> read_back(const std::string& text) {
   const auto open = text.find('('), close = text.find(')');
   const std::string mantissa = text.substr(0, open);

@@ -13,7 +13,7 @@
 
 #include "ensemble/realization.hpp"
 
-// What must hold in every hard case: finite numbers, no overlap beyond rounding, work in proportion
+// Conditions of every hard case: finite numbers, no overlap beyond rounding, work in proportion
 // to the trials, the same bits when repeated.
 namespace jostle {
 
@@ -77,14 +77,14 @@ inline RecordedRealization run_plan(const Plan& plan, std::uint64_t every = 1) {
   return record;
 }
 
-/// The same twice, bit for bit.
+/// Two runs are equal, bit for bit.
 inline RecordedRealization run_plan_twice(const Plan& plan, std::uint64_t every = 1) {
   RecordedRealization record = run_plan(plan, every);
   CHECK(bits(run_plan(plan, every)) == bits(record));
   return record;
 }
 
-/// hcp stands on 6 by 4 sqrt(3), fcc on 6 by 6 diameters; no gap between neighbours.
+/// hcp has 6 by 4 sqrt(3), fcc 6 by 6 diameters; no gap between neighbours.
 inline Packing close_packed(Lattice lattice, std::uint32_t layers) {
   const bool hcp = lattice == Lattice::hcp;
   RandomStream unused(stream_key(1, 0, 0, Purpose::start));

@@ -96,7 +96,8 @@ TEST_CASE("grains of a stiffness over four decades") {
     settings.spheres = WaltonBraun{.stiffness = stiffness};
     Bed bed(settings, column(box, 24));
     check_sound(bed);
-    CHECK(bed["greatest_overlap"] < 0.5 * overlap);  // as the root of the stiffness at equal speeds
+    CHECK(bed["greatest_overlap"] <
+          0.5 * overlap);  // in proportion to the root of the stiffness at equal speeds
     overlap = bed["greatest_overlap"];
   }
 }

@@ -88,7 +88,7 @@ class Packages(unittest.TestCase):
 
     @unittest.skipUnless(AGAIN, "a second build takes as long as the first: --again makes it")
     def test_a_second_build_elsewhere_gives_the_same_bytes(self):
-        """Of the sources as they are committed, in a clone, without a cache."""
+        """Builds the committed sources, in a clone, without a cache."""
         self.assertEqual(run("git", "-C", SOURCE, "status", "--porcelain"), "", "uncommitted changes")
         clone = self.folder() / "clone"
         run("git", "clone", "--quiet", SOURCE, clone)

@@ -212,7 +212,7 @@ TEST_CASE("Rosato et al.: a lift orders the floor, a held dilation of the same e
 }
 
 TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too", "[statistics]") {
-  // As in refs. 33 and 37, which report little or nothing of the upper part: tested after ten taps.
+  // Refs. 33 and 37 report little or nothing of the upper part; this tests ten taps.
   const Plan plan = short_plan(
       "rosato-dybenko-2010/shake-lateral.json",
       {{"container", {{"width", 5}}},
@@ -227,8 +227,8 @@ TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too"
 }
 
 TEST_CASE("Rosato et al.: a lift of 0.25 packs beds better than one of 0.1", "[statistics]") {
-  // Fig. 4, by the mean height, which has the least scatter. That 0.25 is ahead of 0.5 too takes
-  // some hundred taps: after six the effect is two of its errors.
+  // Fig. 4, by the mean height, which has the least scatter. The lead of 0.25 over 0.5 takes some
+  // hundred taps: after six the effect is two of its errors.
   const auto heights = [](double lift) {
     const Plan plan = short_plan("rosato-dybenko-2010/fig4.json",
                                  {{"container", {{"width", 4}}},

@@ -94,7 +94,7 @@ TEST_CASE("Fitted between walls, a pour keeps its packing fraction and pores ins
 }
 
 TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
-  // A prototype of the rule: slabs of 0.1 d in the middle of which the distances stand.
+  // A prototype of the rule: slabs of 0.1 d around the distances.
   constexpr std::array<double, 5> prototype{0.006, 0.09, 0.25, 0.42, 0.54};
   constexpr std::array<std::size_t, 5> slabs{0, 2, 4, 6, 8};
   std::array<Moments, 5> fractions;
@@ -115,7 +115,7 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
     moved.add(count);
     corrected.add(corrected_fraction(bed.after));
   }
-  // The prototype's figures are of one bed: its error is that of one bed here, and of rounding.
+  // The prototype's figures come from one bed: its error is that of one bed here, and of rounding.
   const auto check = [](const Moments& run, double prototype_value, double rounding) {
     const double of_one_bed = run.standard_error() * std::sqrt(static_cast<double>(run.count()));
     check_mean(run, prototype_value, std::hypot(of_one_bed, rounding));
@@ -128,7 +128,7 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
 
 TEST_CASE("The first tap fills the layers at the walls of a fitted pour, and the next does not",
           "[statistics]") {
-  // As shipped, epsilon = 0.02.
+  // The shipped scene, epsilon = 0.02.
   constexpr std::uint64_t taps = 2;
   const Plan plan = short_plan("philippe-bideau-2001/fig10.json",
                                {{"protocol", {{{"tap", {{"dilate", 0.02}}}, {"count", taps}}}},

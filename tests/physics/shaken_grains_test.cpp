@@ -23,8 +23,8 @@ TEST_CASE("Rosato & Dybenko: shaking hard enough to throw the bed densifies it, 
                     {"protocol", {{{"tap", {{"vibration", vibration}}}, {"count", 1}}}},
                     {"snapshots", {{"taps", {1}}, {"bin_width", 1}}}});
     const Records records = run_records(plan, 24);
-    // What the floor puts into vertical motion collisions share out. Beds scatter: one of these 24
-    // has more lateral motion at the floor.
+    // Collisions distribute the energy that the floor puts into vertical motion. Beds scatter: one
+    // of these 24 has more lateral motion at the floor.
     Moments excess;
     std::size_t bed = 0;
     for (const auto& [id, record] : records) {
@@ -39,7 +39,7 @@ TEST_CASE("Rosato & Dybenko: shaking hard enough to throw the bed densifies it, 
     return series_of(plan, records, "bulk_fraction");
   };
   const Series gentle = gain(0.02, 10), strong = gain(0.06, 45);  // Gamma = 0.16 and 9.8
-  // A bed gains some 0.01 or, where it orders, some 0.1: four beds say little of the mean.
+  // A bed gains some 0.01 or, where it orders, some 0.1: four beds determine the mean poorly.
   Moments more;
   for (std::size_t r = 0; r < gentle.size(); ++r)
     more.add((strong[r][1] - strong[r][0]) - (gentle[r][1] - gentle[r][0]));

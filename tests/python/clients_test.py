@@ -97,7 +97,7 @@ class Clients(Case):
         self.trajectory_is_ours(universe.trajectory, with_height=True)
 
     def test_mdanalysis_reads_h5md(self):
-        """As docs/reference/python.md says it."""
+        """The examples of docs/reference/python.md."""
         mda = client("MDAnalysis")
         self.export("a.h5md", "h5md")
         universe = mda.Universe.empty(48, trajectory=True)

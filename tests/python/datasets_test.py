@@ -105,7 +105,7 @@ class Ensemble(Case):
     def test_points_that_are_missing_or_shorter_are_nan(self):
         scene = changed(TINY, realizations=1, sweep={"/protocol/0/count": [2, 5, 3]}, snapshots=None)
         results = self.open(made(scene, "--shard", "2/2"))
-        ensemble = results.ensemble  # of the second point alone
+        ensemble = results.ensemble  # columns of the second point alone
         np.testing.assert_array_equal(ensemble["mean_height_count"].values,
                                       [[0] * 6, [1] * 6, [0] * 6])
         whole = self.open(made(scene)).ensemble

@@ -123,7 +123,7 @@ class Damaged(Case):
                     try:
                         question()
                     except jostle.NotThere:
-                        self.assertIn(name, ("contacts", "points[0].contacts"))  # of grains alone
+                        self.assertIn(name, ("contacts", "points[0].contacts"))  # data of grains alone
 
     def test_every_place_of_a_file_in_turn(self):
         kinds = [*VALUES.items(), ("gone", None)]

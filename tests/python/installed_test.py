@@ -55,7 +55,7 @@ class Installed(Case):
         self.assertEqual(self.ask(site, path=elsewhere), ["7.8.9", other])
 
     def test_another_installation_on_the_path_of_modules_is_not_this_one(self):
-        """As where the source tree, or an older copy, comes first."""
+        """The source tree, or an older copy, comes first on the path."""
         behind = self.site("venv", "7.8.9", ["../../bin/jostle", "jostle/__init__.py"])
         self.program("venv/bin")
         other = self.program("other")

@@ -39,7 +39,7 @@ class Figures(Case):
         self.addCleanup(pyplot.close, self.ax.figure)
 
     def drawn(self):
-        self.ax.figure.savefig("figure.png")  # what cannot be drawn fails here
+        self.ax.figure.savefig("figure.png")  # figures that cannot be drawn fail here
         self.assertGreater((self.folder / "figure.png").stat().st_size, 5000)
         return [np.array(line.get_xydata()) for line in self.ax.get_lines()]
 
@@ -75,7 +75,7 @@ class Figures(Case):
         self.assertEqual(len([line for line in self.drawn() if len(line) == 64]), 2)
 
     def test_points_without_taps_are_not_drawn(self):
-        # Of a share: realization 0 of point 0, not of point 1.
+        # A share: realization 0 of point 0, not of point 1.
         share = self.open(made(changed(TINY, realizations=1, sweep={
             "/protocol/0/tap/dilate": [0.02, 0.05]}), "--shard", "1/2"))
         there = [point.has_taps for point in share.points]

@@ -44,7 +44,7 @@ class Browser:
         self.wait(lambda: self.run("return document.documentElement.dataset.ready") == "yes")
 
     def draw_everything(self):
-        """As printing does."""
+        """The layout for printing."""
         self.run("dispatchEvent(new Event('beforeprint'))")
 
     def run(self, script, *arguments):

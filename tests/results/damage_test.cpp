@@ -9,8 +9,7 @@
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 
-// What was damaged, cut short or put there by somebody else is refused with its path and the
-// reason.
+// Damaged, truncated or foreign files are rejected with the path and the reason.
 using namespace jostle;
 using Catch::Matchers::Contains;
 using synthetic::provenance;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int few = 12, many = 400;  // few spheres of a kind
 
-/// Half of the files unfinished, so that resuming them goes on.
+/// Half of the files are unfinished, so that they can be resumed.
 void write_file(const std::string& path, bool finished) {
   if (finished) {
     run_to_end(path);

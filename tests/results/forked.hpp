@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-/// What became of a process.
+/// End of a process.
 struct Ending {
   int signal = 0;  // that killed it, 0 if none
   int code = 0;    // its exit code

@@ -25,8 +25,8 @@ class Choices {
 inline constexpr std::size_t n_forgeries = 14;
 const char* forgery_name(std::size_t kind);
 
-/// Makes one change of a kind somewhere in a sealed results file, and seals it again. What HDF5
-/// itself refuses to do is left undone.
+/// Makes one change of a kind somewhere in a sealed results file, and seals it again. Changes that
+/// HDF5 rejects are skipped.
 void forge(const std::string& path, std::size_t kind, Choices& choices);
 
 /// Everything that the program does with a file that it is given. Returns how many of its uses

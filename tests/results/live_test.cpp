@@ -9,7 +9,7 @@
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 
-// What a run has checkpointed is read while it goes on.
+// Checkpoints of a run are read during the run.
 using namespace jostle;
 using synthetic::provenance;
 

@@ -160,7 +160,7 @@ TEST_CASE("files with wrong, missing or NaN sizes are refused") {
     CHECK_THROWS_AS(drawn.restart_state({0, 0}), ResultsError);
     CHECK_NOTHROW(drawn.restart_state({0, 1}));
   }
-  // A restart state that goes on with other spheres than those stored.
+  // A restart state with other spheres than those stored.
   const ResultsFile other(forged("drawn.h5", [&](hid_t file) { put(file, diameter, 2, 1.3); }));
   CHECK_THROWS_WITH(other.restart_state({0, 0}), Contains("spheres of other sizes"));
   const auto refused = [&](const char* name, const std::function<void(hid_t)>& change) {

@@ -17,9 +17,9 @@
 #include "structure/measure.hpp"
 #include "temporary_folder.hpp"
 
-// What files of many points and realizations cost, files of long plans of which little is done, and
-// packings in wide boxes: in proportion to what is in them. Ratios of processor time, the least of
-// three, with room for a machine that does other work: in proportion is 4, its square 16.
+// Costs of files of many points and realizations, of files of long plans with few finished taps,
+// and of packings in wide boxes: in proportion to what is in them. Ratios of processor time, the
+// least of three, with room for a machine that does other work: in proportion is 4, its square 16.
 using namespace jostle;
 
 namespace {
@@ -137,7 +137,7 @@ TEST_CASE("writing, opening and digesting take time in proportion to points and 
   }
 }
 
-// As many spheres: area alone costs nothing, up to the widest box of all.
+// With equal numbers of spheres area costs nothing, up to the widest box of all.
 TEST_CASE("a wider box takes no longer than its spheres and its bins") {
   check_growth_of_sides(GENERATE(40.0, 2500.0));
 }

@@ -87,7 +87,7 @@ SnapshotRecord snapshot_of(const RealizationState& state) {
     record.velocities.push_back({r.x - 0.5, -r.x, 1e-3 * r.z});
     record.spins.push_back({r.z, 0, -r.x});
   }
-  // As many as it likes, also none.
+  // Any number, also none.
   const auto n_contacts = static_cast<std::uint32_t>(static_cast<double>(n) * state.centres[0].x);
   for (std::uint32_t i = 0; i < n_contacts; ++i)
     record.contacts.push_back({i,

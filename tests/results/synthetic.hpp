@@ -7,8 +7,8 @@
 #include "ensemble/sink.hpp"
 #include "results/study.hpp"
 
-// A stand-in for the engine: realizations whose numbers are made of hashes, but which depend on
-// their state as real ones do, so that a wrong restart gives wrong rows.
+// A stand-in for the engine: realizations whose numbers are hashes that depend on their state, like
+// real ones, so that a wrong restart gives wrong rows.
 namespace jostle::synthetic {
 
 /// The spheres of a study: equal, a mixture of fixed diameters, or one whose realizations draw

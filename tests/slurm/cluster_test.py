@@ -116,14 +116,14 @@ class Cluster(Case):
         self.assertEqual(self.digest("array.h5"), self.digest("whole.h5"))
 
     def kill_and_requeue(self, process):
-        """As where a node dies: the process is gone, and its lock names another host."""
+        """A node dies: the process is gone, and its lock names another host."""
         os.kill(process, signal.SIGKILL)
         text = self.lock(KILLED).read_text()
         self.lock(KILLED).write_text("elsewhere " + text.split(maxsplit=1)[1])
         self.submit(f"scontrol requeue {self.array}_{KILLED}")
 
     def kill_with_its_job(self, process):
-        """As where memory runs out: the script goes too, and nobody requeues it."""
+        """Out of memory: the script ends, too, and nobody requeues it."""
         script = int(pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
         os.kill(script, signal.SIGKILL)
         os.kill(process, signal.SIGKILL)

@@ -12,7 +12,7 @@ using namespace jostle;
 
 namespace {
 
-/// n spheres on a lattice in a box of 6 x 6, `upper` telling which of them are of kind 1 by height.
+/// n spheres on a lattice in a box of 6 x 6, `upper` selects those of kind 1 by height.
 Packing layered(std::uint32_t n_layers, const std::function<std::uint32_t(std::size_t)>& kind_of,
                 double large = 1) {
   Packing packing{PeriodicBox{6, 6}, {}};

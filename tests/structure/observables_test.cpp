@@ -14,7 +14,7 @@ TEST_CASE("Observables of the reference deposit are what its maker measured") {
   const auto reference = reference_measurements();
   REQUIRE(deposit.centres.size() == reference.at("N"));
   const double mean_z = reference.at("mean_z_over_R").get<double>() * sphere_radius;
-  // As printed with the measurements, about 8 R to (4/3) <Z>.
+  // The range printed with the measurements, about 8 R to (4/3) <Z>.
   const HeightWindow bulk{reference.at("zwin").at(0).get<double>() * sphere_radius,
                           reference.at("zwin").at(1).get<double>() * sphere_radius};
 

@@ -1,4 +1,4 @@
-// What measure() makes of spheres that lie a little in one another, as those of discrete elements.
+// Results of measure() for spheres that overlap slightly, like those of discrete elements.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -66,7 +66,7 @@ double cap_volume(double depth) {
   return std::numbers::pi * depth * depth * (3 * sphere_radius - depth) / 3;
 }
 
-/// What lies in two spheres that overlap.
+/// Common volume of two spheres that overlap.
 double lens_volume(double overlap) {
   return 2 * cap_volume(overlap / 2);
 }
@@ -115,7 +115,7 @@ TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
   // A last bin ends at 0.76, beyond all that cells of hard spheres have.
   CHECK(sum(along(cells, "local_fraction_density")) * 0.01 ==
         Approx(sphere_volume / volume < 0.76 ? 1 : 0).margin(1e-9));
-  // Spheres count whole: what lies in two of them, twice.
+  // Spheres count whole: their common volume counts twice.
   CHECK(single(part(all, "void_probability"), "phi") ==
         Approx(sphere_volume / volume).epsilon(1e-9));
   const double tetrahedral = std::sqrt(1.5) * apart - 1;
@@ -130,7 +130,7 @@ TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
 }
 
 TEST_CASE("Packing fractions count what lies in two spheres twice") {
-  // No point lies in three of them: three centres are 0.549 from the middle between them.
+  // No point is in three of them: three centres are 0.549 from the middle between them.
   constexpr double apart = 0.95;
   const Packing packing = pressed_fcc(apart);
   StructureSettings settings;

@@ -6,7 +6,7 @@
 
 namespace jostle {
 
-/// Points, overlapping or not, where centres of spheres may stand, up to the given height.
+/// Points, overlapping or not, at possible centres of spheres, up to the given height.
 inline Packing random_points(const Container& container, double height, unsigned n,
                              std::uint64_t seed = 20) {
   RandomStream random(stream_key(seed, 0, 0, Purpose::start));

@@ -22,7 +22,7 @@ inline Packing reference_deposit() {
   return packing;
 }
 
-/// What the program that made the deposit measured of it; lengths in R.
+/// Measurements of the deposit by the program that made it; lengths in R.
 inline nlohmann::json reference_measurements() {
   std::ifstream file(TEST_DATA "/dep_L32_N4096_s1.json");
   return nlohmann::json::parse(file);

@@ -117,7 +117,7 @@ TEST_CASE("The height histogram counts centres in half-open bins up to the highe
 
   const std::vector<double> deposit = height_histogram(reference_deposit(), 0.1);
   CHECK(std::accumulate(deposit.begin(), deposit.end(), 0.0) == Approx(1));
-  // Every sphere on the floor lies in the bin from 0.5 d.
+  // Every sphere on the floor is in the bin from 0.5 d.
   CHECK(deposit[5] * 4096 >= reference_measurements().at("floor_spheres").get<double>());
   CHECK(deposit[4] == 0);
 

@@ -92,7 +92,7 @@ TEST_CASE("A boundary wraps, compares and clears as the container's own function
             if (boundary.periodic_z) {
               REQUIRE(boundary_depth(boundary, r) == 0);
             } else {
-              // Within rounding of touching either may be said.
+              // Within rounding of touching both answers are valid.
               const double depth = boundary_depth(boundary, r);
               if (std::abs(depth) > 1e-12) REQUIRE((depth > 0) != clear_of_boundaries(box, r));
             }

@@ -120,7 +120,7 @@ TEST_CASE("a window tapered over one layer spacing finds a crystal close-packed 
   Packing crystal{PeriodicBox{4, 4 * std::sqrt(3.0) / 2}, {}};
   for (int layer = 0; layer < 12; ++layer) {
     for (int row = 0; row < 4; ++row) {
-      for (int k = 0; k < 4; ++k) {  // where a layer lies sideways no horizontal window sees
+      for (int k = 0; k < 4; ++k) {  // a layer at a height between horizontal windows
         crystal.centres.push_back(
             {std::fmod(k + 0.5 * row, 4.0), row * std::sqrt(3.0) / 2, 0.5 + layer * spacing});
       }
@@ -135,7 +135,7 @@ TEST_CASE("a window tapered over one layer spacing finds a crystal close-packed 
       most = std::max(most, solids_fraction(crystal, window));
     }
   }
-  CHECK(most > close_packed + 0.01);  // what sharp edges make of it
+  CHECK(most > close_packed + 0.01);  // result with sharp edges
 }
 
 TEST_CASE("quantile windows interpolate order statistics") {

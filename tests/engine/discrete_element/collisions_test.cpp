@@ -75,7 +75,7 @@ TEST_CASE("an impact keeps momentum and angular momentum to rounding") {
   GrainLoop loop = loop_of(box, units,
                            {grain({5, 5, 5}, {1, 0.3, -0.2}, {3, -2, 5}),
                             grain({5.8, 5.61, 5.0}, {-1, 0.1, 0.4}, {-1, 4, 2})});
-  // Velocities stand half a step before the positions; between impacts that changes neither sum.
+  // Velocities are half a step before the positions; between impacts that changes neither sum.
   const auto sums = [&] {
     Vec3 momentum, angular;
     for (const GrainState& one : loop.state().grains) {
@@ -168,8 +168,8 @@ TEST_CASE("the ledger closes in the middle of an impact, to the second order of 
   }
 }
 
-// mu N times the way that the surfaces slide. What the spring keeps while the dashpot pulls is no
-// energy that a contact of mu N could give back.
+// mu N times the way that the surfaces slide. Energy that the spring keeps while the dashpot pulls
+// could not be returned by a contact of mu N.
 TEST_CASE("a sphere that slides fast on springs and dashpots rubs away mu N times its way") {
   const double mu = 0.1, speed = 5;
   for (const double restitution : {0.9, 0.2}) {

@@ -63,8 +63,8 @@ TEST_CASE("the latched spring loads, unloads and reloads along its lines") {
   CHECK(force(0.001) == Approx(40));
 }
 
-// What a path takes is the area that it runs around: never negative, and of a whole contact
-// 1/2 K1 (1 - e^2) x (greatest overlap)^2 whatever lies between.
+// A path dissipates the area that it encloses: never negative, and for a whole contact 1/2 K1 (1 -
+// e^2) x (greatest overlap)^2 for any path.
 TEST_CASE("the latched spring loses the area of its loop, whatever path it takes") {
   for (const std::vector<double>& turns :
        {std::vector{0.003}, std::vector{0.001, 0.0008, 0.003}, std::vector{0.003, 0.0029, 0.00295},
@@ -120,8 +120,8 @@ TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a consta
   CHECK(sheared(law, overlap, 3 * loaded) == Approx(limit));
 }
 
-// What passes zero to one side of it, however near, has not turned round: along the path it is what
-// it is on the straight one.
+// A force that passes zero at one side, however near, has not reversed: along the path it equals
+// that on the straight one.
 TEST_CASE("a path a little to one side of a straight one has nearly its tangential force") {
   const double overlap = 0.002, limit = constants.friction * 4e4 * overlap;
   const double loaded = 0.8 * 1.5 * limit / constants.tangential;

@@ -16,7 +16,7 @@ namespace {
 using Law = WaltonBraunLaw<double, true>;
 using Vector = Vector3<double>;
 
-/// The same mechanics without any list, vector or sorting: every pair is looked at in every step.
+/// The mechanics without any list, vector or sorting: every pair is tested in every step.
 class BruteForce {
  public:
   BruteForce(const WalledBox& box, const ReducedSettings& settings, std::vector<GrainState> grains)

@@ -18,7 +18,7 @@ Vec3 force_on_first(const Contact& contact) {
   return contact.normal_force * contact.normal + contact.tangential_force;
 }
 
-// What acts on every sphere, weight included.
+// Force on every sphere, including weight.
 struct Acting {
   std::vector<Vec3> force, torque;
 };
@@ -176,7 +176,7 @@ TEST_CASE("latched springs without friction press by K1 and K2 alone") {
                  {.first = 2, .second = 3, .history = {greatest}}};
   loop.restore(state);
   const BedMechanics bed = loop.mechanics();
-  REQUIRE(bed.contacts.size() == 3);  // what has come back to a0 has no force
+  REQUIRE(bed.contacts.size() == 3);  // a contact that returned to a0 has no force
   CHECK(bed.contacts[0].first == 0);
   CHECK(bed.contacts[0].second == 1);
   CHECK(bed.contacts[0].overlap == Approx(loading).epsilon(1e-11));

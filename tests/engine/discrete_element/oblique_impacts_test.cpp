@@ -42,7 +42,7 @@ Oblique oblique(const ContactLaw& law, double normal, double tangential, double 
 // Rigid bodies that slide all the while: v_n' = e v_n, v_t' = v_t - mu (1 + e) v_n, omega' = 2.5 mu
 // (1 + e) v_n / r on a plane; of two spheres each takes half the spin. I = m d^2 / 10.
 TEST_CASE("an oblique impact that slides throughout has the impulses of rigid spheres") {
-  const double normal = 0.002;  // so slow that the normal hardly turns
+  const double normal = 0.002;  // slow, so that the normal hardly turns
   for (const double e : {0.3, 0.9, 0.98}) {
     for (const double mu : {0.02, 0.1, 0.3}) {
       const double tangential = 3 * 3.5 * mu * (1 + e) * normal;
@@ -162,7 +162,8 @@ TEST_CASE("two spheres of opposite spin part as mirror images, none made to slid
       CHECK(rubbed[0].velocity.z == Approx(-rubbed[1].velocity.z).epsilon(1e-12));
       CHECK(rubbed[0].spin.y == Approx(rubbed[1].spin.y).epsilon(1e-12));
       CHECK(rubbed[0].spin.y < spin);
-      // What slides throughout still slides the same way; what sticks swings back by less.
+      // Contacts that slide throughout still slide in one direction; sticking ones swing back by
+      // less.
       const double before = -spin;  // velocity of the upper surface along x, less that of the lower
       const double after =
           rubbed[0].velocity.x - rubbed[1].velocity.x - 0.5 * (rubbed[0].spin.y + rubbed[1].spin.y);
@@ -200,8 +201,8 @@ TEST_CASE("half the step makes half the error of an impact that sticks") {
   }
 }
 
-// Spins about every axis turn the tangential force in its plane, past zero on one side of it. Where
-// each step told a reversal from that by chance, such impacts differed by 1e-2 at any step.
+// Spins about every axis turn the tangential force in its plane, past zero on one side of it. If
+// each step detected a reversal by chance, such impacts would differ by 1e-2 at any step.
 TEST_CASE("oblique impacts of spinning spheres converge to one result as the step is refined") {
   RandomStream random(stream_key(20261125, 0, 0, Purpose::start));
   const auto between = [&](double low, double high) {
@@ -224,7 +225,7 @@ TEST_CASE("oblique impacts of spinning spheres converge to one result as the ste
         const ReducedSettings units = settings(WaltonBraun{.friction = mu}, 0, finer);
         const double gap = begins * normal * units.time_step;
         const GrainState above = grain({5, 5, 0.5 + gap}, velocity, spin);
-        // As fast along the line of centres, and whatever comes out across it.
+        // Equal speed along the line of centres, for any speed across it.
         const Vec3 meets = velocity - (dot(velocity, along) + normal) * along;
         const GrainState second = grain(middle + (1 + gap) * along, meets, spin);
         GrainLoop loop = k % 2 == 0 ? loop_of(box, units, {above})

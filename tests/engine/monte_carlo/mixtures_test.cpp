@@ -160,7 +160,7 @@ TEST_CASE("eight spheres of ten diameters move among small ones") {
     Packing end = after(*loop, start, 600'000);
     CHECK(deepest_overlap_brute_force(end).depth == 0);
     CHECK(loop->tally().list_renewals > 1000);
-    // A loop that begins where this one stands goes on alike.
+    // A loop that begins from this state continues alike.
     const auto resumed = loop_for_sizes(start.container, move);
     resumed->load(end);
     resumed->restore(loop->state());

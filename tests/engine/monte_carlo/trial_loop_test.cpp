@@ -78,8 +78,8 @@ TEST_CASE("the trial loop keeps to the plain loop where hardly any trial is acce
 }
 
 TEST_CASE("the trial loop keeps to the plain loop where spheres wander behind their caches") {
-  // Accepted often enough that lists are renewed, rarely enough that trials are held against
-  // blocker caches first.
+  // Accepted often enough that lists are renewed, rarely enough that trials are first tested
+  // against blocker caches.
   for (const Container& container : std::vector<Container>{
            FullyPeriodicBox{4.1, 4.1, 4.1}, WalledBox{4.2, 4.3}, Cylinder{4.6}, Plates{4.2, 4.3}}) {
     CAPTURE(container.index());

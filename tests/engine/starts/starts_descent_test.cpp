@@ -39,7 +39,7 @@ Vec3 pushed_out(const Box& box, const std::vector<Vec3>& bed, Vec3 p) {
   return p;
 }
 
-// The same path by brute force: small steps down, each followed by pushing out.
+// The path by brute force: small steps down, each followed by pushing out.
 template <class Box>
 Vec3 creep_down(const Box& box, const std::vector<Vec3>& bed, Vec3 p) {
   constexpr double step = 1e-3;

@@ -30,7 +30,7 @@ TEST_CASE("A fitted pour moves only the spheres that straddle a wall, and these 
   const WalledBox box{8, 7};
   Packing before;
   const Packing after = fitted(box, n, &before);
-  // What is poured first is a pour with periodic sides, from the same stream.
+  // The first stage is a pour with periodic sides, from the same stream.
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   const Packing periodic = make_start(SteepestDescentPour{}, PeriodicBox{8, 7}, n, random);
   CHECK(before.container == periodic.container);

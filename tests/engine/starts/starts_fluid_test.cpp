@@ -48,7 +48,8 @@ double strongest_order(const Packing& packing) {
 
 TEST_CASE("Grown spheres fill the box without overlap and without crystalline order") {
   constexpr std::uint32_t n = 500;
-  // The measure tells a crystal from a fluid: a perfect fcc cube of the same number of spheres.
+  // The measure distinguishes a crystal from a fluid: a perfect fcc cube of the same number of
+  // spheres.
   const double side = 5 * std::sqrt(2.0);
   CHECK(strongest_order(packing_of(Crystal{Lattice::fcc, true}, {side, side, side}, 490)) > 0.3);
   for (const double fraction : {0.30, 0.49, 0.60}) {

@@ -31,7 +31,7 @@ std::vector<double> two_sizes(std::size_t n, double ratio, double small = 1) {
   return diameters;
 }
 
-// Spheres that neither stand on the floor nor are carried by what they touch.
+// Spheres that neither rest on the floor nor are carried by their contacts.
 std::size_t unsupported(const Packing& packing) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
@@ -108,14 +108,14 @@ TEST_CASE("Spheres of several sizes come to rest where a brute-force descent doe
         bed.add(*rest);
         in_bed.push_back(2 * radius);
       }
-      // Spheres in corners stand exactly on one another.
+      // Spheres in corners rest exactly on one another.
       CHECK(compared >= n - 6);
     }
   }
 }
 
 TEST_CASE("A large sphere that rolls off a small one lands beside it") {
-  // Both stand on the floor and touch: the horizontal distance is 2 sqrt(R r).
+  // Both rest on the floor and touch: the horizontal distance is 2 sqrt(R r).
   for (const double ratio : {1.0, 1.4, 3.0, 6.0, 10.0}) {
     const double small = 0.5, large = 0.5 * ratio;
     const StartSpheres spheres = with_diameters({2 * small, 2 * large});

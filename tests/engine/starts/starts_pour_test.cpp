@@ -22,7 +22,7 @@ std::size_t on_floor(const Packing& packing) {
   return count;
 }
 
-// Spheres that neither stand on the floor nor are carried by what they touch.
+// Spheres that neither rest on the floor nor are carried by their contacts.
 std::size_t unsupported(const Packing& packing) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {

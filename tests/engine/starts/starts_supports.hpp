@@ -8,7 +8,7 @@
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/packing.hpp"
 
-// What carries the spheres of a poured packing, found by all pairs and without the code under test.
+// Supports of the spheres of a poured packing, found by all pairs and without the code under test.
 namespace jostle {
 
 inline constexpr double touch_tolerance = 1e-6;  // diameters

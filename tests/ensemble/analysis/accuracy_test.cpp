@@ -68,7 +68,7 @@ TEST_CASE("A bias that does not grow is called growing one time in twenty, with 
     const double rate = static_cast<double>(alarms) / repetitions;
     CAPTURE(replicates, rate, missed);
     CHECK(std::abs(rate - 0.05) <= 3 * std::sqrt(0.05 * 0.95 / repetitions));
-    // What is 15 deviations of a difference is seen even with three replicates.
+    // A difference of 15 deviations is detected even with three replicates.
     if (replicates > 2) CHECK(missed < repetitions / 100);
   }
 }
@@ -220,7 +220,7 @@ TEST_CASE("What is recommended reaches its target in four of five cases") {
         CAPTURE(made.roughest, made.beds, made.noise_of_a_tap, replicates, target, recommended,
                 reached);
         CHECK(reached >= 0.8 * recommended - 3 * std::sqrt(0.16 * recommended));
-        // Eight replicates do tell: a rule that never recommends would reach any target.
+        // Eight replicates suffice: a rule that never recommends would reach any target.
         if (replicates >= 8 && target == 0.005) CHECK(recommended > repetitions / 2);
       }
     }

@@ -164,7 +164,7 @@ std::string row(const Sample& sample, std::uint32_t m, int n, const Calibration&
 constexpr const char* heading =
     "\nlaw                M   before, %    after, %           68 %   95 %  p<0.05 p<0.01\n";
 
-// Whether `count` of n agrees with a chance, by three binomial errors.
+// Tests if `count` of n agrees with a probability, by three binomial errors.
 bool agrees(int count, int n, double chance) {
   return std::abs(count - n * chance) <= 3 * std::sqrt(n * chance * (1 - chance));
 }

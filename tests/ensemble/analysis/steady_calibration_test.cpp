@@ -10,8 +10,8 @@
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
-// What the verdicts on steady states are worth: series without memory and AR(1), whose truth is
-// known, in ensembles and lengths as users have them.
+// Calibration of verdicts on steady states: series without memory and AR(1), whose truth is known,
+// with typical ensembles and lengths.
 
 using namespace jostle;
 

@@ -169,7 +169,7 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
     at.push_back(0.05 + 0.1 * k);
     const double in_radii = 2 * at.back();
     const double truth[] = {0.61, 0.001, 2, 24};
-    // Below the range of the law stands something else.
+    // Below the range of the law the curve is different.
     curve.push_back(at.back() < GradientRange{}.low ? 0.1
                                                     : DensityProfile().value(in_radii, truth));
   }
@@ -196,7 +196,7 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   CHECK(std::isnan(numbers(table, "eq7_phi_0")[0]));
   CHECK(std::isnan(numbers(table, "eq7_phi_0_error")[0]));
 
-  // The expected counts of an exponential tail; below the tail stands something else.
+  // The expected counts of an exponential tail; below the tail the counts are different.
   std::vector<double> xi, rho;
   for (int k = 0; k < 75; ++k) {
     const double low = std::pow(0.02 * k, 3), high = std::pow(0.02 * (k + 1), 3);

@@ -60,7 +60,7 @@ MotionSettings settings_for(const Plan& plan) {
   return settings;
 }
 
-// Every tap's positions, kept; what is wanted found from them by sums of nearest-image steps.
+// Keeps positions of every tap, and computes the results from them by sums of nearest-image steps.
 class Twin {
  public:
   Twin(const Plan& plan, const std::vector<SnapshotRecord>& snapshots) : boundary_(plan.container) {

@@ -18,7 +18,7 @@ namespace {
 
 struct Truth {
   const char* name;   // printed
-  const char* model;  // that makes the curve
+  const char* model;  // the law that makes the curve
   ParameterValues values;
   std::vector<std::string> right;  // laws that contain the curve
 };

@@ -30,7 +30,7 @@ std::vector<double> steps(double first, double last, int n) {
   return t;
 }
 
-// As runs have them: 400 taps, and deviations of a bed of about a thousand spheres.
+// Typical of runs: 400 taps, and deviations of a bed of about a thousand spheres.
 const std::vector<Law>& laws() {
   static const std::vector<Law> all = {
       {"inverse_log", {0.58, 0.05, 1.0, 3}, taps(400), 1e-3},

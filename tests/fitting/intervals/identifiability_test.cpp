@@ -108,7 +108,7 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
 }
 
 TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters diverge together") {
-  // Twenty nearly straight points: nothing says where the logarithm bends.
+  // Twenty nearly straight points: they do not determine the bend of the logarithm.
   for (const double noise : {1e-6, 1e-4, 1e-3}) {
     Curve curve;
     for (int t = 1; t <= 20; ++t) {

@@ -82,7 +82,7 @@ TEST_CASE("a report gives a value the error that its interval bears out") {
   };
   CHECK(contains(row(0.599, 0.601), "0.6000(10)"));
   CHECK(contains(row(0.598, 0.601), "0.6000(15)"));
-  // Also where the interval is lopsided: a value never stands without its error.
+  // Also where the interval is lopsided: a value always has its error.
   CHECK(contains(row(0.5999, 0.62), "0.600(10)"));
   const double infinity = std::numeric_limits<double>::infinity();
   estimate.identifiability = Identifiability::bounded_below;

@@ -17,7 +17,7 @@
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 
-// What others, or an accident, put at the names that we make of a results file's: NAME.lock,
+// Files that others, or an accident, create at the names derived from a results file's: NAME.lock,
 // NAME.parts, NAME.*.tmp, and NAME itself.
 using namespace jostle;
 using Catch::Matchers::Contains;
@@ -130,7 +130,7 @@ TEST_CASE("a text that begins as a lock does is no lock, and left as it is") {
 
 TEST_CASE("whatever lies at the name of the parts is refused, and left as it is") {
   const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
-  if (what == Planted::folder) return;  // that is what belongs there
+  if (what == Planted::folder) return;  // the file that belongs there
   const bool force = GENERATE(false, true);
   const Surroundings around;
   plant(around, around.path + ".parts", what);

@@ -26,7 +26,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What a reader makes of a file, as text.
+/// Result of a reader for a file, as text.
 using Reading = std::function<std::string(const std::string& path)>;
 
 std::string summary_of(const ResultsFile& file) {

@@ -9,7 +9,7 @@
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 
-// What a run refuses to start on, and what others see of it once it has started.
+// Files on which a run does not start, and its state for others once it has started.
 using namespace jostle;
 using Catch::Matchers::Contains;
 using synthetic::provenance;

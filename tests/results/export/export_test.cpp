@@ -183,7 +183,7 @@ TEST_CASE("VTK's format keeps a frame a file and lists several") {
   CHECK(several[2].path == "b/a&b.pvd");
   CHECK_THAT(several[2].text,
              Contains("<DataSet timestep=\"10\" part=\"0\" file=\"a&amp;b_tap10.vtp\"/>"));
-  // What XML cannot hold is no name that it could list.
+  // A name that XML cannot hold cannot be listed.
   for (const char* name : {"a\x1b.vtp", "a\xff.vtp"}) {
     CHECK_THROWS_WITH(exported_files(ExportFormat::vtk, name, frames), Contains("XML cannot hold"));
     CHECK_NOTHROW(exported_files(ExportFormat::vtk, name, std::span(frames).first(1)));

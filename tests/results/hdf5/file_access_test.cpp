@@ -8,8 +8,8 @@
 
 using namespace jostle;
 
-// As many as a scene may have realizations. Where their names, 44 MB, find no room in HDF5's cache
-// they are read and written again for each: hours.
+// The largest number of realizations of a scene. Where their names, 44 MB, find no room in HDF5's
+// cache they are read and written again for each: hours.
 TEST_CASE("A group of a million members keeps its names in the cache, written and read") {
   const TemporaryFolder folder;
   const std::string path = folder / "million.h5";

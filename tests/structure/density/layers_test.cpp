@@ -133,7 +133,7 @@ TEST_CASE("A full layer between walls and in a tube has the filling 1") {
   CHECK(places(1) == Approx(6));
   CHECK(places(1 + std::sqrt(3.0) + 0.001) == Approx(18));
   CHECK(places(5) == Approx(4.5 * 6 * 2 / std::sqrt(3.0)));
-  // The layers of crystals: of a lattice with a row along x, and the next, which lies in its holes.
+  // The layers of crystals: a lattice with a row along x, and the next in its holes.
   for (const double width : {5.0, 7.0, 9.3, 16.0}) {
     const Packing between_walls = crystal(WalledBox{width, width}, 2000);
     const std::vector<Layer> all = layers(between_walls);

@@ -31,9 +31,9 @@ inline bool is_solid(const Packing& packing, Vec3 point) {
 }
 
 /// The sum over bins of the squared differences between a profile and the part of random points
-/// that is solid, over the variance of this part. Expected: as many as there are bins, with the
-/// standard deviation sqrt(2 n_bins). `bin_place` gives where along the profile a point lies,
-/// not a number outside the container.
+/// that is solid, over the variance of this part. Expected: equal to the number of bins, with the
+/// standard deviation sqrt(2 n_bins). `bin_place` gives the place of a point along the profile, NaN
+/// outside the container.
 inline double misfit_by_sampling(const Packing& packing, const Profile& profile,
                                  HeightWindow window, const std::function<double(Vec3)>& bin_place,
                                  int points) {

@@ -88,7 +88,7 @@ TEST_CASE("The profile of the reference deposit has the fractions its maker meas
         Approx(reference.at("phi_b_0_4R").get<double>()).margin(0.5e-5).epsilon(0));
   CHECK(profile.values[2] ==
         Approx(reference.at("phi_bulk").get<double>()).margin(0.5e-5).epsilon(0));
-  // As the slabs of the engine, bin by bin.
+  // Equal to the slabs of the engine, bin by bin.
   const Profile fine = vertical_profile(deposit, height_edges(deposit, 0.1));
   for (std::size_t k = 0; k < fine.size(); ++k) {
     CHECK(fine.values[k] ==
@@ -234,7 +234,7 @@ TEST_CASE("Profiles of one sphere") {
     const Packing packing{Cylinder{3}, {{1.5, 1.5, 0.5}}};
     const double edges[] = {0, 0.3, 0.5, 1.5};
     const Profile profile = radial_profile(packing, edges, {0, 1});
-    // What lies beyond a bore of half-length 0.4 is a sphere of that radius.
+    // The part beyond a bore of half-length 0.4 is a sphere of that radius.
     const double beyond = 4.0 / 3 * std::numbers::pi * 0.064;
     CHECK(profile.values[1] * profile.volumes[1] == Approx(beyond).epsilon(1e-12));
     CHECK(profile.values[0] * profile.volumes[0] == Approx(sphere_volume - beyond).epsilon(1e-12));

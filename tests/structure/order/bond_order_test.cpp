@@ -100,7 +100,8 @@ TEST_CASE("Perfect crystals and the icosahedron have their bond order, however t
   for (const BondOrder& order : bond_order(nearest_neighbours(cubic))) check(order, fcc);
   for (const BondOrder& order : bond_order(neighbours_within(cubic, 1.2))) check(order, fcc);
   for (const BondOrder& order : bond_order(nearest_neighbours(hexagonal))) check(order, hcp);
-  // Cubic layers seen along the threefold axis; those at the floor and the top lack neighbours.
+  // Cubic layers seen along the threefold axis; those at the floor and the top have too few
+  // neighbours.
   const Packing layers = stacked_layers("ABCABC");
   const std::vector<BondOrder> orders = bond_order(nearest_neighbours(layers));
   for (std::size_t i = 144; i < 5 * 144; ++i) check(orders[i], fcc);

@@ -19,8 +19,8 @@ std::size_t count(const std::vector<CrystalOrder>& orders, CrystalOrder order) {
   return static_cast<std::size_t>(std::count(orders.begin(), orders.end(), order));
 }
 
-// What each layer of a stacking is: its neighbours above and below alike make hcp, unlike fcc; at
-// the ends there is no telling.
+// Order of each layer of a stacking: equal neighbours above and below make hcp, different ones fcc;
+// the ends are undefined.
 std::vector<CrystalOrder> expected_layers(const std::string& stacking) {
   std::vector<CrystalOrder> layers(stacking.size(), CrystalOrder::disordered);
   for (std::size_t k = 1; k + 1 < stacking.size(); ++k) {

@@ -61,7 +61,7 @@ TEST_CASE("The front of a perfect crystal is below its top layer") {
 }
 
 TEST_CASE("Between walls the spheres at them are left out: the crystal beside them has its front") {
-  // A crystal of 12 x 12 d that ends at walls: a third of its spheres lack neighbours.
+  // A crystal of 12 x 12 d that ends at walls: a third of its spheres have too few neighbours.
   Packing crystal = stacked_layers("ABABABAB");
   double width = 0;
   for (Vec3& r : crystal.centres) {

@@ -441,9 +441,9 @@ TEST_CASE("Counts are those of all pairs and images") {
 }
 
 TEST_CASE("The hard-sphere fluid has the g(1+) of an independent Monte Carlo", "[slow]") {
-  // The reference's g(r) farther out is not compared: at Phi = 0.40 and r of 1.04 to 1.1 it lies
-  // 0.3 to 0.9 % below that of 40 000 sweeps of ours, as if cells 12 to a side of 12.16 had missed
-  // pairs two cells apart. Ours counts all pairs, as the test above tells.
+  // The reference's g(r) farther out is not compared: at Phi = 0.40 and r of 1.04 to 1.1 it is 0.3
+  // to 0.9 % below that of 40 000 sweeps of ours, as if cells 12 to a side of 12.16 had missed
+  // pairs two cells apart. Ours counts all pairs, which the test above shows.
   const auto [name, step] = GENERATE(table<std::string, double>(
       {{"bulk_0.30.json", 0.26}, {"bulk_0.40.json", 0.13}, {"bulk_0.49.json", 0.07}}));
   std::ifstream file(TEST_DATA "/" + name);

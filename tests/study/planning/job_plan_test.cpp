@@ -68,7 +68,7 @@ TEST_CASE("CPUs beyond a shard's realizations take neither memory nor time") {
 }
 
 TEST_CASE("the longest shard is that of the costliest sweep points") {
-  // As many shards as points: each has one point.
+  // Equal numbers of shards and points: each shard has one point.
   const JobPlan plan = plan_jobs(cost({1, 2, 7}, 4), request(100, 1, 3));
   CHECK(hours(plan.longest_task) == Approx(28));
   // Two shards of three points mix them: 1, 7, 2, 1, 7, 2 and 2, 1, 7, 2, 1, 7.

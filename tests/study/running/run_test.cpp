@@ -38,7 +38,7 @@ LoadedScene load(const TemporaryFolder& folder, const std::string& text) {
   return load_scene(path);
 }
 
-/// Keeps what it was told.
+/// Keeps the received progress.
 class Heard : public RunObserver, public TablesObserver {
  public:
   void computing(const Progress&, const WorkAhead& ahead, std::uint64_t pending,
@@ -92,7 +92,7 @@ TEST_CASE("A run of a scene fills its file, and tells its observer how it goes")
   for (const Table& table : stored.tables("analysis")) {
     CAPTURE(table.name);
     for (const auto& [name, text] : table.notes) {
-      CHECK(text.find("is not kept") == std::string::npos);  // as where there was no fit
+      CHECK(text.find("is not kept") == std::string::npos);  // like a missing fit
     }
   }
 }

@@ -36,7 +36,7 @@ void check_caches(const PackedBox<Box, SeveralSizes>& box,
   }
 }
 
-// Every lane of every cache shows where its sphere stands, the rest nothing.
+// Every lane of every cache has the position of its sphere, the rest nothing.
 template <class Box>
 void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbourhood, double) {
   const PackedCentres& centres = neighbourhood.centres();
@@ -70,7 +70,7 @@ bool rejected(const Box& box, const PackedCentres& centres, std::uint32_t i, Vec
   return false;
 }
 
-// Random trials, each held against all spheres.
+// Random trials, each tested against all spheres.
 template <class Box, class Spheres>
 struct Walk {
   Box box;

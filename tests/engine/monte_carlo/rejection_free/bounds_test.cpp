@@ -54,7 +54,7 @@ BoundTables<Box, Directions> tables_for(const Box& box) {
   return {box, baseline::rejection_free_kernels()};
 }
 
-// Whether a step is possible, against all spheres.
+// Tests a step against all spheres.
 template <class Box>
 bool possible(const Box& box, const std::vector<PackedCentre>& centres, std::uint32_t i,
               Vec3 step) {
@@ -111,7 +111,7 @@ void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres,
   CHECK(tried.wrong == 0);
   // A step longer than a sphere is wide may pass it by, and nothing bounds it.
   if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * centres.size()));
-  // The bounds are of use: some of what they leave is free.
+  // The bounds pay: some of the remaining steps are free.
   CHECK(tried.possible_within > 0);
 }
 
@@ -158,7 +158,7 @@ void check_function_of_centres(const Kind<Directions>& kind) {
   }
 }
 
-// What a sector weighs covers its bins, and hardly more.
+// The weight of a sector covers its bins, and hardly more.
 template <class Box, class Directions>
 void check_weights_of(const Box& box, const std::vector<PackedCentre>& centres,
                       const Kind<Directions>& kind) {

@@ -24,7 +24,7 @@ std::unique_ptr<TrialLoop> loop_of(const Packing& packing, const Move& move, Sam
   return make_trial_loop(packing.container, move, key, best_instruction_set(), sampler);
 }
 
-// What a sampler makes of the same taps: one number a tap of each.
+// Results of each sampler for equal taps: one number per tap.
 struct TapSamples {
   std::vector<double> sweeps, height, bottom, bulk, acceptance;
 };
@@ -51,7 +51,7 @@ void relax_and_measure(TrialLoop& loop, const Packing& excited, const Course& co
                                static_cast<double>(progress.trials));
 }
 
-// The chain of beds goes on from other relaxations; both samplers start from each excited bed.
+// The chain of beds continues from other relaxations; both samplers start from each excited bed.
 void compare_taps(Packing bed, const Course& course, int taps) {
   TapSamples exhaustive, rejection_free;
   const auto all = loop_of(bed, course.move, Sampler::exhaustive, 1);

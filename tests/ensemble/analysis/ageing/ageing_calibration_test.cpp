@@ -7,8 +7,8 @@
 #include "ensemble/analysis/ageing/fits.hpp"
 #include "tests/ensemble/analysis/ageing/ageing_calibration.hpp"
 
-// What intervals of eq. 6 and verdicts on ageing are worth, on paths whose law is known: how often
-// intervals hold the truth, how often tests raise a false alarm, and what they find.
+// Calibration of intervals of eq. 6 and of verdicts on ageing, on paths whose law is known:
+// coverage, false alarms, and power.
 
 namespace jostle {
 namespace {
@@ -24,7 +24,7 @@ enum class Laws { own, shared };
 void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensembles,
                     std::uint64_t seed) {
   Held a_inf, b, tau;
-  int disowned = 0;  // curves of the law that it is said not to describe
+  int disowned = 0;  // curves of the law that are reported as not described
   for (int e = 0; e < ensembles; ++e) {
     const std::uint64_t own_seed = seed + static_cast<std::uint64_t>(e);
     std::vector<AgeingLaw> found;

@@ -93,7 +93,7 @@ TEST_CASE(
     "Curves that eq. 6 cannot follow set no limits to it, and neither hold nor refute a collapse",
     "[statistics]") {
   // Faster than in proportion to the lag: A = v^2 lag^p, v of a realization and a waiting time;
-  // with noise at every lag the best point stands anywhere on a flat ridge, not on its end.
+  // with noise at every lag the best point is anywhere on a flat ridge, not at its end.
   struct Rise {
     std::uint32_t realizations;
     double power, spread;

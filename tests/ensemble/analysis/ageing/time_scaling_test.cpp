@@ -5,8 +5,8 @@
 
 #include "tests/ensemble/analysis/ageing/ageing_calibration.hpp"
 
-// Whether mu of t / t_W^mu is found, how often its intervals hold it, and how often collapses are
-// refuted that hold, and that do not.
+// Calibration of mu of t / t_W^mu: estimates, coverage, and rejections of collapses that hold and
+// that do not.
 
 namespace jostle {
 namespace {

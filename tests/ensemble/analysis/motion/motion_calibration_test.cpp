@@ -144,7 +144,7 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
     truth += p * (1 - p) / layers;
     stay += p / layers;
   }
-  REQUIRE(stay * (1 - stay) > 2 * truth);            // what the whole bed would give
+  REQUIRE(stay * (1 - stay) > 2 * truth);            // value of the whole bed
   for (const std::uint32_t spheres : {40u, 400u}) {  // 5 and 50 a layer
     CAPTURE(spheres);
     Moments independent, of_bed, chi_4, lateral, vertical, lateral_of_bed, vertical_of_bed;

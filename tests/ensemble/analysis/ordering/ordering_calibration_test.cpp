@@ -11,7 +11,7 @@
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
-// What is said of times to order whose law is known, for the smallest ensembles: Weibull times of
+// Calibration of times to order whose law is known, for the smallest ensembles: Weibull times of
 // median 100, censored at 150, of M realizations.
 
 using namespace jostle;

@@ -10,7 +10,7 @@
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
-// What is said of the slope of a spectrum, where the series are AR(1) and where they are not.
+// Calibration of the slope of a spectrum, for series that are AR(1) and series that are not.
 
 using namespace jostle;
 

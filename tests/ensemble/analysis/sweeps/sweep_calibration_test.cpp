@@ -9,7 +9,7 @@
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
-// What is said of sweep curves whose truth is known: noise of M realizations on nothing, on a
+// Calibration of sweep curves whose truth is known: noise of M realizations on nothing, on a
 // bell, on a line.
 
 using namespace jostle;
@@ -25,7 +25,7 @@ struct Setting {
 struct Counts {
   double maximum_of_flat = 0, maximum_of_plateau = 0;
   double maximum_of_bell = 0, place = 0;     // the place: of the maxima found
-  double maximum_of_skewed = 0, skewed = 0;  // the same, of bells that are no parabolas
+  double maximum_of_skewed = 0, skewed = 0;  // for bells that are no parabolas
   double unlike = 0;                         // called so where scatters are alike
   double slope_68 = 0, slope_95 = 0, straight = 0, difference = 0;
 };
@@ -82,7 +82,7 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
     };
     count_place(curve_of(setting, e, [](double x) { return -300 * (x - 0.3) * (x - 0.3); }), 0.3,
                 counts.maximum_of_bell, counts.place);
-    // Steep on the left, slow on the right: a parabola's top lies far from theirs.
+    // Steep on the left, slow on the right: a parabola's top is far from theirs.
     count_place(curve_of(setting, e, [](double x) { return -20 * std::pow(std::log(x / 0.2), 2); }),
                 0.2, counts.maximum_of_skewed, counts.skewed);
     count_place(curve_of(setting, e,

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t n_states = 3;
 
-/// Which volumes: normal ones of constant variance and k-gamma ones have one density of states for
+/// The volumes: normal ones of constant variance and k-gamma ones have one density of states for
 /// all strengths, so that 1/X is known; the others have not.
 enum class Kind { normal, gamma, widths, skewed };
 
@@ -160,7 +160,7 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
               100 * (CompactivityVerdict::level +
                      3 * deviation(CompactivityVerdict::level, ensembles)));
       } else {
-        // Where it is said, it would have been found in at least 80 %.
+        // Where the verdict gives it, it is detected in at least 80 %.
         CHECK(percent(counts.agree) <= 100 * (0.2 + 3 * deviation(0.2, ensembles)));
       }
     }

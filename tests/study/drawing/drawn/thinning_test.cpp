@@ -13,7 +13,7 @@ bool is_ascending(const std::vector<std::size_t>& places) {
   return std::ranges::adjacent_find(places, std::greater_equal<>()) == places.end();
 }
 
-/// A number that tells its place.
+/// A number that identifies its place.
 double value_at(std::size_t tap, std::size_t place) {
   return 1000.0 * static_cast<double>(tap) + std::sin(0.01 * static_cast<double>(place));
 }

@@ -13,8 +13,7 @@
 #include "tests/results/synthetic.hpp"
 #include "tests/results/temporary_folder.hpp"
 
-// Files that hold more than a page has room for: the page stays small, keeps the ends, and says
-// what it leaves out.
+// Files too large for a page: the page stays small, keeps the ends, and names the omitted data.
 using namespace jostle;
 
 namespace {

@@ -120,7 +120,7 @@ TEST_CASE("An own law has the values and derivatives of the law that it rewrites
 
 TEST_CASE("An own law is linear where its original is, and has its units") {
   for (const Rewritten& law : rewritten_laws()) {
-    if (law.model == "k_gamma") continue;  // what t is, its original says by a bound alone
+    if (law.model == "k_gamma") continue;  // the original describes t only by a bound
     CAPTURE(law.model);
     const auto original = make_model(law.model);
     const auto written = make_own_law(own(law));

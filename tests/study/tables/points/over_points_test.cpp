@@ -8,7 +8,7 @@ TEST_CASE("Points are compared over the taps that they share, those far behind l
   const std::vector<ReachedTaps> points = {{1000, 1001}, {1000, 998}, {1000, 501},
                                            {1000, 500},  {1000, 0},   {200, 51}};
   const SharedTaps shared = shared_taps(points);
-  // Half of the farthest's taps is enough; other lengths of protocols are held against nothing.
+  // Half of the farthest's taps is enough; other lengths of protocols are not compared.
   CHECK(shared.rows == std::vector<std::uint64_t>{501, 501, 501, 0, 0, 51});
   CHECK(shared.reasons[0].empty());
   CHECK(shared.reasons[2].empty());
