@@ -49,7 +49,7 @@ _{0}() {{
 complete -o filenames -F _{0} {0}
 )BASH";
 
-// What prints an offer for the word $2; nothing, where any value may stand.
+// Prints an offer for the word $2; nothing where any value is valid.
 std::string offer_command(const std::string& program, const Offer& offer) {
   if (!offer.words.empty()) {
     return fmt::format("compgen -W $'{}' -- \"$2\"", fmt::join(offer.words, "\\n"));

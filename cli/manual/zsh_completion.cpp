@@ -65,7 +65,7 @@ std::string command_list(const std::vector<CommandText>& commands) {
   return list;
 }
 
-// What `jostle COMMAND` takes; a command with kinds offers their names beside its files, and the
+// Arguments of `jostle COMMAND`; a command with kinds offers their names beside its files, and the
 // options of all of them.
 std::string command_case(const CommandText& command) {
   std::string body = specs(command.options);

@@ -7,7 +7,7 @@
 
 namespace jostle::inline cli {
 
-/// What a file holds, in one line: how many realizations have ended, and, of a single sweep point,
+/// Contents of a file in one line: how many realizations have ended, and, of a single sweep point,
 /// where its first fraction (or its first observable) went. Then for every sweep point a table over
 /// taps, about three a decade, of the mean of every observable with its standard error, and the
 /// means that the engine has shown beside them where there is room, or, with all columns, sigma and

@@ -11,11 +11,11 @@
 
 // Reads, writes and describes parts by their lists of fields (engine/fields.hpp). A part that
 // scenes write in a form of its own has three functions of its own, which are taken in place of the
-// templates here: read_part(), written_part(), part_schema(). What is at odds in fields that are
-// right one by one, part_fault() says, where a part has one.
+// templates here: read_part(), written_part(), part_schema(). part_fault() of a part describes
+// contradictions of fields that are valid one by one.
 namespace jostle::inline config {
 
-/// A field that no form describes: what stands under its key is read from the part's object,
+/// A field that no form describes: its value is read from the part's object,
 /// written to it and described by functions of its own.
 template <class Read, class Write, class Describe>
 struct IrregularField {

@@ -20,7 +20,7 @@ std::string allowed(Range range) {
                      range.high_included ? "at most" : "below", range.high);
 }
 
-/// Tells whether the character is one of a class: "a-z0-9_".
+/// Tests if the character is in a class: "a-z0-9_".
 bool is_in(std::string_view characters, char c) {
   for (std::size_t i = 0; i < characters.size(); ++i) {
     const bool is_range = i + 2 < characters.size() && characters[i + 1] == '-';
@@ -158,7 +158,7 @@ Json described_as(Json schema, std::string_view title, std::string_view text,
   if (!title.empty()) out["title"] = title;
   if (!text.empty()) out["description"] = text;
   if (otherwise || !out.empty() || !examples.empty()) {
-    // Draft-07 ignores what stands beside a reference.
+    // Draft-07 ignores keys beside a reference.
     if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({schema})}};
   }
   for (const auto& [key, value] : schema.members()) {

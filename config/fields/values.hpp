@@ -15,7 +15,7 @@
 // it reads; value_schema() gives the JSON Schema (draft-07) of what it accepts.
 namespace jostle::inline config {
 
-/// Schemas that stand at one place and that others refer to.
+/// Shared schemas at one place, to which others refer.
 class Definitions {
  public:
   /// A reference to the definition, which `describe` makes where it is not known yet; without a
@@ -133,7 +133,7 @@ std::string sentence_of(std::string_view text, std::string_view unit);
 struct ObjectSchema {
   Json properties = Json::object();
   std::vector<std::string> required;
-  Json rules = Json::object();  // what else holds of it
+  Json rules = Json::object();  // further rules
 
   Json json() const;
 };

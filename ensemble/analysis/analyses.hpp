@@ -163,7 +163,7 @@ struct SweepSettings {
 /// Volumes and compactivities over the points of a sweep.
 struct VolumesSettings {
   std::optional<std::uint64_t> last = std::nullopt;  // absent: the last quarter
-  std::string against;                               // as in sweeps
+  std::string against;                               // see sweeps
   /// Spheres of the volume; absent: those of the observable's window.
   std::optional<double> spheres = std::nullopt;
   bool operator==(const VolumesSettings&) const = default;

@@ -23,7 +23,7 @@ from .results import Results
 from .tables import Table, table_from_json
 
 Scene = Mapping[str, Any]
-_NAME = r"[A-Za-z0-9][A-Za-z0-9._-]*"  # of a scene
+_NAME = r"[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a scene
 
 
 @contextlib.contextmanager

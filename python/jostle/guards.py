@@ -37,8 +37,7 @@ def _in_words(error: Exception) -> str:
 
 
 def reads_file(cls: T) -> T:
-    """Has every method and property of a class that reads `self._results` (or is it) raise as reading()
-    does, and say so where the file was closed."""
+    """Has every method and property of a class that reads `self._results` (or is it) raise as reading() does, and report a closed file."""
     def guarded(method: Callable[..., Any]) -> Callable[..., Any]:
         @functools.wraps(method)
         def call(self: Any, *arguments: Any, **keywords: Any) -> Any:

@@ -13,7 +13,7 @@ namespace jostle::inline results {
 /// Throws ResultsError for a link, at the end or on the way, that another user may have put there,
 /// and for such a pipe or device at the end. Trusted are links of this user; links in a folder
 /// where its owner alone may write; and on the way, where a group may write too, links of root and
-/// of the folder's owner. The kernel (fs.protected_symlinks) refuses fewer: those in sticky
+/// link of the folder's owner. The kernel (fs.protected_symlinks) refuses fewer: those in sticky
 /// folders.
 std::string output_path(const std::string& path);
 

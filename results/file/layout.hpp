@@ -46,7 +46,7 @@ inline std::vector<Column> unnamed_diagnostics() {
   return columns(MonteCarlo{});
 }
 inline constexpr std::string_view shown_names[] = {"spread", "mean", "count", "share",
-                                                   "stored"};  // of Shown
+                                                   "stored"};  // words of Shown
 
 /// Attribute `snapshots_keep` of /sweep/P: what is kept of snapshots, in this order; the first
 /// three of every engine.

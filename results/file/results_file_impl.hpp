@@ -28,7 +28,7 @@ struct PointTables {
   std::vector<std::string> reasons;
   std::vector<Work> work;
   std::vector<double> coordination;              // [n_snapshot_taps, n_realizations], or empty
-  std::vector<std::optional<BedForces>> forces;  // likewise
+  std::vector<std::optional<BedForces>> forces;  // by snapshot, too
   std::array<std::size_t, n_height_profiles> n_bins{};  // 0 where there are none
 };
 

@@ -16,9 +16,9 @@ class ScenePilot {
 
   enum class Repeat { none, first_point };
 
-  /// Takes about ten seconds on one core, up to a minute for grains. `tell` receives each finished
-  /// pilot. `repeat`: the first point is tried again at the end, to see how times scatter. Throws
-  /// BadInput where one fails.
+  /// Takes about ten seconds on one core, up to a minute for grains. The function `tell` receives
+  /// each finished pilot. `repeat`: the first point is tried again at the end, to see how times
+  /// scatter. Throws BadInput where one fails.
   explicit ScenePilot(const LoadedScene& loaded, const Tell& tell = {},
                       Repeat repeat = Repeat::none);
 

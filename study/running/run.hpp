@@ -90,7 +90,7 @@ class RunObserver {
                          std::uint64_t /*pending*/, std::uint64_t /*all*/) {}
   virtual void computed() {}
   /// Reports the number of realizations in the new file.
-  virtual void storing(std::uint64_t /*done*/, std::uint64_t /*of*/) {}
+  virtual void storing(std::uint64_t /*done*/, std::uint64_t /*total*/) {}
   virtual void stored() {}
   /// How far the scene's targets are met, after every comparison with the targets.
   virtual void compared(const PrecisionStatus&) {}

@@ -112,7 +112,7 @@ class Architecture(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_texts_of_the_libraries_name_no_options(self):
-        """Who calls from C++ or Python has none; the command line says them."""
+        """Callers from C++ or Python have no options; the command line names them."""
         wrong = []
         for folder in set(MAY_INCLUDE) - {"cli", "bench"}:
             for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):

@@ -59,7 +59,7 @@ class Names(Case):
             self.assertGreater(self.info(name)["bytes"]["parts"], 0)
             with self.assertWarnsRegex(UserWarning, "live=True"):
                 jostle.open(self.folder / name, program=JOSTLE).close()
-            other = name_of(size, "m")  # which begins otherwise, and one that differs at its end
+            other = name_of(size, "m")  # a different beginning, and one that differs at its end
             self.assertFalse((self.folder / other).exists())
             self.run_scene("--resume", "-o", name)
             self.assertEqual(self.digest(name), self.digest("straight.h5"))

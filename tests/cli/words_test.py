@@ -20,21 +20,31 @@ SOURCE = pathlib.Path(os.environ.get("SOURCE", pathlib.Path(__file__).resolve().
 ROOMS = ("bench", "cli", "cmake", "config", "docs", "engine", "ensemble", "examples", "fitting", "packages",
          "python", "report", "results", "structure", "study", "tests", "dev")
 
-# Rooms that a rule has not reached yet. Rooms are removed, never added.
+# Folders and files that a rule has not reached yet. Entries are removed, never added. "start" and "private" hold
+# for comments and documents, "message" is both of them for texts in sources of C++.
 NOT_YET = {
-    "start": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
-              "results", "structure", "study", "tests"),
-    "per": ("config", "docs", "engine"),
-    "name": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "results", "structure", "study",
-             "tests"),
+    "start": ("bench/grains.cpp", "bench/grains_against_lammps.py", "bench/pours_against_lammps.py",
+              "config/consistency.cpp", "config/join_sweeps.cpp", "config/resume.cpp", "config/scene.hpp",
+              "config/sweep.cpp", "docs/validation", "engine/discrete_element", "engine/engines.hpp",
+              "ensemble/analysis/sweeps", "python/jostle", "report/src", "structure/forces.cpp", "structure/forces.hpp",
+              "study/drawing", "study/tables", "tests/cli", "tests/elsewhere", "tests/physics", "tests/python"),
+    "private": ("bench/grains.cpp", "config/consistency.cpp", "config/scene.hpp", "config/sweep.cpp", "docs/validation",
+                "docs/validation.md", "engine/discrete_element", "ensemble/analysis/sweeps", "python/jostle",
+                "report/src", "structure/forces.hpp", "study/drawing", "study/tables", "tests/cli", "tests/packages",
+                "tests/physics", "tests/python", "tests/report", "tests/results"),
+    "message": ("bench", "cli", "config", "engine", "ensemble", "fitting", "report", "results", "structure", "study",
+                "tests"),
+    "per": ("docs/validation",),
+    "name": ("bench", "cli", "config", "engine", "ensemble", "fitting", "results", "structure", "study", "tests"),
     "help": (),
-    "width": ("bench", "docs", "tests"),
-    "private": ("bench", "cli", "config", "docs", "engine", "ensemble", "fitting", "python", "report",
-                "results", "structure", "study", "tests"),
+    "width": ("docs/validation.md",),
 }
 
+# Made from texts of the schema, to which "message" applies.
+GENERATED = ("docs/reference/scene-keys.md",)
+
 # Exact phrases that are correct although a rule finds them.
-EXCEPTIONS = ()
+EXCEPTIONS = ("moves a sphere",)
 
 PER = (r"(?:cell|command|contact|core|day|entry|file|folder|hour|job|law|line|member|minute|move|node|pair|"
        r"point|process|realization|row|sample|second|snapshot|sphere|step|strength|submission|sweep|tap|"
@@ -46,8 +56,8 @@ UNIT = (r"(?:[\d}%]|bytes|columns|contacts|cores|cycles|entries|files|GB|hours|j
 START = re.compile(r"(?:Of|What|Whether|That|As|So|Which|Likewise|The same|The others)\b(?![.-])")
 SENTENCES = re.compile(r"(?:^|(?<=[a-z)\d\"'`][.!?] ))(?=\w)")
 PRIVATE = re.compile(
-    r"\b(?:says?|said|tells?|telling|told|stands?(?! for)|stood|lies(?! (?:within|inside|outside|above|below|beyond|between)\b)|hangs? on|hung on|hold against|"
-    r"held against|mends?|mended|lacks?|lacked|wants?|wanted|wanting|goes on|went on|"
+    r"\b(?:says?|said|tells?|telling|told|stands?(?! for|-)|stood|lies(?! (?:within|inside|outside|above|below|beyond|between)\b)|hangs? on|hung on|hold against|"
+    r"held against|mends?|mended|lacks?(?! of)|lacked|wants?|wanted|wanting|goes on|went on|"
     r"know better|knows better|(?:is|are|was|were) of (?!the order)|clock of the wall|"
     r"taken away|surroundings|flatter(?:s|ed)?|(?:is|are) no (?:more )?(?:fault|loss|text|one)\b)\b", re.I)
 RATE = re.compile(rf"(?<!\w)(?<!-){UNIT} an? {PER}\b(?!-)")
@@ -206,7 +216,7 @@ def faults_of_text(text):
             yield "start", sentence[:60]
     for match in RATE.finditer(words):
         yield "per", match.group()
-    for match in PRIVATE.finditer(words):
+    for match in PRIVATE.finditer(re.sub("`[^`]*`", "", words)):
         yield "private", match.group()
     if text.kind == "help" and FUNCTION_WORDS.match(words):
         yield "help", words[:60]
@@ -221,7 +231,7 @@ def faults():
         if name.endswith("CMakeLists.txt"):
             suffix = ".cmake"
         cpp = suffix in (".cpp", ".hpp", ".js") or name.endswith((".cpp.in", ".hpp.in"))
-        if name == "tests/cli/words_test.py" or not (cpp or suffix in SCANNERS):
+        if name in ("tests/cli/words_test.py", *GENERATED) or not (cpp or suffix in SCANNERS):
             continue
         source = path.read_text()
         if cpp:
@@ -240,14 +250,19 @@ def faults():
                     yield "width", name, n, f"{len(line)} characters"
         for text in texts:
             for rule, excerpt in faults_of_text(text):
-                yield rule, name, text.line, excerpt
+                in_message = cpp and text.kind == "string" and rule in ("start", "private")
+                yield "message" if in_message else rule, name, text.line, excerpt
+
+
+def is_waiting(rule, file):
+    return any(file == entry or file.startswith(entry + "/") for entry in NOT_YET[rule])
 
 
 class Words(unittest.TestCase):
     def test_texts_keep_to_the_rules(self):
         left, wrong = collections.Counter(), []
         for rule, file, line, excerpt in faults():
-            if room_of(file) in NOT_YET[rule]:
+            if is_waiting(rule, file):
                 left[rule] += 1
             else:
                 wrong.append(f"{file}:{line}: {rule}: {excerpt}")

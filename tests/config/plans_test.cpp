@@ -11,7 +11,7 @@ namespace jostle {
 TEST_CASE("A plan holds what the scene says") {
   auto json = resolved(scene_of(text_of(good_scenes / "every_key.json")));
   json.erase("sweep");
-  json["analyse"].erase("sweep");  // of the sweep
+  json["analyse"].erase("sweep");  // analysis over the sweep
   const auto plans = make_plans(scene_of(json.dump()), {});
   REQUIRE(plans.size() == 1);
   const Plan& plan = plans[0];

@@ -10,7 +10,7 @@
 
 namespace jostle {
 
-using PlainJson = nlohmann::json;  // what valijson reads
+using PlainJson = nlohmann::json;  // the type that valijson reads
 
 /// The document as draft-07 sees it: any number without a fraction is an integer (6.1.1), of any
 /// size. valijson looks at how the number is stored, in 64 signed bits.

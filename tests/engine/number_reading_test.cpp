@@ -20,7 +20,7 @@ struct Reading {
 using Reader = std::from_chars_result (*)(const char*, const char*, double&, std::chars_format);
 
 Reading reading(Reader read, const std::string& text, std::chars_format format) {
-  double value = -77;  // which a fault does not change
+  double value = -77;  // unchanged by a fault
   const auto result = read(text.data(), text.data() + text.size(), value, format);
   std::uint64_t bits;
   std::memcpy(&bits, &value, sizeof bits);

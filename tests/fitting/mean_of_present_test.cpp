@@ -61,7 +61,7 @@ TEST_CASE("A realization that leaves does not move the mean by its offset") {
       }
       plain_error = std::max(plain_error, std::abs(sum / n - whole.x[i]));
     }
-    CHECK(plain_error > 1e-4);  // of a plain mean: the case would show it
+    CHECK(plain_error > 1e-4);  // error of a plain mean: the case would detect it
   }
 }
 

@@ -11,7 +11,7 @@
 
 /// End of a process.
 struct Ending {
-  int signal = 0;  // that killed it, 0 if none
+  int signal = 0;  // the signal that killed it, 0 if none
   int code = 0;    // its exit code
 };
 

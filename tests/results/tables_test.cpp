@@ -107,7 +107,8 @@ TEST_CASE("a file does not grow with the number of times its tables were replace
     table.axes = {{"tap", {"tap"}, taps, "", "", ""}};
     for (int k = 0; k < 20; ++k) {
       std::vector<double> values(taps.size());
-      for (double& value : values) {  // that compress by little, and by a little more or less
+      for (double& value :
+           values) {  // values that compress by little, and by a little more or less
         state = state * 6364136223846793005u + 1442695040888963407u;
         value = static_cast<double>(state >> 20);
       }

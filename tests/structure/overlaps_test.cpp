@@ -61,7 +61,7 @@ StructureSettings without_floor() {
   return settings;
 }
 
-/// Of a sphere that reaches so deep through a plane, the part beyond it.
+/// Part beyond a plane of a sphere that reaches so deep through it.
 double cap_volume(double depth) {
   return std::numbers::pi * depth * depth * (3 * sphere_radius - depth) / 3;
 }

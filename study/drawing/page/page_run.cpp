@@ -14,7 +14,7 @@ namespace jostle::inline study {
 namespace {
 
 constexpr std::size_t most_listed = 50;          // failures, processes
-constexpr std::size_t most_named_points = 2000;  // that are named
+constexpr std::size_t most_named_points = 2000;  // most points that are named
 constexpr std::size_t longest_scene = 60000;     // bytes
 
 Json page_container(const Container& container) {

@@ -101,7 +101,7 @@ TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a consta
   Law law{};
   const double overlap = 0.002, limit = constants.friction * 4e4 * overlap;  // mu N
   const double k0 = constants.tangential;
-  const double loaded = 0.8 * 1.5 * limit / k0;  // of what gross sliding takes
+  const double loaded = 0.8 * 1.5 * limit / k0;  // relative to gross sliding
   const auto curve = [&](double room, double displacement) {
     return room * std::pow(std::max(0.0, 1 - 2.0 / 3 * k0 * displacement / room), 1.5);
   };

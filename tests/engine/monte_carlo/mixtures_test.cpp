@@ -176,7 +176,7 @@ TEST_CASE("eight spheres of ten diameters move among small ones") {
 TEST_CASE("two masses in a dilute gas have each its own exponential profile") {
   // By the barometric law heights above the floor are exponential, of mean 1/(beta m).
   constexpr double beta = 0.5, diameter = 0.4, volume = diameter * diameter * diameter;
-  constexpr std::uint32_t n = 6;  // of either kind
+  constexpr std::uint32_t n = 6;  // spheres of each kind
   std::vector<std::uint32_t> kinds(2 * n, 0);
   std::fill(kinds.begin() + n, kinds.end(), 1);
   Packing packing = random_mixture(PeriodicBox{30, 30}, std::vector<double>(2 * n, diameter), 3, 6);
@@ -256,7 +256,7 @@ TEST_CASE("a relaxation of a mixture goes on while any kind still moves") {
   };
   const std::uint64_t by_kind = sweeps_to_rest(kinds);
   CHECK(by_kind > 1000);
-  CHECK(sweeps_to_rest({1, 1, 1, 1, 1}) == 100);  // of one kind only the mean counts
+  CHECK(sweeps_to_rest({1, 1, 1, 1, 1}) == 100);  // with one kind only the mean counts
 }
 
 TEST_CASE("a mixture that is tapped goes on bit for bit from what it saved") {

@@ -251,7 +251,7 @@ TEST_CASE("Steps of a ladder that are not known to shrink recommend nothing") {
 TEST_CASE("Limits are by the pairs that a setting has, not by those that were planned") {
   std::vector<SettingCost> settings(
       3, {.bias = 0.01, .bias_error = 0.004, .sigma = 0.02, .values = 6, .pairs = 6});
-  settings[1].pairs = 3;  // the others failed
+  settings[1].pairs = 3;  // two replicates failed
   settings[1].values = 4;
   const Pilot pilot{.reference = 2,
                     .last_step = {.pairs = 2, .bias = 0.001, .error = 0.001},

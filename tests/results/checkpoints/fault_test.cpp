@@ -168,7 +168,7 @@ TEST_CASE("whatever is published is on disk before it has its name, and its name
     CAPTURE(path);
     REQUIRE(i + 1 < calls.size());
     REQUIRE(i > 0);
-    std::size_t last = i - 1;  // that touched a temporary file
+    std::size_t last = i - 1;  // the last call that touched a temporary file
     while (last > 0 && !calls[last].second.ends_with(".tmp")) --last;
     CHECK(calls[last].first == "fsync");
     CHECK(calls[last].second.starts_with(path + "."));

@@ -86,7 +86,7 @@ TEST_CASE("links are followed where nobody else can have put them") {
       {somebody, 0777, somebody, false, false},
       {somebody, 0777, own, true, true},
       {own, 0775, somebody, false, false},
-      {somebody, 0775, somebody, false, true},  // of the folder's owner
+      {somebody, 0775, somebody, false, true},  // link of the folder's owner
       {somebody, 0775, somebody_else, false, false},
       {somebody, 02770, somebody_else, false, false},
       {somebody, 01775, somebody_else, false, false},
@@ -163,7 +163,7 @@ TEST_CASE("a pipe, or a folder of parts, that another user planted is not used")
   fs::create_directory(path + ".parts");
   REQUIRE(::chown((path + ".parts").c_str(), somebody, somebody) == 0);
   CHECK_THROWS_WITH(run_whole(path), Contains("is a folder of another user"));
-  REQUIRE(::chmod(folder.c_str(), 0775) == 0);  // of a group that works together
+  REQUIRE(::chmod(folder.c_str(), 0775) == 0);  // a folder of a group that works together
   CHECK_NOTHROW(run_whole(path));
   CHECK(output_path("/dev/null") == "/dev/null");
   CHECK_NOTHROW(output_path("/dev/stdout"));

@@ -147,7 +147,7 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
   // n = 32: some n/N less than 1, or more where clusters crowd.
   CHECK(box[9] == Approx(1 - 32.0 / static_cast<double>(closed.centres.size())).margin(0.03));
   const std::vector<double> open = check(bed, inside);
-  CHECK(open[7] < 0.97);  // of 16 cells
+  CHECK(open[7] < 0.97);  // the share in 16 cells
 }
 
 TEST_CASE("Clusters are held against the cells that they are of") {

@@ -156,7 +156,7 @@ TEST_CASE("Differences of matched streams are taken realization by realization")
     values[1].push_back(0.51 + shifts[r] + 0.001 * static_cast<double>(r));
     values[2].push_back(0.52 + shifts[r]);
   }
-  values[2].push_back(0.9);  // of a realization that the others have not
+  values[2].push_back(0.9);  // value of a realization that the other points have not
   const SweepCurve matched({1, 2, 3}, values, Streams::matched);
   const auto neighbours = differences(matched, std::nullopt);
   REQUIRE(neighbours.size() == 2);
