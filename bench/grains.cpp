@@ -40,7 +40,7 @@ struct Law {
 ReducedSettings settings_of(const ContactLaw& contact) {
   DiscreteElement engine;
   engine.spheres = contact;
-  engine.steps_per_contact = 40;  // of every law
+  engine.steps_per_contact = 40;  // steps per contact, for every law
   return reduced(engine);
 }
 
@@ -91,7 +91,7 @@ std::vector<Mixture> mixtures() {
   };
 }
 
-/// As settled(), of a mixture in a footprint wide enough for it.
+/// Like settled(), for a mixture in a footprint wide enough for it.
 GrainLoop settled_mixture(const Mixture& mixture, const ContactLaw& contact, std::uint64_t count) {
   RandomStream diameters(stream_key(1, 0, 0, Purpose::sizes));
   RandomStream places(stream_key(1, 0, 0, Purpose::start));
@@ -109,7 +109,7 @@ GrainLoop settled_mixture(const Mixture& mixture, const ContactLaw& contact, std
   return loop;
 }
 
-/// As fast as the floor of a tap throws it.
+/// The speed at which the floor of a tap throws it.
 double throwing_speed(const ReducedSettings& units) {
   const FloorMotion tap = tap_of(units);
   return tap.amplitude * 2 * std::numbers::pi * tap.frequency;
@@ -128,7 +128,7 @@ GrainLoop thrown(const GrainLoop& bed, const ReducedSettings& units) {
   return loop;
 }
 
-/// The bed and three runs: at rest, thrown while it flies, and thrown until it lies again.
+/// The bed and three runs: at rest, thrown while it flies, and thrown until it rests again.
 void write_for_lammps(const std::string& folder, const GrainLoop& loop,
                       const ReducedSettings& units) {
   Packing bed;

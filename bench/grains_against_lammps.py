@@ -19,7 +19,7 @@ N_SPHERES = 3456
 
 
 def processor_seconds(command, folder):
-    """Of the command alone: other programs on the machine do not count."""
+    """Time of the command alone: other programs on the machine do not count."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL,
                    env={**os.environ, "OMP_NUM_THREADS": "1"})

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 WIDTH, COLUMN = 12.0, 0.2  # diameters; solids fraction of the columns
-SECONDS = 1.6  # of fall and rest
+SECONDS = 1.6  # duration of fall and rest
 DIAMETER, DENSITY, GRAVITY = 0.02, 1200.0, 9.81
 STIFFNESS, RESTITUTION, STEPS_PER_CONTACT = 1e5, 0.9, 40
 STANDARD_ERRORS = 3.0
@@ -39,11 +39,11 @@ class Law:
         self.step = min(normal, math.pi * math.sqrt(0.5 / self.stiffness)) / STEPS_PER_CONTACT
 
     def damping(self, mass):
-        """Of two bodies of this mass together: LAMMPS' gamma_n is this rate."""
+        """Rate for two bodies with this reduced mass: LAMMPS' gamma_n."""
         return 2 * self.loss * math.sqrt(self.stiffness / mass / (math.pi**2 + self.loss**2))
 
     def granular(self, mass, friction):
-        """Of LAMMPS' granular styles: its eta is force over velocity."""
+        """Damping of LAMMPS' granular styles: its eta is force over velocity."""
         return (f"hooke {self.stiffness!r} {mass * self.damping(mass)!r} damping velocity "
                 f"tangential linear_history {2 / 7 * self.stiffness!r} 0.5 {friction!r}")
 
@@ -130,7 +130,7 @@ def force_lines(ratio, friction):
 
 
 def by_lammps(lammps, folder, centres, diameters, friction, pour):
-    """The same of one pour by LAMMPS."""
+    """Measures one pour by LAMMPS."""
     law, n, ratio = Law(), len(centres), float(diameters.max())
     pairs, floor = force_lines(ratio, friction)
     name = f"lammps-{n}-{friction:g}-{ratio:g}-{pour}"
@@ -160,14 +160,14 @@ def by_lammps(lammps, folder, centres, diameters, friction, pour):
 
 def slab_share(centres, diameters, low, high):
     """Volume of the spheres between two heights / that of the slab."""
-    def below(z):  # of each sphere, below height z
+    def below(z):  # volume of each sphere below height z
         h = np.clip(z - centres[:, 2] + diameters / 2, 0, diameters)
         return math.pi * h**2 * (1.5 * diameters - h) / 3
     return float((below(high) - below(low)).sum() / (WIDTH**2 * (high - low)))
 
 
 def measured(bed, diameters):
-    """What is compared, by name. Energies are per mass of a sphere of diameter 1."""
+    """Compared quantities, by name. Energies are per mass of a sphere of diameter 1."""
     centres, velocities, spins = bed
     mass, radii = diameters**3, diameters / 2
     height = float((mass * centres[:, 2]).sum() / mass.sum())

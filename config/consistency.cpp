@@ -13,8 +13,8 @@ namespace jostle::inline config {
 
 namespace {
 
-/// Notes faults between parts, each only where the parts it joins have none of their own. What goes
-/// with what, the engine says; here it gets its place in the scene.
+/// Notes faults between parts, each only where the parts it joins have none of their own. The
+/// engine reports invalid combinations; this function adds their place in the scene.
 class Check {
  public:
   Check(const Scene& scene, std::vector<Fault>& faults) : scene_(scene), faults_(faults) {}
@@ -43,7 +43,7 @@ class Check {
     }
   }
 
-  /// Of a ramp the tap of its greatest strength.
+  /// For a ramp the tap of its greatest strength.
   static Tap strongest_tap(const ProtocolLine& line) {
     Tap tap = line.tap;
     if (line.ramp) strength(tap) = std::max(line.ramp->from, line.ramp->to);
@@ -84,7 +84,7 @@ class Check {
   }
 
   void observables_have_names() {
-    // What every sweep point has beside the observables.
+    // Columns of every sweep point besides the observables.
     std::map<std::string, std::string> taken;
     for (const Column& column : columns(engine_of(scene_)))
       taken[column.name] = "a column of every series";

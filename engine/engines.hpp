@@ -16,7 +16,7 @@ namespace jostle::inline engine {
 
 using EngineSettings = std::variant<MonteCarlo, DiscreteElement>;
 
-/// What the engine records at every tap besides the observables, in order.
+/// Columns of the engine at every tap besides the observables, in order.
 std::vector<Column> columns(const EngineSettings& settings);
 
 /// Why the engine cannot make this tap; nothing if it can. Only discrete elements follow a floor
@@ -28,13 +28,13 @@ std::optional<std::string> engine_tap_fault(const EngineSettings& settings, cons
 /// overlap.
 std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start);
 
-/// What reports call a unit of the engine, and as many units as there are spheres: "trials" and
+/// Names in reports of a unit of the engine, and of one unit per sphere: "trials" and
 /// "sweeps", "sphere steps" and "time steps".
 const char* unit_name(const EngineSettings& settings);
 const char* round_name(const EngineSettings& settings);
 
-/// Of what the engine records, what the work of a tap grows with: "sweeps", or "seconds" of
-/// simulated time; and what reports call that: "sweeps", "simulated seconds".
+/// The column that measures the work of a tap: "sweeps", or "seconds" of simulated time; and its
+/// name in reports: "sweeps", "simulated seconds".
 const char* work_column(const EngineSettings& settings);
 const char* work_name(const EngineSettings& settings);
 

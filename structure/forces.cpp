@@ -50,7 +50,7 @@ std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::u
   for (const Contact& contact : contacts) {
     // On the other sphere acts the opposite force with the opposite arm: the same moment.
     const double reach = reach_of(contact, n_spheres, sizes);
-    const double share = (reach - contact.overlap) / reach;  // of each radius
+    const double share = (reach - contact.overlap) / reach;  // share of each radius
     add(moments.at(contact.first), share * radius_of(sizes, contact.first), contact);
     if (contact.second < n_spheres)
       add(moments.at(contact.second), share * radius_of(sizes, contact.second), contact);

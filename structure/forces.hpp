@@ -8,7 +8,7 @@
 #include "engine/bed/bed_mechanics.hpp"
 #include "engine/bed/packing.hpp"
 
-// What follows from the contacts and the velocities of a bed.
+// Forces and temperatures from the contacts and the velocities of a bed.
 namespace jostle::inline structure {
 
 /// Sum over contacts of arm (x) force, m g d: element 3 a + b is arm a times force b, a and b being
@@ -17,7 +17,7 @@ namespace jostle::inline structure {
 /// sphere is turned faster or slower.
 using ForceMoment = std::array<double, 9>;
 
-/// What a wall presses and rubs with on the bed.
+/// Normal and tangential force of a wall on the bed.
 struct WallForce {
   double normal = 0;  // sum of the normal forces, m g
   Vec3 friction;      // sum of the tangential forces, m g
@@ -25,17 +25,17 @@ struct WallForce {
 };
 
 struct BedForces {
-  ForceMoment moment{};          // of all contacts
-  std::vector<WallForce> walls;  // of wall_names()
+  ForceMoment moment{};          // sum over all contacts
+  std::vector<WallForce> walls;  // forces of wall_names()
   bool operator==(const BedForces&) const = default;
 };
 
-/// Of a packing and its contacts.
+/// Forces of a packing and its contacts.
 BedForces bed_forces(const Packing& packing, std::span<const Contact> contacts);
 
-/// Of each sphere, [n_spheres]: that of the bed is their sum. The contact of two spheres divides
-/// the line of their centres as their radii do: halfway where they are equal. `sizes`: null of
-/// equal spheres.
+/// Force moments of each sphere, [n_spheres]: that of the bed is their sum. The contact of two
+/// spheres divides the line of their centres in the ratio of their radii. `sizes`: null for equal
+/// spheres.
 std::vector<ForceMoment> force_moments(std::span<const Contact> contacts, std::uint32_t n_spheres,
                                        const Sizes* sizes = nullptr);
 

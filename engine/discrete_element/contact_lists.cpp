@@ -122,7 +122,7 @@ void ContactLists::find_far_pairs(std::span<const Row> rows) {
   }
 }
 
-// Of every sphere its far pairs, in the order of the other spheres' numbers.
+// The far pairs of every sphere, in the order of the other spheres' numbers.
 void ContactLists::make_far_slots() {
   far_begin_.assign(n_spheres_ + 1, 0);
   for (const FarPair& pair : far_) {
@@ -271,7 +271,7 @@ std::vector<KeptPair> ContactLists::kept_pairs() const {
   return kept;
 }
 
-// Of every sphere: its pairs by the other's number, then the floor, then the sides.
+// The contacts of every sphere: its pairs by the other's number, then the floor, then the sides.
 void ContactLists::make_slots() {
   const auto padded = [](const Near& near) {
     return static_cast<std::uint32_t>(near.first.size());

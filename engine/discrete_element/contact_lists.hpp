@@ -20,7 +20,7 @@ inline Vec3 velocity_of(const Row& sphere) {
   return {sphere.of[4], sphere.of[5], sphere.of[6]};
 }
 
-/// What a law remembers of a contact.
+/// History of a contact for a law.
 using ContactHistory = std::array<double, most_history>;
 
 /// Two spheres that touch, by their numbers, the lower first; `turns`: periods in x and y from the
@@ -38,11 +38,11 @@ struct KeptSide {
   ContactHistory history{};
 };
 
-/// Which spheres may touch, and what they remember. Far pairs, of all that come within `far_skin`,
-/// are found now and then; near ones, of them, whenever spheres have moved by half of `near_skin`
-/// against each other. Skins are in diameters of the smallest sphere. A sphere sums its contacts in
-/// the order of their numbers, so that no result depends on when lists are made or on how spheres
-/// are sorted.
+/// Pairs of spheres that may touch, with their histories. Far pairs, of all that come within
+/// `far_skin`, are found now and then; near ones, of them, whenever spheres have moved by half of
+/// `near_skin` against each other. Skins are in diameters of the smallest sphere. A sphere sums its
+/// contacts in the order of their numbers, so that no result depends on when lists are made or on
+/// how spheres are sorted.
 class ContactLists {
  public:
   static constexpr double far_skin = 0.25, near_skin = 0.03, side_skin = 0.1;
@@ -60,7 +60,7 @@ class ContactLists {
 
   /// Replaces all that is remembered, before anything is found.
   void keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides);
-  /// What is remembered, in the order of the spheres.
+  /// Histories, in the order of the spheres.
   std::vector<KeptPair> kept_pairs() const;
   std::vector<KeptSide> kept_sides() const;
   /// All that are near, remembered or not.
@@ -72,7 +72,7 @@ class ContactLists {
   /// Those with the floor, and with the sides.
   ContactArrays floor();
   ContactArrays sides();
-  /// Of sides(): which of KeptSide::side each is.
+  /// KeptSide::side of each entry of sides().
   std::span<const std::uint32_t> side_numbers() const { return sides_.source; }
   /// Writes normals and distances of the sides.
   void measure_sides(std::span<const Row> rows, double floor_height);
@@ -80,9 +80,10 @@ class ContactLists {
   std::span<const std::uint32_t> begin() const { return begin_; }
   std::span<const std::uint32_t> slots() const { return slots_; }
   const Row* action() const { return action_.data(); }
-  /// Of the contacts with the floor, the forces upwards, summed in the order of the spheres.
+  /// Upward forces of the contacts with the floor, summed in the order of the spheres.
   double floor_force() const;
-  /// Of every sphere 0 if nothing acts on it in this step; null unless nearly all pairs are idle.
+  /// Contains 0 for every sphere on which nothing acts in this step; null unless nearly all pairs
+  /// are idle.
   const std::uint8_t* acted_upon();
   std::size_t n_near() const { return near_.n; }
   std::size_t bytes() const;
@@ -138,24 +139,24 @@ class ContactLists {
   void measure_side_sizes(Near& sides) const;
 
   Boundary boundary_;
-  Faces faces_;  // of which a contact with a side names one
+  Faces faces_;  // faces, one of which a contact with a side names
   Container container_;
   int n_history_;
   std::shared_ptr<const Sizes> sizes_;  // null: equal spheres
   double skin_unit_ = 1;
   std::uint32_t n_spheres_ = 0;
-  std::vector<double> radii_;           // of the spheres at each place; empty of equal spheres
-  std::vector<std::uint32_t> numbers_;  // of the spheres at each place
+  std::vector<double> radii_;  // radii of the spheres at each place; empty for equal spheres
+  std::vector<std::uint32_t> numbers_;  // numbers of the spheres at each place
   std::vector<FarPair> far_;
   std::vector<std::uint32_t> far_begin_;  // [n_spheres + 1], of far_slots_
-  std::vector<FarSlot> far_slots_;        // of a sphere, in the order of their numbers
+  std::vector<FarSlot> far_slots_;        // far slots of a sphere, in the order of their numbers
   std::vector<std::uint32_t> near_of_;    // [far pairs], or none
   Near near_, floor_, sides_;
   std::vector<KeptPair> waiting_pairs_;  // to be found among the next far pairs
   std::vector<KeptSide> waiting_sides_;
   std::vector<std::uint32_t> begin_, slots_;
   std::vector<Row> action_;
-  std::vector<std::uint8_t> idle_;  // of each action, as ContactArrays has it
+  std::vector<std::uint8_t> idle_;  // idle flag of each action, in the form of ContactArrays
   std::size_t first_idle_ = 0;      // near pairs from here on neither touch nor did a step ago
   std::vector<std::uint8_t> acted_upon_;  // [n_spheres + 2]
   double deepest_ = 0;

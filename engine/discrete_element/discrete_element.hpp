@@ -18,7 +18,7 @@
 namespace jostle::inline engine {
 
 inline constexpr Range stiffness_range = between(1, 1e12);          // N/m
-inline constexpr Range tangential_ratio_range = between(1e-3, 10);  // of stiffness_range
+inline constexpr Range tangential_ratio_range = between(1e-3, 10);  // ratio to the stiffness
 inline constexpr Range rest_seconds_range = above(0, 1e5);          // s
 inline constexpr Range contact_steps_range = between(40, 1e6);      // time steps of a contact
 
@@ -55,8 +55,8 @@ struct LinearSpringDashpot {
   double stiffness = 1e5;             // N/m
   double restitution = 0.9;           // in [0.05, 1]
   double friction = 0.1;              // mu; 0: no tangential forces, no spin
-  double tangential_ratio = 2.0 / 7;  // of the stiffness_range
-  double tangential_damping = 0.5;    // of the dashpots' coefficients
+  double tangential_ratio = 2.0 / 7;  // ratio to the normal stiffness
+  double tangential_damping = 0.5;    // ratio of the dashpots' coefficients
   bool operator==(const LinearSpringDashpot&) const = default;
 
   static constexpr About about{"linear_spring_dashpot",
@@ -110,10 +110,11 @@ struct DiscreteElement {
   double density = 1200;   // kg/m^3
   double gravity = 9.81;   // m/s^2
   ContactLaw spheres;
-  std::optional<ContactLaw> floor, sides;     // with the floor and the sides; absent: as `spheres`
-  std::optional<double> steps_per_contact{};  // of the shortest; absent: steps_of_contact()
+  std::optional<ContactLaw> floor, sides;  // with the floor and the sides; absent: as `spheres`
+  std::optional<double>
+      steps_per_contact{};  // steps of the shortest contact; absent: steps_of_contact()
   Rest rest;
-  double most_seconds = 5;  // of one tap or start: then it is capped
+  double most_seconds = 5;  // limit of one tap or start: then it is capped
   bool operator==(const DiscreteElement&) const = default;
 
   static constexpr auto fields() {
@@ -142,8 +143,8 @@ struct DiscreteElement {
   }
 };
 
-/// Time steps of the shortest contact, at least: 40 where the scene does not say, 160 of springs
-/// with dashpots, whose force begins and ends with a jump.
+/// Time steps of the shortest contact, at least: 40 by default, 160 for springs with dashpots,
+/// whose force begins and ends with a jump.
 double steps_of_contact(const DiscreteElement& settings);
 
 /// Why beds of the container cannot be moved so; nothing if they can.
@@ -154,7 +155,7 @@ std::optional<std::string> engine_fault(const DiscreteElement& settings,
 /// of diameter 1 and density 1.
 struct LightestMasses {
   double sphere = 1;  // the lightest of all: with floor and sides
-  double pair = 0.5;  // of the two lightest together: m1 m2 / (m1 + m2)
+  double pair = 0.5;  // reduced mass of the two lightest: m1 m2 / (m1 + m2)
 };
 LightestMasses lightest_masses(std::span<const double> masses);
 LightestMasses lightest_masses(const Packing& bed);
@@ -162,10 +163,10 @@ LightestMasses lightest_masses(const Packing& bed);
 /// spheres where there are none.
 LightestMasses lightest_masses(const std::vector<MixtureKind>& kinds);
 
-/// What the settings come to.
+/// Numbers derived from the settings.
 struct ContactTimes {
-  double mass = 0;             // of a sphere of diameter 1 and density 1, kg
-  double contact_seconds = 0;  // that the two lightest spheres touch in a collision
+  double mass = 0;             // mass of a sphere of diameter 1 and density 1, kg
+  double contact_seconds = 0;  // duration of a collision of the two lightest spheres
   double step_seconds = 0;
 };
 ContactTimes contact_times(const DiscreteElement& settings, const LightestMasses& lightest = {});
@@ -173,7 +174,7 @@ ContactTimes contact_times(const DiscreteElement& settings, const LightestMasses
 /// A floor that moves needs so many time steps in half a period, at least.
 inline constexpr double least_steps_per_half_period = 20;
 
-/// What is recorded of every tap, and of the start.
+/// Columns of every tap, and of the start.
 std::vector<Column> columns(const DiscreteElement& settings);
 
 /// One realization's mechanics. A unit is one sphere moved through one time step.

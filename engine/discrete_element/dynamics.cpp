@@ -14,7 +14,7 @@ namespace {
 
 /// How the floor moves in a tap; not at all in one that displaces the spheres.
 struct MotionOf {
-  double seconds;  // of the unit of time
+  double seconds;  // seconds of the unit of time
 
   FloorMotion operator()(const HalfSine& tap) const {
     return {floor_amplitude(tap, gravity()), tap.frequency * seconds, 1};
@@ -173,7 +173,7 @@ class GrainDynamics final : public Dynamics {
         "its weight on these springs, or lower the stiffness");
   }
 
-  // Whether the bed is at rest is looked at every fiftieth of the unit of time.
+  // Rest is tested every fiftieth of the unit of time.
   std::uint64_t check_interval() const {
     return static_cast<std::uint64_t>(std::ceil(0.02 / units_.time_step));
   }
@@ -208,11 +208,11 @@ class GrainDynamics final : public Dynamics {
     if (state_.status != DynamicsStatus::running) require_closed_ledger();
   }
 
-  /// Of the tap so far, in units of m g d.
+  /// Energies of the tap so far, in units of m g d.
   struct Ledger {
     double floor_work, latched, friction;
-    double came;     // what came in and was held before
-    double missing;  // of that, neither held now nor dissipated
+    double came;     // energy received, and held before
+    double missing;  // part of it that is neither held now nor dissipated
 
     double dissipated() const { return std::abs(latched) + std::abs(friction); }
   };
@@ -229,7 +229,7 @@ class GrainDynamics final : public Dynamics {
   // A step that is too long makes or loses energy: no such tap is recorded. Collisions are right to
   // a share of what moves in them, which beds that bounce on hardly dissipate.
   void require_closed_ledger() const {
-    constexpr double widest = 0.1, least = 1e-2;  // of what moved; m g d a sphere
+    constexpr double widest = 0.1, least = 1e-2;  // largest of the energies; m g d per sphere
     const Energies now = loop_->energies();
     const Ledger tap = ledger(now);
     const double missing = std::abs(tap.missing);
@@ -259,7 +259,7 @@ class GrainDynamics final : public Dynamics {
 
   DiscreteElement settings_;
   ReducedSettings units_;
-  Packing packing_;  // as loaded
+  Packing packing_;  // state after loading
   GrainDynamicsState state_;
   mutable std::optional<GrainLoop> loop_;  // a census may renew its lists
   Effort effort_;

@@ -15,7 +15,7 @@ double squared(double x) {
   return x * x;
 }
 
-// Of Walton & Braun's spring: how far it is stretched beyond what stays, on the line of K2.
+// For Walton & Braun's spring: its stretch beyond the permanent overlap, on the line of K2.
 double stretch(const LawConstants& constants, double overlap, const ContactHistory& history) {
   return std::max(0.0, overlap - constants.latched * std::max(history[0], overlap));
 }
@@ -52,8 +52,8 @@ void add_shear(HeldByContact& out, const LawConstants& constants, const Approach
   out.friction += 0.5 / constants.tangential * (squared(force) - squared(given_back));
 }
 
-// What a contact stores, has latched and has rubbed away beyond what its steps have counted; one
-// that a displacement has opened until it is erased.
+// Energy that a contact stores, has latched and has dissipated by friction beyond the counts of its
+// steps; a contact opened by a displacement counts until it is erased.
 HeldByContact held(GrainLaw law, const LawConstants& constants, const Approach& at,
                    const ContactHistory& history) {
   HeldByContact out;
@@ -105,7 +105,7 @@ LawConstants GrainLoop::constants_of(const KeptSide& side) const {
   return constants;
 }
 
-// What contacts hold and have dissipated, by their histories and what was counted in steps.
+// Energies that contacts hold and have dissipated, by their histories and the counts of steps.
 Energies GrainLoop::contact_energies() const {
   Energies sum;
   for (const std::uint32_t at : place_of_) {
@@ -124,8 +124,8 @@ Energies GrainLoop::contact_energies() const {
   return sum;
 }
 
-// What is found with the forces is of the time of the positions. Linear springs' histories and
-// dashpots are of half a step later: their mean with those of half a step before is.
+// Values found with the forces refer to the time of the positions. Linear springs' histories and
+// dashpots refer to half a step later: their mean with those of half a step before is.
 Energies GrainLoop::energies() const {
   GrainLoop next = *this;  // forces take up histories: this loop keeps its own
   if (!next.near_lists_hold()) next.renew_lists();

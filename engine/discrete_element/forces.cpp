@@ -49,7 +49,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
     if (has_force(contact)) out.push_back(contact);
   }
   const auto add_walls = [&](const ContactArrays& with, auto&& number_of) {
-    // What fills the last block is of no sphere.
+    // The padding of the last block belongs to no sphere.
     for (std::size_t at = 0; at < with.n && with.first[at] < n; ++at) {
       Contact contact{.first = numbers_[with.first[at]],
                       .second = n + number_of(at),

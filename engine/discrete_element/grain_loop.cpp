@@ -14,7 +14,8 @@ namespace jostle::inline engine {
 
 namespace {
 
-constexpr double deepest_possible = 0.2;  // of spheres that press on each other
+constexpr double deepest_possible =
+    0.2;  // largest possible overlap of spheres that press on each other
 
 GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
   struct Entry {
@@ -107,7 +108,7 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
       put(rows_[at], spin_z_[at], grain.centre, grain.velocity, grain.spin);
     }
   }
-  rows_[n].of[2] = -1e3;  // what fills blocks touches nothing
+  rows_[n].of[2] = -1e3;  // the padding of blocks touches nothing
   rows_[n + 1].of[2] = -2e3;
   if (sizes_) place_sizes();
   have_lists_ = false;
@@ -240,7 +241,8 @@ double GrainLoop::farthest_since(const std::vector<Vec3>& reference, const Vec3&
   return std::sqrt(farthest);
 }
 
-// The paths bound how far spheres have come; where the bound is reached, the distance itself tells.
+// The paths bound how far spheres have come; where the bound is reached, the distance itself
+// decides.
 bool GrainLoop::near_lists_hold() {
   const double skin = ContactLists::near_skin * lists_.skin_unit();
   if (!have_lists_ || !(side_path_ < ContactLists::side_skin * lists_.skin_unit())) return false;

@@ -16,11 +16,11 @@ namespace jostle::inline engine {
 
 inline constexpr double sphere_inertia = 0.1;  // moment of, of a sphere of diameter and mass 1
 
-/// A bed's energies, in m g d of the whole bed. What came in less what was dissipated is what the
-/// bed holds: the ledger closes as far as the integration is right.
+/// A bed's energies, in m g d of the whole bed. The received energy less the dissipated energy is
+/// the energy of the bed: the ledger closes within the accuracy of the integration.
 struct Energies {
-  double kinetic = 0;     // of centres and spins
-  double potential = 0;   // of gravity, from z = 0
+  double kinetic = 0;     // energy of centres and spins
+  double potential = 0;   // energy of gravity, from z = 0
   double elastic = 0;     // stored in contacts
   double latched = 0;     // lost in Walton & Braun's springs, or in normal dashpots
   double friction = 0;    // lost by sliding, or in tangential dashpots
@@ -33,8 +33,8 @@ struct Energies {
 /// Contacts as they are.
 struct ContactCensus {
   double contacts = 0;      // a sphere, with force; those with floor and sides count once
-  double sliding = 0;       // of those between spheres with friction, the share at mu N
-  double mean_overlap = 0;  // of those between spheres, diameters of the smaller
+  double sliding = 0;       // share at mu N of contacts between spheres with friction
+  double mean_overlap = 0;  // mean overlap of contacts between spheres, diameters of the smaller
 };
 
 /// How deep two bodies lie in each other, and how fast they part along their normal.
@@ -42,11 +42,11 @@ struct Approach {
   double overlap = 0, speed = 0;
 };
 
-/// A sphere as it goes on from step to step.
+/// State of a sphere that passes from step to step.
 struct GrainState {
   Vec3 centre;                       // not brought into the box
   Vec3 velocity, spin;               // half a step before; spins of sizes are radius x spin
-  Vec3 seen_velocity, seen_spin;     // as the contact law sees them
+  Vec3 seen_velocity, seen_spin;     // input of the contact law
   double friction = 0, latched = 0;  // dissipated since the loop was loaded
 };
 
@@ -76,10 +76,10 @@ class GrainLoop {
   double time() const { return time_; }
   void run(std::uint64_t steps);
 
-  /// Of the time of the positions.
+  /// Value at the time of the positions.
   Energies energies() const;
   ContactCensus census();
-  /// Of velocities half a step before the positions, summed in the order of load().
+  /// Value of velocities half a step before the positions, summed in the order of load().
   double kinetic_energy() const;
   /// Contacts with the forces of the step that would follow, and velocities and spins at the time
   /// of the positions: those half a step before, with half a step of what acts. Spins of laws with
@@ -88,10 +88,10 @@ class GrainLoop {
   /// In diameters of the smaller of the two spheres.
   double greatest_overlap() const { return lists_.deepest(); }
   void forget_greatest_overlap() { lists_.set_deepest(0); }
-  /// Whether all spheres are where spheres can be.
+  /// True if all spheres are at possible places.
   bool is_sound() const;
   std::size_t n_spheres() const { return numbers_.size(); }
-  /// Of all spheres, in masses of a sphere of diameter 1 and density 1.
+  /// Mass of all spheres, in masses of a sphere of diameter 1 and density 1.
   double mass() const;
   std::uint64_t pair_tests() const { return pair_tests_; }
   std::size_t bytes() const;
@@ -124,7 +124,7 @@ class GrainLoop {
     return sizes_ ? sizes_->radius(sphere) : sphere_radius;
   }
   double mass_of(std::uint32_t sphere) const { return sizes_ ? sizes_->mass(sphere) : 1; }
-  /// Of the square of what grains() has as spin.
+  /// Square of the spin in grains().
   double inertia_of(std::uint32_t sphere) const {
     return sizes_ ? 4 * sphere_inertia * sizes_->mass(sphere) : sphere_inertia;
   }
@@ -141,8 +141,8 @@ class GrainLoop {
   GrainKernels kernels_;
   ContactLists lists_;
 
-  std::vector<std::uint32_t> numbers_;   // of the sphere at each place
-  std::vector<std::uint32_t> place_of_;  // of each sphere
+  std::vector<std::uint32_t> numbers_;   // numbers of the sphere at each place
+  std::vector<std::uint32_t> place_of_;  // place of each sphere
   std::vector<Row> rows_, half_rows_;    // [n_spheres + 2]
   std::vector<double> spin_z_, half_spin_z_, dissipated_;
   std::vector<double> mass_at_, per_mass_at_;  // [n_spheres] by place; empty of equal spheres

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Of a contact whose two bodies have this mass together: 1/2 of two spheres, 1 of one and a side.
+// For a contact whose two bodies have this mass together: 1/2 of two spheres, 1 of one and a side.
 // `unit` is the stiffness m g / d.
 struct MakeConstants {
   double unit, mass;

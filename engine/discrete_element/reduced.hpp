@@ -13,9 +13,9 @@ struct ReducedSettings {
   LawConstants spheres, floor, sides;
   double gravity = 1;
   double time_step = 0;
-  double seconds = 1;  // of the unit of time
+  double seconds = 1;  // seconds of the unit of time
   double contact_time =
-      0;  // of the two lightest spheres: (pi / 2) sqrt(m / 2 K1) (1 + e) of Walton
+      0;  // contact of the two lightest spheres: (pi / 2) sqrt(m / 2 K1) (1 + e) of Walton
           // & Braun; of the linear spring half a period of the damped oscillation
 };
 

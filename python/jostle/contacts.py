@@ -1,4 +1,4 @@
-"""What presses on what in a packing of grains."""
+"""Contacts and forces in a packing of grains."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Contacts:
         of_two = self.second < self.n_spheres
         radii = np.append(0.5 * self.diameters, 0.0)
         first, second = radii[self.first], radii[np.minimum(self.second, self.n_spheres)]
-        share = 1 - self.overlap / (first + second)  # of each radius
+        share = 1 - self.overlap / (first + second)  # share of each radius
         each = (share[:, None] * self.normal)[:, :, None] * self.forces()[:, None, :]
         moments = np.zeros((self.n_spheres, 3, 3))
         np.add.at(moments, self.first, first[:, None, None] * each)
@@ -54,7 +54,7 @@ class Contacts:
 def contacts_of(group: h5py.Group, diameters: np.ndarray, tap: int) -> Contacts:
     """Those of a realization's group /particles/..., after a tap that it keeps."""
     n_spheres = len(diameters)
-    if "contacts" not in group:  # of no snapshot is there any
+    if "contacts" not in group:  # no snapshot has any
         return Contacts(n_spheres, (), *(np.zeros(0, np.int64) for _ in range(2)), np.zeros(0),
                         np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), diameters)
     kept = group["contacts"]

@@ -28,7 +28,7 @@ PERIODIC_DIRECTIONS = {"periodic": "xy", "walls": "", "cylinder": "", "fully_per
 
 @dataclasses.dataclass(frozen=True)
 class Box:
-    """What holds the spheres. boundary: "periodic" or "none" along x, y, z; edges: [3], diameters. An open
+    """The container of the spheres. boundary: "periodic" or "none" along x, y, z; edges: [3], diameters. An open
     top ends at the highest point of any kept frame, and is infinite where there is none."""
 
     boundary: tuple[str, str, str]
@@ -93,12 +93,12 @@ class Point:
 
     @property
     def begun(self) -> bool:
-        """Whether any of its realizations has a tap stored."""
+        """True if any of its realizations has a stored tap."""
         return f"observables/{self._name}" in self._file
 
     @property
     def has_taps(self) -> bool:
-        """Whether any of its realizations has taps and did not fail: else means have no numbers."""
+        """True if any of its realizations has taps and did not fail: otherwise means have no numbers."""
         return any(status in ("unfinished", "done") for status in self.status)
 
     def _group(self, folder: str) -> h5py.Group:
@@ -143,7 +143,7 @@ class Point:
         return first + [name for name in there if name not in first]
 
     def units(self, name: str) -> str:
-        """Of a column: "diameter", "1", ..."""
+        """Units of a column: "diameter", "1", ..."""
         if name not in self.observables:
             raise NotThere(f"sweep point {self.index} has no {name!r}; it has {', '.join(self.observables)}")
         return attribute(self._group("observables")[name], "units")
@@ -228,7 +228,7 @@ class Point:
 
     @property
     def motion(self) -> Columns:
-        """What was found of the motion of spheres, and its axes, by name: overlap, [waiting_time, lag,
+        """The motion of spheres, and its axes, by name: overlap, [waiting_time, lag,
         overlap_length, realization]; the others are in docs/reference/file-format.md. Empty where it was not followed."""
         group = self._file.get(f"motion/{self._name}", {})
         return Columns([name for name in group if name not in ("realization", "direction")],
@@ -238,7 +238,7 @@ class Point:
 
     @property
     def snapshots(self) -> Columns:
-        """What is kept of packings besides positions: tap: [tap]; coordination: [tap, realization];
+        """Kept data of packings besides positions: tap: [tap]; coordination: [tap, realization];
         height_histogram: [tap, realization, height], fraction of all centres in a bin; height: [height],
         the middle of a bin, diameters; of discrete elements also the granular temperature and the forces
         of the bed (docs/reference/file-format.md)."""
@@ -315,7 +315,7 @@ class Point:
         return np.full(self.n_spheres, np.nan) if drawn is None else drawn[realization]
 
     def contacts(self, realization: int = 0, tap: int | None = None) -> Contacts:
-        """Of grains whose snapshots keep contacts: those with force, after a tap (None: the last that is
+        """Contacts of grains whose snapshots keep them: those with force, after a tap (None: the last that is
         kept)."""
         if "contacts" not in self.scene["snapshots"]["keep"] or \
                 "discrete_element" not in self.scene["engine"]:

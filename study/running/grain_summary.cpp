@@ -53,7 +53,7 @@ double deepest_of(const Sizes& sizes) {
 std::vector<std::string> grain_summary(const Plan& plan) {
   const auto* engine = std::get_if<DiscreteElement>(&plan.engine);
   if (engine == nullptr) return {};
-  // Of the first realization, where every one draws its own.
+  // The first realization, where each draws its own.
   const std::shared_ptr<const Sizes> sizes = sizes_of(plan, 0);
   const ContactTimes times =
       contact_times(*engine, sizes ? lightest_masses(sizes->masses()) : LightestMasses{});

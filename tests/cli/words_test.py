@@ -23,15 +23,12 @@ ROOMS = ("bench", "cli", "cmake", "config", "docs", "engine", "ensemble", "examp
 # Folders and files that a rule has not reached yet. Entries are removed, never added. "start" and "private" hold
 # for comments and documents, "message" is both of them for texts in sources of C++.
 NOT_YET = {
-    "start": ("bench/grains.cpp", "bench/grains_against_lammps.py", "bench/pours_against_lammps.py",
-              "config/consistency.cpp", "config/join_sweeps.cpp", "config/resume.cpp", "config/scene.hpp",
-              "config/sweep.cpp", "docs/validation", "engine/discrete_element", "engine/engines.hpp",
-              "ensemble/analysis/sweeps", "python/jostle", "report/src", "structure/forces.cpp", "structure/forces.hpp",
-              "study/drawing", "study/tables", "tests/cli", "tests/elsewhere", "tests/physics", "tests/python"),
-    "private": ("bench/grains.cpp", "config/consistency.cpp", "config/scene.hpp", "config/sweep.cpp", "docs/validation",
-                "docs/validation.md", "engine/discrete_element", "ensemble/analysis/sweeps", "python/jostle",
-                "report/src", "structure/forces.hpp", "study/drawing", "study/tables", "tests/cli", "tests/packages",
-                "tests/physics", "tests/python", "tests/report", "tests/results"),
+    "start": ("config/join_sweeps.cpp", "config/resume.cpp", "config/scene.hpp", "config/sweep.cpp", "docs/validation",
+              "ensemble/analysis/sweeps", "python/jostle/plot", "report/src", "study/drawing", "study/tables",
+              "tests/cli", "tests/elsewhere", "tests/physics", "tests/python"),
+    "private": ("config/scene.hpp", "config/sweep.cpp", "docs/validation", "docs/validation.md",
+                "ensemble/analysis/sweeps", "python/jostle", "report/src", "study/drawing", "study/tables", "tests/cli",
+                "tests/packages", "tests/physics", "tests/python", "tests/report", "tests/results"),
     "message": ("bench", "cli", "config", "engine", "ensemble", "fitting", "report", "results", "structure", "study",
                 "tests"),
     "per": ("docs/validation",),

@@ -18,10 +18,11 @@ inline constexpr std::int64_t inverse_cube_root_bits = 0x553ef0ff;
 // A tangential force shorter than this, whose square has no inverse, counts as none.
 inline constexpr double least_force = 1e-140;
 
-// Of the square of a slip, what may lie across the force while the path counts as straight.
+// Largest component across the force, relative to the square of a slip, of a path that counts as
+// straight.
 inline constexpr double one_dimensional = 1e-9;
 
-// What Wide has, too, for one number.
+// The functions of Wide for one number.
 JOSTLE_INLINE double select(bool mask, double yes, double no) {
   return mask ? yes : no;
 }
@@ -100,7 +101,7 @@ struct Meeting {
   Vector3<N> normal;    // from the other body to sphere i
   N overlap;            // positive where they touch
   Vector3<N> arm;       // from the contact to the centre of sphere i
-  Vector3<N> velocity;  // of sphere i relative to the other body, of the centres
+  Vector3<N> velocity;  // velocity of sphere i relative to the other body, of the centres
   Vector3<N> spin;      // sum of the spins
 
   /// The angle by which the bodies turn about their normal in a step, in the mean.
@@ -109,8 +110,9 @@ struct Meeting {
   JOSTLE_INLINE double damping_of(double constant) const { return constant; }
 };
 
-/// The same of spheres of several sizes. Spins are radius x angular velocity, so that surfaces
-/// slide with (u_i + u_j) x arm whatever the radii; the arm is that of a sphere over its radius.
+/// Like the laws of equal spheres, for several sizes. Spins are radius x angular velocity, so that
+/// surfaces slide with (u_i + u_j) x arm for any radii; the arm is that of a sphere over its
+/// radius.
 template <class N>
 struct SizedMeeting : Meeting<N> {
   N per_diameter;  // 1 / (sum of the radii), or 1 / (diameter) at a side
@@ -123,7 +125,7 @@ struct SizedMeeting : Meeting<N> {
   JOSTLE_INLINE N damping_of(double constant) const { return constant * mass_root; }
 };
 
-/// What acts on sphere i, and what the contact dissipated in the step: on the other body acts the
+/// Force and torque on sphere i, and the energy dissipated in the step: on the other body acts the
 /// opposite force and, where it is a sphere, the same torque.
 template <class N>
 struct ContactAction {
@@ -150,7 +152,7 @@ template <class N, class At>
 JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2, const At& at,
                                      double time_step) {
   const N twist = at.twist(time_step);
-  const N out = dot(old, at.normal);  // of the plane
+  const N out = dot(old, at.normal);  // component out of the plane
   const N twist2 = twist * twist, tilt2 = out * out * inverse2;
   return {old + scaled(twist, cross(at.normal, old)) - scaled(out, at.normal),
           lesser(twist2 - tilt2 * (1.0 + twist2), N(1.0))};
@@ -204,7 +206,7 @@ struct WaltonBraunLaw {
     }
   }
 
-  /// Whether they touch or have touched: if not, there is neither action nor history.
+  /// True if they touch or have touched: if not, there is neither action nor history.
   JOSTLE_INLINE bool is_at_work(const Meeting<N>& at) const {
     const N zero{};
     return any_of(at.overlap > zero) || any_of(greatest > zero);
@@ -219,7 +221,7 @@ struct WaltonBraunLaw {
     const N unloading = law.unloading * (at.overlap - law.latched * greatest);
     N normal_force = lesser(law.stiffness * at.overlap, greater(unloading, zero));
     normal_force = select(touching, normal_force, zero);
-    // What the spring latched is lost when the contact opens, which erases its history.
+    // Latched energy is lost when the contact opens, which erases its history.
     ContactAction<N> act;
     act.dissipated_normally =
         select(touching, zero, (0.5 * law.stiffness * law.latched) * before * before);
@@ -359,7 +361,7 @@ struct LinearLaw {
     const N stretch = zero + law.tangential * law.time_step;
     const N inverse2 = 1.0 / select(spring2 > zero + least_force * least_force, spring2, one);
     const auto [plane, change] = projected(spring, inverse2, at, law.time_step);
-    const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // as long as it was
+    const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // with its old length
     const Vector3<N> trial = start + scaled(stretch, velocity);
     // Half the last displacement comes after this step's positions.
     const N ahead =

@@ -10,7 +10,7 @@ namespace jostle::inline engine::JOSTLE_KERNELS {
 
 namespace {
 
-using Half = double __attribute__((vector_size(32)));  // of a row
+using Half = double __attribute__((vector_size(32)));  // half of a row
 using HalfBits = std::int64_t __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Half& half_at(double* from) {
@@ -50,8 +50,8 @@ template <class Law>
   }
 }
 
-// What a block of contacts has of its spheres: of pairs the differences of their rows, with the
-// spins added; of sides the rows themselves.
+// Data of the spheres in a block of contacts: for pairs the differences of their rows, with the
+// spins added; for sides the rows themselves.
 struct Columns {
   Wide of[8], spin_z;
 };
@@ -67,7 +67,7 @@ template <bool spin>
       const double* a = spheres.rows[contacts.first[at + lane]].of;
       const double* b = spheres.rows[contacts.second[at + lane]].of;
       for (std::uint32_t k = 0; k < per_row; ++k) {
-        LaneBits minus{};  // of what is added: spins
+        LaneBits minus{};  // sign of the added rows: spins
         for (std::uint32_t l = 0; l < n_lanes; ++l)
           if (spin && (k * n_lanes + l) % 4 == 3) minus[l] = std::int64_t{1} << 63;
         m[lane * per_row + k] =
@@ -101,7 +101,7 @@ template <bool spin>
   return out;
 }
 
-// Whether there was anything to do.
+// Returns true if there was work.
 template <class Law, class At>
 [[gnu::always_inline]] inline bool act(const At& meeting, const ContactArrays& contacts,
                                        std::size_t at, const LawConstants& constants,
@@ -118,7 +118,7 @@ template <class Law, class At>
   return true;
 }
 
-// Whether any of a block's spheres may have come to touch: in half the time of their meeting.
+// Returns true if any of a block's spheres may touch: in half the time of their meeting.
 template <bool several>
 [[gnu::always_inline]] inline bool may_touch(const SphereArrays& spheres,
                                              const ContactArrays& contacts, std::size_t at) {
@@ -170,7 +170,7 @@ template <bool several>
 template <bool several>
 using MeetingOf = std::conditional_t<several, SizedMeeting<Wide>, Meeting<Wide>>;
 
-// What a block's contacts have of the sizes of their spheres.
+// Data of the sizes of the spheres in a block of contacts.
 template <class Law>
 [[gnu::always_inline]] inline void read_sizes(SizedMeeting<Wide>& meeting,
                                               const ContactArrays& contacts, std::size_t at) {

@@ -8,14 +8,14 @@
 #include "engine/discrete_element/kernel/law_constants.hpp"
 #include "engine/large_pages.hpp"
 
-// What the kernels read and write, as plain arrays. Units as in contact_law.hpp.
+// Input and output of the kernels, as plain arrays. Units as in contact_law.hpp.
 namespace jostle::inline engine {
 
-/// One cache line, in two halves, so that what changes what has the same place in its half. Of a
-/// sphere: x, y, z, spin x; velocity, spin y. Of a contact: force on its first sphere, torque y on
-/// each; what it dissipated by friction and normally, halved where two spheres share it, torque z,
-/// torque x. Of spheres of several sizes spins are radius x angular velocity, and torques are
-/// divided by the radius, which makes them the same for both spheres.
+/// One cache line, in two halves, so that what changes what has the same place in its half. A row
+/// of a sphere: x, y, z, spin x; velocity, spin y. A row of a contact: force on its first sphere,
+/// torque y on each; energy dissipated by friction and normally, halved where two spheres share it,
+/// torque z, torque x. For spheres of several sizes spins are radius x angular velocity, and
+/// torques are divided by the radius, which makes them equal for both spheres.
 struct alignas(64) Row {
   double of[8] = {};
 };
@@ -24,10 +24,10 @@ struct alignas(64) Row {
 template <class T>
 using CacheLines = std::vector<T, LargePageAllocator<T>>;
 
-/// Whether kernels take the radii and masses of the spheres, or 1/2 and 1.
+/// True if kernels take the radii and masses of the spheres, or 1/2 and 1.
 enum class GrainSizes { equal, several };
 
-/// What contacts of spheres of several sizes are like, each in an array of its own.
+/// Data of contacts of spheres of several sizes, each in an array of its own.
 enum ContactSize : std::size_t {
   touching_distance,    // the sum of the radii; at a side the radius
   per_diameter,         // 1 / (sum of the radii); at a side 1 / diameter
@@ -47,15 +47,15 @@ inline constexpr std::size_t smallest_block = 4, block_size = 16;
 struct ContactArrays {
   std::size_t n = 0;
   const std::uint32_t* first = nullptr;
-  const std::uint32_t* second = nullptr;              // of pairs
-  std::array<const double*, 2> shift{};               // of pairs: periods in x and y
-  std::array<const double*, 4> side{};                // of sides: normal, distance
-  std::array<const double*, n_contact_sizes> size{};  // of several sizes, by ContactSize
+  const std::uint32_t* second = nullptr;              // second sphere of pairs
+  std::array<const double*, 2> shift{};               // shift of pairs: periods in x and y
+  std::array<const double*, 4> side{};                // plane of sides: normal, distance
+  std::array<const double*, n_contact_sizes> size{};  // data of several sizes, by ContactSize
   std::array<double*, most_history> history{};
   Row* action = nullptr;
-  // Of pairs: in every fourth 1 if the kernel's block has neither history nor action.
+  // Flags of pairs: in every fourth 1 if the kernel's block has neither history nor action.
   std::uint8_t* idle = nullptr;
-  double side_velocity = 0;   // of the floor, upwards
+  double side_velocity = 0;   // velocity of the floor, upwards
   double* deepest = nullptr;  // the greatest overlap, raised; in diameters of the smaller sphere
 };
 
@@ -64,18 +64,19 @@ struct SphereArrays {
   std::size_t n = 0;
   Row* rows = nullptr;
   double* spin_z = nullptr;
-  Row* half_rows = nullptr;  // of laws that see full steps: velocity and spin half a step before
+  Row* half_rows =
+      nullptr;  // rows for laws that use full steps: velocity and spin half a step before
   double* half_spin_z = nullptr;
   double* dissipated = nullptr;          // [n][2] by friction, normally
   const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
   const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
   const Row* action = nullptr;
-  const double* mass = nullptr;              // of several sizes: [n]
-  const double* per_mass = nullptr;          // likewise: 1 / mass
+  const double* mass = nullptr;              // mass for several sizes: [n]
+  const double* per_mass = nullptr;          // 1 / mass for several sizes: [n]
   const std::uint8_t* acted_upon = nullptr;  // [n] 0 where all actions are 0; null: not known
 };
 
-/// What an advance by one step is given, and what it finds.
+/// Input and results of an advance by one step.
 struct Advance {
   double time_step = 0, gravity = 1;
   double drift[3] = {0, 0, 0};  // velocity from which `fastest` is counted

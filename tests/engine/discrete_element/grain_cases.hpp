@@ -61,7 +61,7 @@ inline std::shared_ptr<const Sizes> sizes_of(const std::vector<double>& diameter
   return std::make_shared<const Sizes>(diameters, kinds, of_kinds);
 }
 
-/// Of a bed under gravity, whose lightest spheres tell the step.
+/// A bed under gravity, whose lightest spheres decide the step.
 inline ReducedSettings settings_for(const ContactLaw& law, const Packing& bed, double finer = 1) {
   return settings(law, 1, finer, lightest_masses(bed));
 }

@@ -27,7 +27,7 @@ const std::vector<Pair> pairs = {
 const Vec3 along = {2.0 / 3, 1.0 / 3, 2.0 / 3};
 const Vec3 across = {1 / std::numbers::sqrt2, 0, -1 / std::numbers::sqrt2};
 
-/// What two bodies are: spheres, or one sphere and the floor, with what their closed forms need.
+/// Two bodies: spheres, or one sphere and the floor, with what their closed forms need.
 struct Bodies {
   Pair pair;
   bool on_floor = false;
@@ -40,7 +40,7 @@ struct Bodies {
   LightestMasses lightest() const { return {reduced_mass(), reduced_mass()}; }
 };
 
-/// Of the first sphere relative to the other body: velocity of the centres along their line and
+/// For the first sphere relative to the other body: velocity of the centres along their line and
 /// across it, of the surfaces across it; and its spin about the third direction.
 struct Relative {
   double normal, across, slip, spin;
