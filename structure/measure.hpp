@@ -54,7 +54,7 @@ struct SidesSettings {
     return std::tuple{field("bin_width", &SidesSettings::bin_width,
                             Number{bin_width_range, "diameters"}, "Width of a bin"),
                       field("reach", &SidesSettings::reach, Number{above(0, 1e6), "diameters"},
-                            "Of what is lateral, from a wall"),
+                            "Depth of the lateral region, from a wall"),
                       field("heights", &SidesSettings::heights, height_bounds,
                             "Low and high; absent: 2 to 0.8 of 2<Z>")};
   }
@@ -69,7 +69,7 @@ struct LayersSettings {
   static constexpr About about{"layers", "n(z) and the layers grown from the floor"};
   static constexpr auto fields() {
     return std::tuple{field("bin_width", &LayersSettings::bin_width,
-                            Number{bin_width_range, "diameters"}, "Of n(z)"),
+                            Number{bin_width_range, "diameters"}, "Width of bins of n(z)"),
                       inlined(&LayersSettings::rule)};
   }
 };
@@ -84,7 +84,7 @@ struct CoordinationSettings {
     return std::tuple{field("cut", &CoordinationSettings::cut, Number{between(1, 3), "diameters"},
                             "Distance of the centres of neighbours, at most"),
                       field("largest_cut", &CoordinationSettings::largest_cut,
-                            Number{between(1, 3), "diameters"}, "Of the curve from 1"),
+                            Number{between(1, 3), "diameters"}, "Range of the curve above 1"),
                       field("step", &CoordinationSettings::step,
                             Number{between(0.001, 1), "diameters"}, "Of the curve")};
   }
@@ -153,11 +153,11 @@ struct VoronoiSettings {
                                "Faces, volumes and free volumes of cells, local packing fractions"};
   static constexpr auto fields() {
     return std::tuple{field("least_area", &VoronoiSettings::least_area, Number{between(0, 0.1)},
-                            "Of a face that counts, in surfaces of its cell"),
+                            "Least area of a counted face, in surfaces of its cell"),
                       field("bin_width", &VoronoiSettings::bin_width, Number{between(0.001, 1)},
-                            "Of free volumes, in volumes of a sphere"),
+                            "Width of bins of free volumes, in volumes of a sphere"),
                       field("cut_cells", &VoronoiSettings::cut_cells, Flag{},
-                            "Whether cells that floor, sides or lid cut are counted too")};
+                            "Cells that are cut by floor, sides or lid are counted, too")};
   }
 };
 
@@ -190,7 +190,7 @@ struct PoresSettings {
         field("merge", &PoresSettings::merge, Number{between(0, 0.1), "diameters"},
               "Vertices so close are one pore"),
         field("tolerance", &PoresSettings::tolerance, Number{between(0, 0.1)},
-              "Of tetrahedral and octahedral sites, in xi"),
+              "Tolerance of tetrahedral and octahedral sites, in xi"),
         field("tail_from", &PoresSettings::tail_from, Number{between(0, 100)},
               "v at which the tail begins")};
   }

@@ -178,7 +178,8 @@ void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--window", a.window, "hann (default) or boxcar", [](Option option) {
     option.one_of({"hann", "boxcar"});
   });
-  kinds.add_option(kind, "--detrend", a.detrend, "Of segments: mean (default), linear or none",
+  kinds.add_option(kind, "--detrend", a.detrend,
+                   "Trend removed from segments: mean (default), linear or none",
                    [](Option option) {
                      option.one_of({"none", "mean", "linear"});
                    });
@@ -188,15 +189,15 @@ void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
 }
 
 void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
-  Command kind = kinds.add(
-      "ageing", "A(t, t_W), V and C, fits of eq. 6, what lays ages on one curve",
-      [&code](AnalyseArguments& arguments) {
-        const AgeingSettings settings{ascending("--waiting-times", arguments.waiting_times),
-                                      ascending("--lags", arguments.lags)};
-        Analyses analyses;
-        analyses.ageing = requests(arguments, settings);
-        code = run_analyses(arguments, analyses);
-      });
+  Command kind = kinds.add("ageing", "A(t, t_W), V and C, fits of eq. 6, collapse of ages",
+                           [&code](AnalyseArguments& arguments) {
+                             const AgeingSettings settings{
+                                 ascending("--waiting-times", arguments.waiting_times),
+                                 ascending("--lags", arguments.lags)};
+                             Analyses analyses;
+                             analyses.ageing = requests(arguments, settings);
+                             code = run_analyses(arguments, analyses);
+                           });
   kinds.add_option(kind, "--waiting-times", a.waiting_times,
                    "Taps t_W, separated by commas (default: 0 and two a decade)",
                    [](Option option) { option.separated_by(','); });
@@ -262,7 +263,7 @@ void add_sweep(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    "value: mean of the last taps (default); or what is kept of an analysis or a "
                    "fit: steady/sigma, kww/rho_inf");
   kinds.add_option(kind, "--against", a.against,
-                   "What is swept: its name, or JSON pointer into the scene (default: the first)");
+                   "Swept value: its name, or JSON pointer into the scene (default: the first)");
   kinds.add_option(kind, "--reference", a.reference,
                    "Point on the axis that all others are compared with (default: neighbours)");
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
@@ -283,20 +284,20 @@ void add_volumes(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
       });
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
   kinds.add_option(kind, "--against", a.against,
-                   "What is swept: its name, or JSON pointer into the scene (default: the first)");
+                   "Swept value: its name, or JSON pointer into the scene (default: the first)");
   kinds.add_option(kind, "--spheres", a.spheres,
-                   "Whose volume it is (default: those of the observable's window)");
+                   "Spheres of the volume (default: those of the observable's window)");
   add_example(kind, "jostle analyse bell.h5 volumes --observable mean_height --last 1000");
 }
 
 void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
-  Command kind = kinds.add(
-      "memory", "Whether what follows a common value depends on how it was reached",
-      [&code](AnalyseArguments& arguments) {
-        Analyses analyses;
-        analyses.memory = requests(arguments, MemorySettings{ascending("--lags", arguments.lags)});
-        code = run_analyses(arguments, analyses);
-      });
+  Command kind = kinds.add("memory", "Dependence of the future of a common value on its history",
+                           [&code](AnalyseArguments& arguments) {
+                             Analyses analyses;
+                             analyses.memory = requests(
+                                 arguments, MemorySettings{ascending("--lags", arguments.lags)});
+                             code = run_analyses(arguments, analyses);
+                           });
   kinds.add_option(kind, "--lags", a.lags,
                    "Last taps of windows after the switch, separated by commas (default: 1, 3, "
                    "10, 30, ...)",
@@ -317,7 +318,7 @@ void add_analyse(Command& app, int& code) {
       .check(file_or_kind_fault, "FILE")
       .offers_files({"h5"});
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: every point)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: every point)");
   add_table_output(command, a.output);
   command.add_threads(a.threads);
   command.require_command();

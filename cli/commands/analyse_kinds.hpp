@@ -49,7 +49,7 @@ class AnalysisKinds {
       }
       run(given);
     });
-    add_option(kind, "--observable", arguments_->observables, "Which columns of the results");
+    add_option(kind, "--observable", arguments_->observables, "Columns of the results");
     return kind;
   }
 

@@ -143,7 +143,7 @@ void check(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check(Command& app, int& code) {
-  Command command = app.add_command("check", "Say what a scene means and what it will cost");
+  Command command = app.add_command("check", "Report what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
   command.add_option("scene", arguments->scene, "The scene, a JSON file")
       .required()

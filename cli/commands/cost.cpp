@@ -166,13 +166,11 @@ void add_cost(Command& app, int& code) {
       "Example:\n"
       "  jostle cost scene.json --target 0.001 --observable bulk_fraction --budget 30m\n"
       "\n"
-      "A ladder of settings is run for a few taps, in pairs from the same packings. Of Monte "
-      "Carlo:\n"
-      "stop rules, test intervals, step lengths, theta_0, half the spheres, the other pour "
-      "between\n"
-      "walls. Of discrete elements: rest, time step, stiffness, half the spheres. jostle report\n"
-      "of the results draws accuracy against time; docs/explanation/accuracy.md says how to read "
-      "it.");
+      "A ladder of settings is run for a few taps, in pairs from the same packings.\n"
+      "Monte Carlo: stop rules, test intervals, step lengths, theta_0, half the\n"
+      "spheres, the other pour between walls. Discrete elements: rest, time step,\n"
+      "stiffness, half the spheres. jostle report draws accuracy against time from\n"
+      "the results; docs/explanation/accuracy.md describes it.");
   command.run([arguments, &code] { code = run_cost(*arguments); });
 }
 

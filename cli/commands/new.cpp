@@ -99,7 +99,7 @@ int write_new_scene(const NewArguments& arguments) {
   write_schema(path.parent_path() / schema_name, arguments.force);
   write_text(path.string(), text);
   print(fmt::format(
-      "{}: a copy of {}; {} says what it costs, {} writes {}.h5\n", path.string(), arguments.from,
+      "{}: a copy of {}; {} estimates its cost, {} writes {}.h5\n", path.string(), arguments.from,
       shell_words({command_line().front(), "check", operand(path.string())}),
       shell_words({command_line().front(), "run", operand(path.string())}), parsed.scene->name));
   return exit_ok;

@@ -121,7 +121,8 @@ void add_report(Command& app, int& code) {
       "\n"
       "The page needs nothing but a browser: no network, no other file. It shows what the files\n"
       "hold: curves, and the tables that fit, analyse, structure and cost have stored; make those\n"
-      "first. Kept packings can be turned and sliced. What it shows: docs/reference/report.md.");
+      "first. Kept packings can be turned and sliced. docs/reference/report.md lists the "
+      "sections.");
   command.run([arguments, &code] {
     if (!arguments->figures.sweep_point.empty() && arguments->figures.path.empty() &&
         arguments->catalogue.empty()) {

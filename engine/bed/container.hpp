@@ -99,7 +99,7 @@ struct Cylinder {
   static constexpr About about{.name = "cylinder", .text = "a tube", .title = "A cylinder"};
   static constexpr auto fields() {
     return std::tuple{field("diameter", &Cylinder::diameter, Number{walled_width_range},
-                            "Of a cylinder, in diameters of a sphere",
+                            "Diameter of a cylinder, in diameters of a sphere",
                             {.required = "a number, diameters of a sphere"})};
   }
 };

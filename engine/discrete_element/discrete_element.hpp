@@ -63,9 +63,9 @@ struct LinearSpringDashpot {
                                "Springs and dashpots (Cundall & Strack 1979)"};
   static constexpr auto fields() {
     return std::tuple_cat(
-        contact_fields<LinearSpringDashpot>("Of the stiffnesses; 2/7 where absent"),
+        contact_fields<LinearSpringDashpot>("Ratio of the stiffnesses; 2/7 where absent"),
         std::tuple{field("tangential_damping", &LinearSpringDashpot::tangential_damping,
-                         Number{between(0, 10)}, "Of the dashpots' coefficients")});
+                         Number{between(0, 10)}, "Ratio of the dashpots' coefficients")});
   }
 };
 

@@ -75,7 +75,7 @@ struct StepAdaptation {
                       field("of", &StepAdaptation::base, word(acceptance_bases),
                             "The trials of which the share is taken"),
                       field("reset_each_tap", &StepAdaptation::reset_each_tap, Flag{},
-                            "Whether the step starts anew at max_step at each tap")};
+                            "The step starts anew at max_step at each tap")};
   }
 };
 

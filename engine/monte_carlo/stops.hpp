@@ -76,7 +76,7 @@ struct BulkFractionStop {
               "Trials between two measurements"),
         field("times", &BulkFractionStop::times, Whole{1, 1000}),
         field("measure_start", &BulkFractionStop::measure_start, Flag{},
-              "Whether the state right after the tap counts as a measurement"),
+              "The state right after the tap counts as a measurement"),
         field("window", &BulkFractionStop::window, OneOf<Window>{}, "", {.title = "Window"})};
   }
 };

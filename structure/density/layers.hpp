@@ -29,11 +29,11 @@ struct LayerRule {
 
   static constexpr auto fields() {
     return std::tuple{field("tolerance", &LayerRule::tolerance, Number{above(0, 0.4), "diameters"},
-                            "Of a centre from its layer's height"),
+                            "Distance of a centre from its layer's height"),
                       field("least_share", &LayerRule::least_share, Number{between(0, 1)},
-                            "Of a layer's centres, within the tolerance"),
+                            "Share of a layer's centres within the tolerance"),
                       field("least_filling", &LayerRule::least_filling, Number{between(0, 1)},
-                            "Of a full layer")};
+                            "Filling of a full layer")};
   }
 };
 

@@ -24,7 +24,7 @@ struct StructureFactorSettings {
         field("k_max", &StructureFactorSettings::k_max, Number{between(0.5, 50), "1/diameter"},
               "Largest wave number"),
         field("bin_width", &StructureFactorSettings::bin_width,
-              Number{between(0.01, 10), "1/diameter"}, "Of wave numbers"),
+              Number{between(0.01, 10), "1/diameter"}, "Width of bins of wave numbers"),
         field("fit_to", &StructureFactorSettings::fit_to, Number{between(0.1, 50), "1/diameter"},
               "Up to which k straight lines are drawn to k = 0"),
         field("modes", &StructureFactorSettings::modes, Whole{1, 1'000'000},

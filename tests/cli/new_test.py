@@ -32,7 +32,7 @@ class New(Case):
 
         for word in ("./dev", "../jostle/dev", "jostle"):
             printed = call(word, "new", "mine", "--force")
-            self.assertIn(f"; {word} check mine.json says what it costs, {word} run mine.json writes", printed)
+            self.assertIn(f"; {word} check mine.json estimates its cost, {word} run mine.json writes", printed)
             call(word, "run", "mine.json", "--time-limit", "0s", "--force")
             self.assertIn(f"Finish it with {word} run SCENE --resume",
                           call(word, "fit", "mine.h5", "--observable", "bottom_fraction"))
