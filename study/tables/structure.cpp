@@ -12,6 +12,7 @@
 
 #include "config/json/json_text.hpp"
 #include "config/scene.hpp"
+#include "ensemble/analysis/structure_comparison.hpp"
 #include "ensemble/analysis/structure_tables.hpp"
 #include "ensemble/parallel.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -133,9 +134,8 @@ std::string region_note(std::string_view part, const StructureSettings& settings
 }
 
 /// The tables, each with what it was measured with.
-std::vector<Table> tables_of(const std::string& prefix, const KeptEnsemble& ensemble,
-                             const StructureSettings& settings, int threads) {
-  const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
+std::vector<Table> tables_of(const std::string& prefix, const EnsembleStructure& structure,
+                             const StructureSettings& settings) {
   const auto written = resolved(settings);
   std::vector<Table> tables = structure_tables(prefix, structure, settings);
   for (Table& table : tables) {
@@ -209,6 +209,14 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   return ensemble;
 }
 
+/// What differs between the points. A scene that cannot be read does not tell whether realizations
+/// are pairs: then there is no comparison.
+std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const ComparedPoint> numbers) {
+  const ParsedScene parsed = parse_scene(file.study().resolved_scene);
+  if (!parsed.scene) return {};
+  return comparison_tables(numbers, parsed.scene->streams);
+}
+
 /// True if two packings have the same centres, in whichever order.
 bool same_centres(const Packing& a, const Packing& b) {
   const auto sorted = [](std::vector<Vec3> centres) {
@@ -238,8 +246,10 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
   const auto is_empty = [](const KeptEnsemble& ensemble) { return ensemble.taps.empty(); };
   if (std::ranges::all_of(ensembles, is_empty)) refuse_without_packings(file.path());
   std::vector<Table> tables;
+  std::vector<ComparedPoint> numbers;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::uint32_t point = points[k];
+    const std::string& label = file.study().points[point].label;
     KeptEnsemble& ensemble = ensembles[k];
     const std::string prefix = point_name(point) + "/";
     std::vector<Table> of_point;
@@ -247,14 +257,16 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
       of_point = tables_without_packings(prefix, settings);
     } else {
       ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, taps);
-      of_point = tables_of(prefix, ensemble, settings, threads);
+      const EnsembleStructure structure = Measurer(ensemble, settings).measured(threads);
+      of_point = tables_of(prefix, structure, settings);
+      numbers.push_back(packing_numbers(label, point, structure));
     }
     for (Table& table : of_point) {
-      const std::string& label = file.study().points[point].label;
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
     }
   }
+  for (Table& table : comparisons_of(file, numbers)) tables.push_back(std::move(table));
   return tables;
 }
 
@@ -292,7 +304,7 @@ std::vector<Table> structure_of(std::span<const std::string> files,
     for (std::size_t k = 0; k < packings[r].size(); ++k) kept.push_back({k, packings[r][k]});
     return kept;
   };
-  return tables_of("", ensemble, settings, threads);
+  return tables_of("", Measurer(ensemble, settings).measured(threads), settings);
 }
 
 StructureSettings structure_asked_for(const ResultsFile& file) {

@@ -12,7 +12,8 @@
 namespace jostle::inline study {
 
 /// Structure of the kept packings at the given sweep points, averaged over realizations: tables
-/// point_PPPP/<part>, as results files keep them. `taps`: of those with packings; all if none is
+/// point_PPPP/<part>, as results files keep them, and of two points or more comparison/<part>
+/// (ensemble/analysis/structure_comparison.hpp). `taps`: of those with packings; all if none is
 /// named. A point without packings, as where its realizations failed, has tables with the note
 /// "refused" alone. The tables do not depend on the number of threads. Throws BadInput where no
 /// point has packings, or one has none of a tap that is named.

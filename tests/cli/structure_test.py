@@ -43,7 +43,7 @@ class Structure(Case):
         printed = self.run_scene().stdout
         self.assertIn("point_0001/pores", printed)
         with h5py.File(self.folder / "tiny.h5") as file:
-            self.assertEqual(sorted(file["structure"]), ["point_0000", "point_0001"])
+            self.assertEqual(sorted(file["structure"]), ["comparison", "point_0000", "point_0001"])
             point = file["structure/point_0000"]
             self.assertEqual(sorted(point), ["coordination", "pores", "profile"])
             profile = point["profile"]

@@ -135,6 +135,12 @@ struct SweepDifference {
 std::vector<SweepDifference> differences(const SweepCurve& curve,
                                          std::optional<std::size_t> reference);
 
+/// Which points are compared: every pair of them, or each with the first.
+enum class ComparedPairs { all_pairs, with_first };
+/// By the same tests. A difference whose realizations do not scatter at all has no error and no
+/// p-value: M equal values do not show that others would be equal.
+std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which);
+
 /// What is swept: "sqrt_epsilon", its units, and a line for people.
 struct SweptValue {
   std::string name, units, long_name;

@@ -31,6 +31,13 @@ SweepDifference difference(const SweepCurve& curve, std::size_t from, std::size_
   return found;
 }
 
+void correct_for_number(std::vector<SweepDifference>& all) {
+  std::vector<double> p;
+  for (const SweepDifference& one : all) p.push_back(one.p);
+  p = corrected_for_number(p);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].corrected = p[i];
+}
+
 }  // namespace
 
 std::vector<SweepDifference> differences(const SweepCurve& curve,
@@ -41,10 +48,25 @@ std::vector<SweepDifference> differences(const SweepCurve& curve,
     if (reference && i != *reference) all.push_back(difference(curve, *reference, i));
     if (!reference && i > 0) all.push_back(difference(curve, i - 1, i));
   }
-  std::vector<double> p;
-  for (const SweepDifference& one : all) p.push_back(one.p);
-  p = corrected_for_number(p);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].corrected = p[i];
+  correct_for_number(all);
+  return all;
+}
+
+std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which) {
+  std::vector<SweepDifference> all;
+  if (!curve.has_realizations()) return all;
+  const std::size_t n_from = which == ComparedPairs::all_pairs ? curve.n_points() : 1;
+  for (std::size_t from = 0; from < n_from; ++from) {
+    for (std::size_t to = from + 1; to < curve.n_points(); ++to) {
+      SweepDifference one = difference(curve, from, to);
+      if (one.error.known() && !(one.error.error > 0)) {
+        one.error = {};
+        one.p = p_value(one.value, one.error);
+      }
+      all.push_back(one);
+    }
+  }
+  correct_for_number(all);
   return all;
 }
 
