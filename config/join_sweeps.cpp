@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "config/parts/parts.hpp"
@@ -24,7 +25,8 @@ bool sweep_the_same(const std::vector<SweepAxis>& a, const std::vector<SweepAxis
 /// the number of realizations, which merging judges.
 Json shared_part(const Scene& scene) {
   Json shared = resolved(scene);
-  for (const char* own : {"name", "description", "realizations", "sweep"}) shared.erase(own);
+  for (const char* own : {"name", "description", "realizations", "sweep", "point_labels"})
+    shared.erase(own);
   for (const SweepAxis& axis : scene.sweep) {
     for (const std::string& pointer : pointers_of(axis)) {
       if (Json* place = shared.find_pointer(pointer)) *place = nullptr;
@@ -63,6 +65,27 @@ void add_rows(SweepAxis& axis, const SweepAxis& more) {
   }
 }
 
+/// The labels that both scenes give to the points of the joined one, the first scene's before the
+/// other's; none where a point has no label, or two points have the same.
+std::vector<std::string> joined_labels(const Scene& first, const Scene& other,
+                                       const Scene& joined) {
+  std::map<std::uint64_t, std::string> known;
+  for (const Scene* const scene : {&first, &other}) {
+    const std::vector<SweepPoint> points = sweep_points(scene->sweep);
+    for (std::size_t i = 0; i < scene->point_labels.size(); ++i)
+      known.try_emplace(point_id(points[i]), scene->point_labels[i]);
+  }
+  std::vector<std::string> labels;
+  if (known.empty()) return labels;
+  for (const SweepPoint& point : sweep_points(joined.sweep)) {
+    const auto label = known.find(point_id(point));
+    if (label == known.end()) return {};
+    labels.push_back(label->second);
+  }
+  const std::set<std::string> distinct(labels.begin(), labels.end());
+  return distinct.size() == labels.size() ? labels : std::vector<std::string>{};
+}
+
 }  // namespace
 
 ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other) {
@@ -80,6 +103,7 @@ ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other) {
   for (std::size_t i = 0; i < joined.sweep.size(); ++i) {
     add_rows(joined.sweep[i], other.scene->sweep[i]);
   }
+  joined.point_labels = joined_labels(*first.scene, *other.scene, joined);
   return checked_scene(resolved(joined));
 }
 

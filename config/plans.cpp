@@ -91,7 +91,8 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
   for (const SweepPoint& point : sweep_points(scene.sweep)) {
     const Scene& here = *scene_of_point++;
     Plan plan;
-    plan.label = point_label(point);
+    plan.label =
+        scene.point_labels.empty() ? point_label(point) : scene.point_labels.at(plans.size());
     for (const auto& [pointer, value] : point.values) {
       plan.sweep_values.emplace_back(pointer, canonical_text(value));
     }

@@ -179,8 +179,8 @@ std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
   }
   Json before = resolved(*was.scene), after = resolved(scene);
   for (Json* one : {&before, &after}) {
-    for (const char* free : {"name", "description", "realizations", "protocol", "sweep", "until",
-                             "fits", "analyse", "structure"}) {
+    for (const char* free : {"name", "description", "realizations", "protocol", "sweep",
+                             "point_labels", "until", "fits", "analyse", "structure"}) {
       one->erase(free);
     }
     (*one)["snapshots"].erase("taps");

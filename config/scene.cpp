@@ -1,10 +1,14 @@
 #include "config/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
+#include "ensemble/statistics/counted.hpp"
 
 namespace jostle::inline config {
 
@@ -256,6 +260,14 @@ constexpr auto measured_fields() {
             "JSON pointers into the scene, each with a list of values. All are crossed, the first "
             "varies slowest; those inside a zip vary together",
             {.title = "Sweep", .examples = R"([{"/protocol/0/tap/dilate": [0.005, 0.05, 0.15]}])"}),
+      field("point_labels", &Scene::point_labels,
+            list_of(Text{"A-Za-z0-9", "A-Za-z0-9 .,_=+()/%-", 40,
+                         "a label has 1 to 40 letters, digits, blanks and . , _ = + ( ) / % -, a "
+                         "letter or digit first"},
+                    0, 100'000, "labels"),
+            "Labels of the sweep points in tables and figures, in the order of the points: the "
+            "last list of the sweep varies fastest. Absent: the swept values",
+            {.unless_default = true, .title = "Labels of sweep points"}),
       field("until", &Scene::until, Object<TargetPrecision>{},
             "Realizations are added, the same number at every sweep point, until every target is "
             "met at every point",
@@ -281,6 +293,26 @@ constexpr auto scene_fields() {
   return std::tuple_cat(identity_fields(), simulation_fields(), measured_fields());
 }
 
+/// One label for each point, no two alike.
+void check_point_labels(const Scene& scene, std::size_t n_points, std::vector<Fault>& faults) {
+  const std::vector<std::string>& labels = scene.point_labels;
+  if (labels.empty()) return;
+  if (scene.sweep.empty() || labels.size() != n_points) {
+    faults.push_back({"/point_labels",
+                      fmt::format("{} for {}: list one label for each sweep point, in their order",
+                                  counted(labels.size(), "label"),
+                                  scene.sweep.empty() ? "a scene without a sweep"
+                                                      : counted(n_points, "sweep point"))});
+  }
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (seen.insert(labels[i]).second) continue;
+    faults.push_back(
+        {pointer_to("/point_labels", i),
+         fmt::format("\"{}\" is the label of an earlier point: labels must differ", labels[i])});
+  }
+}
+
 /// `faults`: those that the text has already.
 ParsedScene checked(const Json& document, std::vector<Fault> faults) {
   ParsedScene parsed{.scene = std::nullopt, .points = {}, .faults = std::move(faults)};
@@ -290,6 +322,7 @@ ParsedScene checked(const Json& document, std::vector<Fault> faults) {
   const Json* sweep = document.find("sweep");
   std::vector<Scene> points =
       read_sweep_points(scene, sweep != nullptr ? *sweep : Json(), parsed.faults);
+  if (parsed.faults.empty()) check_point_labels(scene, points.size(), parsed.faults);
   if (!parsed.faults.empty()) return parsed;
   parsed.scene = std::move(scene);
   parsed.points = std::move(points);

@@ -220,6 +220,7 @@ struct Scene {
   SnapshotChoice snapshots;
   std::optional<MotionChoice> motion;
   std::vector<SweepAxis> sweep;
+  std::vector<std::string> point_labels;  // of the sweep points, in their order; empty: by values
   TargetPrecision until;
   std::vector<FitRequest> fits;
   Analyses analyse;

@@ -65,7 +65,8 @@ Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<
   Json changed = Json::object();  // without the sweep, which may be longer than all the rest
   for (const auto& [key, part] : resolved_scene.members()) {
     const bool of_trials = key == "relax" || key == "relax_start";
-    if (key != "sweep" && !(of_trials && leave_trials)) changed[key] = part;
+    const bool of_sweep = key == "sweep" || key == "point_labels";
+    if (!of_sweep && !(of_trials && leave_trials)) changed[key] = part;
   }
   for (const auto& [pointer, value] : point.values) {
     if (pointer == "/engine") {

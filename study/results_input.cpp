@@ -102,7 +102,8 @@ std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& 
     if (wanted == fmt::to_string(i)) return {i};  // a number is a point before it is a value
   }
   for (std::uint32_t i = 0; i < study.points.size(); ++i) {
-    if (wanted.empty() || has_value(study.points[i], wanted)) {
+    const bool is_label = wanted == study.points[i].label;
+    if (wanted.empty() || is_label || has_value(study.points[i], wanted)) {
       chosen.push_back(i);
     }
   }

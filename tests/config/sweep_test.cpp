@@ -77,6 +77,31 @@ TEST_CASE("Whole parts of a scene can be swept, and values that are defaults") {
   CHECK(points[0].label == "tap = {\"lift\":0.25}, theta0 = 0.5");
 }
 
+TEST_CASE("Points have the labels that the scene lists, and keep their ids") {
+  const std::string sweep = R"({"/protocol/0/tap/dilate": [0.01, 0.05]})";
+  const auto named = plans(sweep + R"(, "point_labels": ["weak", "strong"])"), plain = plans(sweep);
+  CHECK(named.at(0).label == "weak");
+  CHECK(named.at(1).label == "strong");
+  CHECK(plain.at(1).label == "dilate = 0.05");
+  CHECK(named.at(1).point_id == plain.at(1).point_id);
+}
+
+TEST_CASE("Labels are as many as points, and differ") {
+  const std::string sweep = R"({"/protocol/0/tap/dilate": [0.01, 0.05]}, "point_labels": )";
+  const auto fault = [&](const std::string& labels) {
+    const ParsedScene parsed = parse_scene(scene_with(sweep + labels));
+    REQUIRE(parsed.faults.size() == 1);
+    return parsed.faults[0].pointer + ": " + parsed.faults[0].message;
+  };
+  CHECK(fault(R"(["weak"])") ==
+        "/point_labels: 1 label for 2 sweep points: list one label for each sweep point, in their "
+        "order");
+  CHECK(fault(R"(["weak", "weak"])") ==
+        "/point_labels/1: \"weak\" is the label of an earlier point: labels must differ");
+  CHECK(parse_scene(scene_with(R"({}, "point_labels": ["a"])")).faults.at(0).pointer ==
+        "/point_labels");
+}
+
 TEST_CASE("Values with the same name are labelled by their whole pointer") {
   const auto points = plans(R"({"/snapshots/bin_width": [0.1], "/snapshots/contact_cut": [1.1]})");
   CHECK(points[0].label == "bin_width = 0.1, contact_cut = 1.1");
