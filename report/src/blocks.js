@@ -9,9 +9,11 @@ export function section(chapter, id, title, intro, ...content) {
     element("h3", {}, title), intro ? element("p", {class: "intro"}, written(intro)) : null, ...content.flat().filter(Boolean));
 }
 
-/// A text, or one whose beginning is set off; texts of a file stand as they are, to be copied.
+/// A text, one whose beginning is set off, or one with symbols. Texts of a file are shown as they are, to be copied.
 function cell(content) {
-  return typeof content === "string" ? content : element("span", {}, element("b", {}, content.strong), content.text);
+  if (typeof content === "string") return content;
+  if ("print" in content) return element("span", {}, written(content.print));
+  return element("span", {}, element("b", {}, content.strong), content.text);
 }
 
 function heading(content) {
@@ -44,8 +46,10 @@ const kinds = {
   small: ({text}) => element("p", {class: "small"}, written(text)),
   details: ({summary, open, blocks}, chapter) =>
     element("details", {open}, element("summary", {}, written(summary)), shownBlocks(blocks, chapter)),
+  subsection: ({title, blocks}, chapter) =>
+    element("div", {class: "subsection"}, element("h4", {}, written(title)), shownBlocks(blocks, chapter)),
   definitions: ({class: kind, rows}) => element("dl", {class: kind}, rows.map(([term, text]) =>
-    element("div", {}, element("dt", {}, term), element("dd", {}, text)))),
+    element("div", {}, element("dt", {}, term), element("dd", {}, written(text))))),
   refusals: ({texts}) => element("ul", {class: "refusals"}, texts.map((text) => element("li", {}, text))),
   points: byPoint,
   packing: (_, chapter) => packingPanel(chapter),

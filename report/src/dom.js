@@ -15,14 +15,19 @@ export function element(name, attributes = {}, ...children) {
   return node;
 }
 
-/// A table of rows of texts (or nodes) under a head; the first column names the row.
+const longestCell = 24;  // characters of a cell that a narrow screen has room for
+
+/// A table of rows of texts (or nodes) under a head; the first column names the row. On a narrow screen a table with
+/// sentences shows one row below another, each value with its head.
 export function dataTable(head, rows, caption) {
-  return element("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": caption ?? "Table"},
+  const textOf = (cell) => typeof cell === "string" ? cell : cell.textContent;
+  const isWide = head.length > 4 || rows.some((row) => row.some((cell) => textOf(cell).length > longestCell));
+  return element("div", {class: isWide ? "scroll stacks" : "scroll", tabindex: 0, role: "region", "aria-label": caption ?? "Table"},
     element("table", {},
       caption ? element("caption", {}, caption) : null,
       element("thead", {}, element("tr", {}, head.map((text) => element("th", {scope: "col"}, text)))),
       element("tbody", {}, rows.map((row) => element("tr", {}, row.map((cell, i) =>
-        element(i === 0 ? "th" : "td", i === 0 ? {scope: "row"} : {}, cell)))))));
+        element(i === 0 ? "th" : "td", {...(i === 0 ? {scope: "row"} : {}), "data-head": textOf(head[i] ?? "")}, cell)))))));
 }
 
 /// Hands a file to whoever looks at the page.

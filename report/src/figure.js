@@ -71,8 +71,7 @@ class Figure {
     const {title, caption, source} = this.spec;
     this.title.replaceChildren(...written(title));
     this.caption.replaceChildren(...written(caption),
-      source ? element("span", {class: "source"}, ` Source: ${source}.`) : "",
-      element("span", {class: "source"}, ` ${this.spec.study}.`));
+      source ? element("span", {class: "source"}, ` Source: ${source}.`) : "");
   }
 
   draw() {
@@ -81,7 +80,7 @@ class Figure {
     this.isDrawn = true;
     const svg = drawn(this.spec, {width: this.width, dark: isDark()});
     svg.setAttribute("role", "img");
-    svg.setAttribute("aria-label", `${this.spec.title}. ${this.caption.textContent}`);
+    svg.setAttribute("aria-label", `${this.title.textContent}. ${this.caption.textContent}`);
     this.canvas.replaceChildren(svg);
   }
 
@@ -109,7 +108,7 @@ class Figure {
   saveSvg() {
     const svg = drawn(this.spec, {width: 680, dark: false, still: true});
     svg.insertBefore(element("title", {}, this.spec.title), svg.firstChild);
-    svg.insertBefore(element("desc", {}, this.caption.textContent), svg.firstChild.nextSibling);
+    svg.insertBefore(element("desc", {}, `${this.caption.textContent} ${this.spec.study}.`), svg.firstChild.nextSibling);
     save(this.name("svg"), '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(svg),
       "image/svg+xml");
   }

@@ -57,7 +57,7 @@ class Chapter {
 
   build() {
     const {run} = this;
-    const sections = [runSection(this), this.chips(), ...run.sections.map((one) => shownSection(one, this))].filter(Boolean);
+    const sections = [run.summary ? shownSection(run.summary, this) : null, runSection(this), this.chips(), ...run.sections.map((one) => shownSection(one, this))].filter(Boolean);
     const description = run.scene.description;
     const article = element("article", {id: this.id, "aria-label": run.file},
       element("header", {class: "chapter"}, element("h2", {}, run.scene.name || run.file), element("p", {class: "file"}, run.file),

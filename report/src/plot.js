@@ -73,8 +73,9 @@ function axisOf(axis, values) {
   if (!(low <= high)) [low, high] = [0, 1];
   if (axis.from_zero) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
   if (low === high) [low, high] = low === 0 ? [0, 1] : [low - Math.abs(low) * 0.1, high + Math.abs(high) * 0.1];
-  const domain = nice(low, high, 8);
-  return {place: (value) => value, scale: {type: "linear", domain}, minor: [], ticks: ticksOf(...domain, axis.ticks ?? 6),
+  const [niceLow, niceHigh] = nice(axis.low ?? low, axis.high ?? high, 8);
+  const domain = [axis.low ?? niceLow, axis.high ?? niceHigh];
+  return {place: (value) => value, scale: {type: "linear", domain}, minor: [], isClipped: axis.low !== undefined || axis.high !== undefined, ticks: ticksOf(...domain, axis.ticks ?? 6),
           tickFormat: (value) => number(value, 6)};
 }
 
@@ -117,8 +118,12 @@ function placed(series, xAxis, yAxis) {
     .map((one) => ({...one, rows: thinned(one.rows, xAxis.isTaps)}));
 }
 
-function marksOf(one, colour, xAxis, ink) {
+function marksOf(one, colour, xAxis, isClipped, ink) {
   const marks = [];
+  if (one.thin) {
+    const connected = xAxis.hasBreak ? one.rows.filter((at) => at.row.x > 0) : one.rows;
+    return [Plot.line(connected, {x: "x", y: "y", stroke: colour, strokeWidth: 0.7, strokeOpacity: 0.45})];
+  }
   const along = {x: "x", y: "y"};
   const connected = xAxis.hasBreak ? one.rows.filter((at) => at.row.x > 0) : one.rows;
   const dash = dashes[one.dash % dashes.length];
@@ -130,10 +135,10 @@ function marksOf(one, colour, xAxis, ink) {
   if (one.mark === "line") {
     if (hasErrors && !one.no_band) {
       const banded = connected.filter((at) => Number.isFinite(at.low) && Number.isFinite(at.high));
-      marks.push(Plot.areaY(banded, {x: "x", y1: "low", y2: "high", fill: colour, fillOpacity: 0.2}));
+      marks.push(Plot.areaY(banded, {x: "x", y1: "low", y2: "high", fill: colour, fillOpacity: 0.2, clip: isClipped}));
     }
     marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: 1.8, strokeDasharray: dash, strokeLinejoin: "round",
-                                     clip: one.no_band}));
+                                     clip: isClipped || one.no_band}));
     if (alone.length > 0 && !one.guide) {
       marks.push(Plot.ruleX(ruled(alone), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.2}));
       marks.push(Plot.dot(alone, {...along, fill: colour, r: 3.2}));
@@ -142,12 +147,13 @@ function marksOf(one, colour, xAxis, ink) {
   } else {
     if (one.mark !== "points") {
       marks.push(Plot.line(connected, {...along, stroke: colour, strokeWidth: 1.2, strokeOpacity: 0.75,
-                                       strokeDasharray: dash, curve: one.mark === "steps" ? "step-after" : "linear"}));
+                                       strokeDasharray: dash, curve: one.mark === "steps" ? "step-after" : "linear",
+                                       clip: isClipped}));
     }
     if (hasErrors) {
-      marks.push(Plot.ruleX(ruled(one.rows), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.1}));
+      marks.push(Plot.ruleX(ruled(one.rows), {x: "x", y1: bottom, y2: "high", stroke: colour, strokeWidth: 1.1, clip: isClipped}));
     }
-    marks.push(Plot.dot(one.rows, {...along, stroke: colour, fill: one.hollow ? "none" : colour, fillOpacity: 0.85,
+    marks.push(Plot.dot(one.rows, {clip: isClipped, ...along, stroke: colour, fill: one.hollow ? "none" : colour, fillOpacity: 0.85,
                                    r: one.rows.length > 120 ? 1.8 : 3, symbol: markers[one.symbol % markers.length]}));
   }
   if (one.labelled) {
@@ -168,7 +174,7 @@ function hoverText(at, spec) {
 
 /// The names of the series above the plot, in as many lines as they need.
 function legend(series, width, colours, theme) {
-  const named = series.filter((one) => one.name);
+  const named = series.filter((one) => one.name && !one.thin);
   if (named.length < 2) return {height: 0, node: null};
   const group = element("g", {"aria-hidden": "true", "font-size": 12, "text-anchor": "start", class: "legend"});
   let x = 4, y = 12;
@@ -221,7 +227,8 @@ export function drawn(spec, {width, dark, still = false}) {
                              : Plot.ruleY([yAxis.place(rule.y)], {stroke: theme.ink, strokeOpacity: 0.45, strokeDasharray: "3,3"});
     marks.push(mark);
   }
-  for (const one of series) marks.push(...marksOf({...one, paper: theme.paper}, colours.get(one), xAxis, theme.ink));
+  for (const one of series) marks.push(...marksOf({...one, paper: theme.paper}, colours.get(one), xAxis,
+    Boolean(xAxis.isClipped || yAxis.isClipped), theme.ink));
   const text = {fill: theme.ink, color: theme.ink, fontSize: 12};
   marks.push(Plot.axisX(xAxis.ticks, {...text, tickFormat: xAxis.tickFormat, label: null, tickSize: 6,
                                       tickRotate: hasNames ? -22 : undefined}));
@@ -229,7 +236,7 @@ export function drawn(spec, {width, dark, still = false}) {
   if (xAxis.minor.length > 0) marks.push(Plot.axisX(xAxis.minor, {tickSize: 3, tickFormat: () => "", label: null, color: theme.ink}));
   if (yAxis.minor.length > 0) marks.push(Plot.axisY(yAxis.minor, {tickSize: 3, tickFormat: () => "", label: null, color: theme.ink}));
   if (!still) {
-    const rows = series.filter((one) => !one.guide).flatMap((one) => one.rows);
+    const rows = series.filter((one) => !one.guide && !one.thin).flatMap((one) => one.rows);
     marks.push(Plot.tip(rows, Plot.pointer({x: "x", y: "y", title: (at) => hoverText(at, spec), fill: theme.paper,
                                             stroke: theme.faint, textColor: theme.ink, fontSize: 12, pathFilter: null})));
   }

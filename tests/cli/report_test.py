@@ -107,12 +107,25 @@ class Page(Report):
                          ("complete", "tiny.h5", 3))
         self.assertEqual(run["realizations"]["done"], 6)
         self.assertEqual([point["label"] for point in run["points"]],
-                         ["dilate = 0.02", "dilate = 0.1"])
+                         ["ε = 0.02", "ε = 0.1"])
         self.assertEqual(run["points"][0]["seed"], "4711")
         self.assertEqual(run["scene"]["spheres"], 48)
         self.assertEqual(run["left_out"], [])
         self.assertEqual([one["id"] for one in run["sections"]],
                          ["compaction", "spread", "packing", "snapshots", "relaxation"])
+
+    def test_labels_of_the_scene_name_the_points(self):
+        self.write(changed(TINY, name="named", point_labels=["weak", "strong (10 %)"]), "named.json")
+        self.run_scene("-o", "named.h5", scene="named.json")
+        run = self.data(self.page("named.h5")[0])["files"][0]
+        self.assertEqual([one["label"] for one in run["points"]], ["weak", "strong (10 %)"])
+        self.assertEqual([one["label"] for one in run["curve_points"]], ["weak", "strong (10 %)"])
+        figures = self.folder / "strong.json"
+        self.jostle("report", "named.h5", "--catalogue", figures, "--sweep-point", "strong (10 %)")
+        names = {series["name"] for figure in json.loads(figures.read_text())["figures"]
+                 for panel in figure["panels"] for series in panel["series"]}
+        self.assertIn("strong (10 %)", names)
+        self.assertNotIn("weak", names)
 
     def test_several_files_stand_on_one_page(self):
         self.write(changed(TINY, name="other", seed=1))
@@ -193,7 +206,8 @@ class Data(Report):
         self.run_data = self.data(self.page("everything.h5")[0])["files"][0]
 
     def test_the_data_are_those_of_the_file(self):
-        for look in (self.curves, self.tables, self.packings, self.snapshots):
+        for look in (self.curves, self.tables, self.packings, self.snapshots, self.summary, self.comparisons, self.folded,
+                     self.pairs_are_drawn_from_contact_on):
             with self.subTest(look.__name__):
                 look()
 
@@ -203,7 +217,14 @@ class Data(Report):
         with h5py.File(self.folder / "everything.h5") as file:
             for name in ("mean_height", "bottom_fraction", "sweeps", "acceptance"):
                 mean = panel_of(self.run_data, name.replace("_", "-"))["series"]
+                thin = [series for series in mean if series.get("thin")]
+                mean = [series for series in mean if not series.get("thin")]
                 self.assertEqual([series["point"] for series in mean], [0, 1, 2])
+                self.assertEqual(len(thin), 9 if name in ("mean_height", "bottom_fraction") else 0)
+                for k, series in enumerate(thin):
+                    stored = file[f"observables/point_{series['point']:04}/{name}"][()]
+                    self.assertEqual(series["name"], f"ε = {(0.02, 0.05, 0.1)[k // 3]}, realization {k % 3}")
+                    self.same(series["y"], stored[:, k % 3][series["x"]])
                 for series in mean:
                     stored, taps = file[f"ensemble/point_{series['point']:04}"], series["x"]
                     self.assertEqual(taps[:4] + taps[-1:], [0, 1, 2, 3, 60])
@@ -224,14 +245,74 @@ class Data(Report):
             for name in self.info("everything.h5")["tables"]:
                 group, *path = name.split("/")
                 kind = "fits" if group == "fits" else next(part for part in path if not part.startswith("point_"))
-                shown = sections[kinds.get(kind, kind)]
+                # Differences between sweep points stand in the section of their part.
+                shown = sections[path[-1] if kind == "comparison" else kinds.get(kind, kind)]
                 for key, value in file[name].attrs.items():
                     if key in ("note_verdict", "note_refused", "note_choice", "note_ageing_verdict", "note_maximum"):
                         with self.subTest(table=name, note=key):
                             lead = re.match(r"(not reached|reached|cannot decide|found|agrees|maximum)?(.*)", value)
-                            self.assertIn(json.dumps(lead[2], ensure_ascii=False)[1:-1], shown)
+                            # Ageing has a table: the answer, and the test that follows it in brackets.
+                            parts = re.fullmatch(r"(.*?)(?: \((.*)\))?", value).groups() if kind == "ageing" else [lead[2]]
+                            for part in filter(None, parts):
+                                part = re.sub(r"\ba (?=with|from|changes)", "A ", part) if kind == "ageing" else part
+                                self.assertIn(json.dumps(part, ensure_ascii=False)[1:-1], shown)
                             compared += 1
         self.assertGreater(compared, 15)
+
+    def summary(self):
+        """Five lines, before everything else."""
+        lines = dict(self.run_data["summary"]["blocks"][0]["rows"])
+        self.assertEqual(list(lines), ["run", "end", "law", "steady?", "ageing?"])
+        self.assertIn("48 spheres", lines["run"])
+        self.assertIn("ε = 0.02 to ε = 0.1", lines["run"])
+        end = lines["end"].replace("\u00a0", " ")
+        self.assertRegex(end, r"^(bulk|bottom) fraction Φ_?\S* after 60 taps: 0\.\d+\(\d+\) at ε = 0\.02, ")
+        with h5py.File(self.folder / "everything.h5") as file:
+            name = end.split(" Φ")[0].replace(" ", "_")
+            mean = file[f"ensemble/point_0000/{name}_mean"][60]
+            self.assertAlmostEqual(float(re.search(r"taps: ([\d.]+)\(", end)[1]), mean, delta=0.006)
+            verdicts = [file[f"analysis/point_{p:04}/steady/mean_height"].attrs["note_verdict"] for p in range(3)]
+        words = {"reached": "no drift found", "not reached": "still drifts", "cannot decide": "cannot decide"}
+        for verdict in verdicts:
+            self.assertIn(words[re.match(r"not reached|reached|cannot decide", verdict)[0]], lines["steady?"])
+
+    def comparisons(self):
+        """Differences between sweep points stand in the section of their part, with Holm's p."""
+        sections = {one["id"]: one for one in self.run_data["sections"]}
+        with h5py.File(self.folder / "everything.h5") as file:
+            stored = file["structure/comparison/order"]
+            quantities = stored["quantity"].asstr()[()]
+            p, corrected = stored["p"][()], stored["p_corrected"][()]
+            self.assertIn("paired by realization", stored.attrs["note_test"])  # streams are matched
+            one = list(quantities).index("q6")
+            means = [file[f"structure/point_{k:04}/order/q6"][()][-1] for k in range(3)]
+            numpy.testing.assert_allclose(stored["difference"][()][one:one + 3],
+                                          [means[1] - means[0], means[2] - means[0], means[2] - means[1]])
+        q6 = p[one:one + 3]
+        smallest = numpy.argmin(q6)
+        self.assertAlmostEqual(corrected[one:one + 3][smallest], min(1, 3 * q6[smallest]))
+        (part,) = [block for block in sections["order"]["blocks"] if block["kind"] == "subsection"]
+        self.assertEqual(part["title"], "Sweep points beside each other")
+        shown = json.dumps(part, ensure_ascii=False)
+        self.assertIn("bond order q_6", shown)
+        self.assertIn("ε = 0.1 against ε = 0.02", shown)
+        for place in part["blocks"][0]["figures"]:
+            names = [series["name"] for series in self.run_data["figures"][place]["panels"][0]["series"]]
+            self.assertEqual(names, ["ε = 0.02", "ε = 0.05", "ε = 0.1"])
+
+    def folded(self):
+        sections = {one["id"]: one["blocks"] for one in self.run_data["sections"]}
+        for name in ("spread", "relaxation"):
+            self.assertEqual([(one["kind"], one["open"]) for one in sections[name]], [("details", False)])
+
+    def pairs_are_drawn_from_contact_on(self):
+        panel = panel_of(self.run_data, "pair-correlation-g-r-point-0000")
+        self.assertEqual(panel["x"]["low"], 0.9)
+        for series in panel["series"]:
+            self.assertGreaterEqual(min(series["x"]), 0.9)
+        peak = max(value for series in panel["series"] for value in series["y"])
+        self.assertLess(panel["y"]["high"], peak)
+        self.assertIn("The peak at contact is clipped: it reaches", panel["caption"])
 
     def packings(self):
         packings = self.run_data["packings"]

@@ -23,7 +23,7 @@ from selenium.webdriver.common.keys import Keys  # noqa: E402
 from selenium.webdriver.support.ui import Select  # noqa: E402
 from support import HALF_OF_THREE, SOURCE, Case  # noqa: E402
 
-SECTIONS = {"run", "compaction", "spread", "packing", "fits", "steady", "ageing", "spectra", "sweep",
+SECTIONS = {"summary", "run", "compaction", "spread", "packing", "fits", "steady", "ageing", "spectra", "sweep",
             "snapshots", "profile", "sides", "layers", "coordination", "pair_correlation", "order",
             "voronoi", "pores", "void_probability", "holes", "relaxation"}
 
@@ -88,7 +88,7 @@ class Sections(Open):
                             caption: arguments[0].querySelector("figcaption").textContent};""", figure)
                 self.assertGreater(facts["marks"], 2)
                 self.assertGreater(len(facts["caption"]), 20)
-                self.assertRegex(facts["caption"], r"\.h5: .* realizations")  # it stands alone
+                self.assertNotIn(".h5", facts["caption"])  # file and bed stand at the top
                 self.assertIn(title, facts["label"])
                 self.assertTrue(facts["inside"], "a text leaves its figure")
                 for bad in ("NaN", "Infinity", "undefined", "null"):
@@ -96,6 +96,36 @@ class Sections(Open):
                 rows = BROWSER.wait(lambda: BROWSER.run(
                     "return arguments[0].querySelectorAll('details tbody tr').length", figure))
                 self.assertGreater(rows, 1)
+
+    def test_the_summary_comes_first_and_has_five_lines(self):
+        self.assertEqual(self.sections()[:2], ["summary", "run"])
+        terms = [one.text for one in BROWSER.find_all("#file-0-summary dt")]
+        self.assertEqual(terms, ["run", "end", "law", "steady?", "ageing?"])
+
+    def test_spread_and_relaxation_are_folded_and_drawn_when_opened(self):
+        for name in ("spread", "relaxation"):
+            with self.subTest(name):
+                fold = BROWSER.find(f"#file-0-{name} > details")
+                self.assertIsNone(fold.get_attribute("open"))
+                BROWSER.run("arguments[0].click()", BROWSER.show(fold.find_element(By.TAG_NAME, "summary")))
+                BROWSER.wait(lambda: BROWSER.run(
+                    "return arguments[0].querySelector('.canvas svg')?.getBoundingClientRect().width > 200", fold))
+
+    def test_titles_have_the_symbols_of_print(self):
+        titles = {one.get_attribute("innerHTML") for one in BROWSER.find_all("#file-0-coordination h4")}
+        self.assertIn("Coordination N<sub>c</sub> by tap", titles)
+
+    def test_a_peak_beyond_the_axis_is_clipped(self):
+        figure = BROWSER.show(BROWSER.find("#file-0-pair_correlation figure"))
+        BROWSER.draw_everything()
+        facts = BROWSER.run("""
+            const svg = arguments[0].querySelector(".canvas svg"), spec = arguments[0].figure.spec;
+            return {domain: svg.scale("x").domain, top: svg.scale("y").domain[1], high: spec.y.high,
+                    clipped: svg.querySelectorAll("g[clip-path]").length,
+                    peak: Math.max(...spec.series.flatMap((one) => one.rows.map((row) => row.y)))};""", figure)
+        self.assertEqual((facts["domain"][0], facts["top"]), (0.9, facts["high"]))
+        self.assertGreater(facts["peak"], facts["top"])
+        self.assertGreater(facts["clipped"], 0)
 
     def test_it_fetches_nothing(self):
         BROWSER.draw_everything()
@@ -182,7 +212,7 @@ class Plain(Open):
     name = "plain"
 
     def test_what_the_file_lacks_has_no_section(self):
-        self.assertEqual(self.sections(), ["run", "compaction", "relaxation"])
+        self.assertEqual(self.sections(), ["summary", "run", "compaction", "relaxation"])
         self.assertEqual(BROWSER.find_all(".chips, canvas"), [])
 
 
@@ -305,7 +335,7 @@ class Figures(Open):
             if BROWSER.run(tip, svg):
                 break
         text = BROWSER.run(tip, svg)
-        self.assertRegex(text, r"dilate = 0\.\d+")
+        self.assertRegex(text, r"ε = 0\.\d+")
         self.assertRegex(text, r"tap.*\d")
         self.assertRegex(text, r"mean height.*\d\.\d+\(\d+\)")
 
@@ -323,7 +353,7 @@ class Figures(Open):
         root = xml.etree.ElementTree.fromstring(text)
         self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
         words = " ".join(root.itertext())
-        for part in ("taps t", "mean height", "dilate = 0.02", "dilate = 0.1"):
+        for part in ("taps t", "mean height", "ε = 0.02", "ε = 0.1", "whole.h5: 48 spheres"):
             self.assertIn(part, words)
         self.assertNotIn("var(--", re.sub(r"var\(--plot-background\)", "", text))
 
@@ -333,7 +363,7 @@ class Figures(Open):
             rows = list(csv.reader(lines))
         self.assertEqual(rows[0][3], "half width 68 %")
         with h5py.File(FOLDER / "whole.h5") as file:
-            for point, label in enumerate(("dilate = 0.02", "dilate = 0.05", "dilate = 0.1")):
+            for point, label in enumerate(("ε = 0.02", "ε = 0.05", "ε = 0.1")):
                 stored = file[f"ensemble/point_{point:04}"]
                 own = numpy.array([[float(cell) for cell in row[1:4]] for row in rows if row[0] == label])
                 taps = own[:, 0].astype(int)
@@ -344,24 +374,24 @@ class Figures(Open):
     def test_sweep_points_are_switched_off_and_on(self):
         figure = self.first_figure()
         legend = lambda: figure.find_element(By.CSS_SELECTOR, ".canvas").get_attribute("textContent")
-        self.assertIn("dilate = 0.05", legend())
+        self.assertIn("ε = 0.05", legend())
         box = BROWSER.find_all(".chip input")[1]
         BROWSER.run("arguments[0].click()", box)
-        self.assertNotIn("dilate = 0.05", legend())
-        self.assertIn("dilate = 0.1", legend())
+        self.assertNotIn("ε = 0.05", legend())
+        self.assertIn("ε = 0.1", legend())
         BROWSER.run("arguments[0].click()", box)
-        self.assertIn("dilate = 0.05", legend())
+        self.assertIn("ε = 0.05", legend())
 
     def test_a_menu_chooses_the_sweep_point(self):
         menu = BROWSER.find("#file-0-pair_correlation select")
         section = BROWSER.find("#file-0-pair_correlation")
         values = lambda: BROWSER.run("""
-            const details = arguments[0].querySelector("details.values");
+            const details = arguments[0].querySelector(".by-point details.values");
             details.open = true;
             details.parentNode.figure.fillTable();
             return details.textContent;""", section)
         before = values()
-        Select(BROWSER.show(menu)).select_by_visible_text("dilate = 0.1")
+        Select(BROWSER.show(menu)).select_by_visible_text("ε = 0.1")
         self.assertNotEqual(values(), before)
 
 
@@ -422,8 +452,8 @@ class Packing(Open):
     def test_realizations_points_and_colours_can_be_chosen(self):
         self.changes(lambda: self.menu("Realization").select_by_visible_text("2"))
         self.assertIn("realization 2", self.status.text)
-        self.changes(lambda: self.menu("Sweep point").select_by_visible_text("dilate = 0.1"))
-        self.assertIn("dilate = 0.1, realization 2", self.status.text)
+        self.changes(lambda: self.menu("Sweep point").select_by_visible_text("ε = 0.1"))
+        self.assertIn("ε = 0.1, realization 2", self.status.text)
         options = [one.text for one in self.menu("Colour by").options]
         self.assertEqual(options, ["coordination", "crystalline order", "bond order q\u2086",
                                    "local packing fraction", "height"])
@@ -472,6 +502,18 @@ class Looks(Open):
         self.assertGreater(pdf.count(b"/Type /Page\n") + pdf.count(b"/Type /Page/") +
                            len(re.findall(rb"/Type /Page\b(?!s)", pdf)), 3)
         self.assertEqual(BROWSER.run("return document.querySelectorAll('figure .canvas:empty').length"), 0)
+
+    def test_a_phone_shows_sentences_without_sideways_scrolling(self):
+        BROWSER.resize(390)
+        BROWSER.open(FOLDER / "whole.html")
+        BROWSER.draw_everything()
+        BROWSER.run("for (const one of document.querySelectorAll('details')) one.open = true")
+        BROWSER.frames()
+        tables = BROWSER.run("""
+            return [...document.querySelectorAll(".stacks")].map((one) => [one.scrollWidth, one.clientWidth, one.textContent]);""")
+        self.assertTrue([text for _, _, text in tables if "Does A change with age?" in text])
+        for needed, there, text in tables:
+            self.assertLessEqual(needed, there, text[:80])
 
     def test_a_phone_needs_no_sideways_scrolling(self):
         for name in ("whole", "loop", "grains", "cost", "hostile"):

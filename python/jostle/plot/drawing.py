@@ -201,6 +201,9 @@ def _draw_series(ax: Axes, one: _Series, bottom: float, order: float) -> None:
     later = ~one.zero
     low = np.maximum(one.low, bottom)
     dash = DASHES[about["dash"] % len(DASHES)]
+    if about.get("thin"):
+        ax.plot(one.x[later], one.y[later], color=colour, alpha=0.45, linewidth=0.4, zorder=order - 0.4)
+        return
     if mark == "line":
         if one.has_errors and not about.get("no_band"):
             ax.fill_between(one.x[later], low[later], one.high[later], color=colour, alpha=0.2, linewidth=0, zorder=order - 0.5)
@@ -234,6 +237,8 @@ def _draw_panel(ax: Axes, panel: Description, x_scale: str, width: float) -> Non
         xs = np.append(xs, [xs.min() / 2, xs.max() * 2])  # room for the labels at the ends
     low, high = _with_margin(xs, panel["x"], x_scale)
     bottom, top = _extent(series, panel["y"], y_scale, [rule["y"] for rule in rules if "y" in rule])
+    low, high = panel["x"].get("low", low), panel["x"].get("high", high)
+    bottom, top = panel["y"].get("low", bottom), panel["y"].get("high", top)
     has_zero = x_scale == "taps" and any(one.zero.any() for one in series)
     if x_scale in ("log", "taps"):
         ax.set_xscale("log")
@@ -266,7 +271,7 @@ def _cut(name: str, longest: int = LONGEST_NAMES[0]) -> str:
 
 def _legend_entries(panel: Description) -> tuple[list[Line2D], list[str]]:
     """None where only one series has a name."""
-    named = [series for series in panel["series"] if series["name"]]
+    named = [series for series in panel["series"] if series["name"] and not series.get("thin")]
     if len(named) < 2:
         return [], []
     handles = []

@@ -36,6 +36,25 @@ constexpr CurveGrid changing_grids[] = {{40, 400}, {20, 100}, {10, 40}, {5, 20}}
 
 constexpr std::size_t arrays_of_a_column = 4;
 
+// Single realizations are drawn beside the means of few curves, and read of no endless series.
+constexpr std::size_t most_curves_with_realizations = 4, most_thin_lines = 5;
+constexpr std::uint64_t most_rows_of_realizations = 200'000;
+
+/// Adds some realizations of the observables; a point with one realization needs none.
+void add_realizations(const ResultsFile& file, DrawnCurve& curve) {
+  const std::uint64_t rows = file.n_stored_rows(curve.point);
+  const std::vector<std::uint32_t> there = realizations_with_taps(file, curve.point);
+  if (there.size() < 2 || rows > most_rows_of_realizations) return;
+  for (DrawnColumn& column : curve.columns) {
+    if (!column.is_observable) continue;
+    for (const std::uint32_t r : spread(there, most_thin_lines)) {
+      const std::vector<double> values =
+          file.block(curve.point, column.label.name, {0, rows}, {r, r + 1});
+      column.realizations.push_back({r, at_places(values, curve.taps)});
+    }
+  }
+}
+
 std::size_t curve_values(const ResultsFile& file, std::uint32_t point, const CurveGrid& grid) {
   const std::size_t n_columns = file.study().points[point].n_columns();
   const std::size_t n_extremes = 2 * n_columns;  // at most, of taps
@@ -57,7 +76,8 @@ DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const Curve
                              .mean = at_places(series.mean, curve.taps),
                              .half_width = at_places(half_widths(series), curve.taps),
                              .sigma = at_places(series.sigma, curve.taps),
-                             .count = at_places(series.count, curve.taps)});
+                             .count = at_places(series.count, curve.taps),
+                             .realizations = {}});
   }
   return curve;
 }
@@ -181,6 +201,7 @@ std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& a
     const std::uint64_t rows = file.n_stored_rows(point);
     thinned_taps = thinned_taps || grid->taps(rows).size() < rows;
     curves.push_back(drawn_curve(file, point, *grid));
+    if (points.size() <= most_curves_with_realizations) add_realizations(file, curves.back());
   }
   if (thinned_taps) {
     left_out.push_back(fmt::format(

@@ -20,12 +20,19 @@ struct DrawnRoom {
   static DrawnRoom of_one_in(std::size_t n_files);
 };
 
+/// A column of one realization at the taps of a curve.
+struct DrawnRealization {
+  std::uint32_t number = 0;
+  std::vector<double> values;
+};
+
 /// A column of the ensemble at the taps of its curve.
 struct DrawnColumn {
   Column label;
   bool is_observable = false;                   // else a diagnostic of the engine
   std::vector<double> mean, half_width, sigma;  // half_width: of the mean's 68 % interval
   std::vector<std::uint32_t> count;
+  std::vector<DrawnRealization> realizations;  // some of them, where few curves are drawn
 };
 
 struct DrawnCurve {

@@ -18,6 +18,8 @@ Json axis_json(const FigureAxis& axis) {
   Json json{{"label", page_text(axis.label)},
             {"scale", scale_names[static_cast<std::size_t>(axis.kind)]}};
   if (axis.from_zero) json["from_zero"] = true;
+  if (axis.low) json["low"] = page_number(*axis.low);
+  if (axis.high) json["high"] = page_number(*axis.high);
   if (axis.kind == AxisKind::names) {
     json["names"] = Json::array();
     for (const std::string& name : axis.names) json["names"].push_back(page_text(name));
@@ -63,6 +65,7 @@ Json series_json(const FigureSeries& series, Digits digits) {
   for (const auto& [name, is_set] : {std::pair{"hollow", series.hollow},
                                      {"no_band", !series.has_band},
                                      {"guide", series.is_guide},
+                                     {"thin", series.is_thin},
                                      {"labelled", series.has_labels}}) {
     if (is_set) json[name] = true;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/drawing/figures/builders.hpp"
@@ -47,20 +49,46 @@ std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string
   return series;
 }
 
+/// Single realizations beside the means, as thin lines.
+std::vector<FigureSeries> realization_series(const DrawnFile& file, const std::string& name) {
+  std::vector<FigureSeries> series;
+  for (const ShownPoint& point : file.shown_points()) {
+    const DrawnCurve& curve = *file.curve(point.number);
+    const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
+    for (const DrawnColumn& column : curve.columns) {
+      if (column.label.name != name) continue;
+      for (const DrawnRealization& one : column.realizations) {
+        const std::string label = fmt::format("realization {}", one.number);
+        series.push_back({.name = point.label.empty() ? label : point.label + ", " + label,
+                          .colour = point.colour,
+                          .rows = rows_of(taps, one.values),
+                          .is_thin = true,
+                          .point = point.number});
+      }
+    }
+  }
+  return series;
+}
+
 void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
   const Column& label = file.column(name)->label;
   const std::string errors = file.n_realizations() > 1
                                  ? "the band is the 68 % interval of the mean over realizations"
                                  : "of one realization, without an error";
+  std::vector<FigureSeries> series = column_series(file, name, Shows::mean);
+  std::vector<FigureSeries> thin = realization_series(file, name);
+  const std::string lines = thin.empty() ? "" : "; thin lines are single realizations";
+  series.insert(series.end(), std::make_move_iterator(thin.begin()),
+                std::make_move_iterator(thin.end()));
   add_panel(file, std::nullopt,
             {.title = sentence(words(name)),
              .caption = fmt::format(
-                 "{}, against the number of taps; {}. Tap 0 is the starting packing.",
-                 sentence(label.long_name.empty() ? words(name) : label.long_name), errors),
+                 "{}, against the number of taps; {}{}. Tap 0 is the starting packing.",
+                 sentence(label.long_name.empty() ? words(name) : label.long_name), errors, lines),
              .source = label.source == "jostle" ? "" : label.source,
              .x = file.tap_axis(),
              .y = {axis_label(name, label.units)},
-             .series = column_series(file, name, Shows::mean)},
+             .series = std::move(series)},
             into);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "structure/observables.hpp"
+#include "study/drawing/drawn/point_labels.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 
 namespace jostle::inline study {
@@ -68,10 +69,10 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
     : curves_(drawn_curves(file, room, points, left_out_)),
       snapshots_(drawn_snapshots(file, points, left_out_)),
       kept_(study::drawn_tables(file, room, points, left_out_)),
+      labels_(shown_labels(file.study())),
       n_realizations_(file.study().realizations),
       drawn_points_(drawn),
       changes_strength_(changes_strength(file)) {
-  for (const StudyPoint& point : file.study().points) labels_.push_back(point.label);
   for (const DrawnTable& one : kept_) tables_.emplace_back(one);
   for (const TableView& table : tables_) {  // of a study of cost, the points are settings
     if (table.is_in("analysis", "cost") && table.axis_texts("setting").size() == labels_.size()) {
@@ -85,7 +86,7 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
   }
 }
 
-DrawnFile::DrawnFile(std::vector<DrawnTable> tables) : labels_{""}, kept_(std::move(tables)) {
+DrawnFile::DrawnFile(std::vector<DrawnTable> tables) : kept_(std::move(tables)), labels_{""} {
   for (const DrawnTable& one : kept_) tables_.emplace_back(one);
 }
 
@@ -143,13 +144,6 @@ const DrawnColumn* DrawnFile::column(const std::string& name) const {
 
 FigureAxis DrawnFile::tap_axis() const {
   return {"taps t", changes_strength_ ? AxisKind::linear : AxisKind::taps};
-}
-
-std::string words(std::string name) {
-  if (name == "s_0_of_line") return "S(0) by a line in k";
-  if (name == "s_0_of_squares") return "S(0) by a line in k squared";
-  std::ranges::replace(name, '_', ' ');
-  return name;
 }
 
 std::string sentence(std::string text) {

@@ -7,6 +7,7 @@
 
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "study/drawing/figures/figure.hpp"
+#include "study/drawing/figures/printed_names.hpp"
 #include "study/drawing/figures/table_view.hpp"
 
 namespace jostle::inline study {
@@ -64,18 +65,17 @@ class DrawnFile {
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
-  std::vector<std::string> left_out_, labels_;
+  std::vector<std::string> left_out_;
   std::vector<DrawnCurve> curves_;
   std::vector<DrawnSnapshots> snapshots_;
   std::vector<DrawnTable> kept_;
+  std::vector<std::string> labels_;
   std::vector<TableView> tables_;
   std::uint32_t n_realizations_ = 0;
   DrawnPoints drawn_points_ = DrawnPoints::few;
   bool changes_strength_ = false;
 };
 
-/// "mean_height": "mean height".
-std::string words(std::string name);
 /// Its first letter as of a sentence; "Values" where there is no text.
 std::string sentence(std::string text);
 /// "mean height <Z> (diameter)".

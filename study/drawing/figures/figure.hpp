@@ -24,6 +24,8 @@ struct FigureAxis {
   AxisKind kind = AxisKind::linear;
   bool from_zero = false;
   std::vector<std::string> names{};  // of AxisKind::names, at 0, 1, 2, ...
+  // Ends of the axis, where the data do not decide; what is drawn beyond is clipped.
+  std::optional<double> low{}, high{};
 };
 
 /// A value with half its 68 % interval, or the ends of an interval; NaN where there is none.
@@ -59,6 +61,7 @@ struct FigureSeries {
   bool hollow = false;
   bool has_band = true;   // of the errors of a line
   bool is_guide = false;  // a line for the eye: no value of the file
+  bool is_thin = false;   // one realization beside the mean: a thin line, not in the key
   bool has_labels = false;
   std::optional<std::uint32_t> point{};  // the sweep point, where a figure has several
 };
@@ -75,6 +78,9 @@ struct FigurePanel {
   std::vector<FigureRule> rules{};
   std::vector<FigureSeries> series{};
 };
+
+/// The subject of figures that show sweep points beside each other.
+inline constexpr const char* comparison_subject = "comparison";
 
 /// One panel, or several over one x axis.
 struct Figure {

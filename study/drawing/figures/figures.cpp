@@ -57,6 +57,7 @@ void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, Figure
       point && file.n_points() > 1 ? fmt::format("-point-{:04}", *point) : "";
   const std::string name = file_word(panel.title) + number;
   if (!number.empty()) panel.caption += fmt::format(" Sweep point {}.", file.label(*point));
+  panel.caption = in_print(panel.caption);
   into.push_back({.name = name, .point = point, .subject = subject});
   into.back().panels.push_back(std::move(panel));
 }

@@ -1,7 +1,10 @@
 #include "study/drawing/page/page_data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "study/drawing/drawn/study_words.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 #include "study/drawing/figures/catalogue.hpp"
 #include "study/drawing/figures/figures.hpp"
@@ -27,6 +30,17 @@ Json curve_points(const DrawnFile& drawn) {
   return points;
 }
 
+/// "512 spheres in periodic sides, 8 x 8 diameters; 8 realizations at each of 3 sweep points (ε =
+/// 0.02 to ε = 0.3)".
+std::string run_words(const Study& study, const DrawnFile& drawn) {
+  std::string text = study_words(study);
+  if (const std::size_t n = study.points.size(); n > 1) {
+    text += fmt::format(" ({} points, {} to {})", n, drawn.label(0),
+                        drawn.label(static_cast<std::uint32_t>(n - 1)));
+  }
+  return text;
+}
+
 }  // namespace
 
 Json page_data(const ResultsFile& file, const std::string& digest, const PageRoom& room,
@@ -42,6 +56,7 @@ Json page_data(const ResultsFile& file, const std::string& digest, const PageRoo
   data["curve_points"] = curve_points(drawn);
   data["figures"] = described;
   data["packings"] = page_packings(file, room.packing_bytes, threads, left_out);
+  data["summary"] = summary_section(drawn, run_words(file.study(), drawn));
   data["sections"] = page_sections(drawn, figures,
                                    {.has_grains = common_unit(file.study()) != "trials",
                                     .has_packings = !data["packings"].empty()});

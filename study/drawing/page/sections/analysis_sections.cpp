@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "study/drawing/drawn/value_text.hpp"
+#include "study/drawing/page/page_json.hpp"
 #include "study/drawing/page/sections/sections.hpp"
 
 // Steady states, ageing, spectra, hysteresis, sweeps, cost and precision.
@@ -42,7 +44,7 @@ Json ageing_table(const TableView& table) {
       row.emplace_back(std::isfinite(table.value(name, k)) ? value_cell(table, name, k) : "–");
     }
     row.emplace_back(number_cell(table, "misfit", k, 2));
-    row.emplace_back(text_at(table, "verdict", k));
+    row.emplace_back(Json{{"print", page_text(in_print(text_at(table, "verdict", k)))}});
     rows.push_back(row);
   }
   return estimates_block("A∞ (1 − 1/(1 + B ln(1 + t/τ))), fitted to each waiting time",
@@ -50,21 +52,50 @@ Json ageing_table(const TableView& table) {
                          rows);
 }
 
-Blocks ageing_blocks(const PageContent& content, const TableView& table) {
-  Blocks blocks{
-      figures_block(content,
-                    {.section = "ageing", .point = table.point(), .subject = table.name()}),
-      statement_block("Change with age", table.note("ageing_verdict")),
-      statement_block("Fluctuations", table.note("fluctuation_verdict")),
-      statement_block("Collapse on eq. 6", table.note("collapse_verdict"))};
-  for (const auto& [name, prefix] : {std::pair{"A", ""}, std::pair{"V", "v_"}}) {
-    blocks.add(statement_block(fmt::format("{} as a function of t/t_W^mu", name),
-                               table.note(fmt::format("{}mu_verdict", prefix))));
-    blocks.add(statement_block(fmt::format("{} as a function of ln(t_W + t)/ln t_W", name),
-                               table.note(fmt::format("{}logarithmic_collapse_verdict", prefix))));
+/// The table's quantities a, b and v as the captions call them: A, B and V.
+std::string with_capitals(std::string text) {
+  for (const auto& [name, symbol] :
+       {std::pair{'a', 'A'}, std::pair{'b', 'B'}, std::pair{'v', 'V'}}) {
+    for (const std::string before : {"of ", "equal "}) {
+      const std::string written = before + name + ' ';
+      for (std::size_t at = 0; (at = text.find(written, at)) != std::string::npos; ++at) {
+        text[at + before.size()] = symbol;
+      }
+    }
+    if (text.starts_with(std::string(1, name) + ' ')) text.front() = symbol;
   }
-  blocks.add(ageing_table(table));
-  return blocks;
+  return text;
+}
+
+/// What the tests of ageing found: a question, its answer, and the test in brackets behind it.
+Json ageing_verdicts(const TableView& table) {
+  constexpr std::array<std::array<const char*, 2>, 7> questions{
+      {{"Does A change with age?", "ageing_verdict"},
+       {"Do the fluctuations V change with age?", "fluctuation_verdict"},
+       {"Do the curves fall on eq. 6?", "collapse_verdict"},
+       {"Is A a function of t/t_W^μ?", "mu_verdict"},
+       {"Is A a function of ln(t_W + t)/ln t_W?", "logarithmic_collapse_verdict"},
+       {"Is V a function of t/t_W^μ?", "v_mu_verdict"},
+       {"Is V a function of ln(t_W + t)/ln t_W?", "v_logarithmic_collapse_verdict"}}};
+  const auto print = [](const std::string& text) {
+    return Json{{"print", page_text(in_print(with_capitals(text)))}};
+  };
+  std::vector<PageRow> rows;
+  for (const auto& [question, note] : questions) {
+    const std::string verdict = table.note(note);
+    if (verdict.empty()) continue;
+    const std::size_t test = verdict.ends_with(')') ? verdict.rfind(" (") : std::string::npos;
+    const bool has_test = test != std::string::npos;
+    rows.push_back({print(question), print(verdict.substr(0, test)),
+                    has_test ? print(verdict.substr(test + 2, verdict.size() - test - 3)) : "–"});
+  }
+  return table_block("Verdicts", {"question", "answer", "test"}, rows);
+}
+
+Blocks ageing_blocks(const PageContent& content, const TableView& table) {
+  return {figures_block(content,
+                        {.section = "ageing", .point = table.point(), .subject = table.name()}),
+          ageing_verdicts(table), ageing_table(table)};
 }
 
 Json slopes_table(const DrawnFile& file, const std::vector<TableView>& made) {

@@ -28,6 +28,7 @@ Json figures_block(const PageContent& content, const WantedFigures& wanted) {
     const Figure& one = content.figures[i];
     if (one.section != wanted.section) continue;
     if (wanted.point && one.point && *wanted.point != *one.point) continue;
+    if (wanted.point && one.subject == comparison_subject) continue;
     if (!wanted.subject.empty() && wanted.subject != one.subject) continue;
     places.push_back(i);
   }
@@ -78,6 +79,11 @@ Json details_block(const std::string& summary, const Blocks& blocks, bool is_ope
           {"summary", page_text(summary)},
           {"open", is_open},
           {"blocks", blocks.json()}};
+}
+
+Json subsection_block(const std::string& title, const Blocks& blocks) {
+  if (blocks.empty()) return nullptr;
+  return {{"kind", "subsection"}, {"title", page_text(title)}, {"blocks", blocks.json()}};
 }
 
 Json definitions_block(const std::string& kind,

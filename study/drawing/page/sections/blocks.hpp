@@ -48,7 +48,8 @@ struct WantedFigures {
 /// Null where there is none, as of all blocks below where they would be empty.
 Json figures_block(const PageContent& content, const WantedFigures& wanted);
 
-/// A cell is a text, or {"strong": "reached", "text": ", ..."}.
+/// A cell is a text, {"strong": "reached", "text": ", ..."}, or {"print": "N_c"}, whose symbols get
+/// their subscripts.
 using PageRow = std::vector<Json>;
 Json table_block(const std::string& caption, const PageRow& head, const std::vector<PageRow>& rows);
 /// A table with values "a(b)"; the caption says what b is.
@@ -60,6 +61,8 @@ Json verdict_cell(const std::string& text);
 Json statement_block(const std::string& label, const std::string& text);
 Json small_block(const std::string& text);
 Json details_block(const std::string& summary, const Blocks& blocks, bool is_open = false);
+/// Blocks under a heading of their own; null where there are none.
+Json subsection_block(const std::string& title, const Blocks& blocks);
 /// A list of terms with what they are; rows without a text are left out.
 Json definitions_block(const std::string& kind,
                        const std::vector<std::pair<std::string, std::string>>& rows);

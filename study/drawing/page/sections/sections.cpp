@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "ensemble/statistics/counted.hpp"
 #include "study/drawing/drawn/value_text.hpp"
 
 namespace jostle::inline study {
@@ -15,13 +16,23 @@ Json curves_section(const PageContent& content, const std::string& id, const std
   return page_section(id, title, intro, {figures_block(content, {.section = of})});
 }
 
+/// The figures of a section that only some readers look for, folded until one asks for them.
+Json folded_section(const PageContent& content, const std::string& id, const std::string& title,
+                    const std::string& intro, const std::string& of) {
+  const Json figures = figures_block(content, {.section = of});
+  if (figures.is_null()) return nullptr;
+  const std::size_t n = figures.at("figures").size();
+  return page_section(id, title, intro,
+                      {details_block(fmt::format("Show {}", counted(n, "figure")), {figures})});
+}
+
 Json engine_section(const PageContent& content, bool has_grains) {
   return has_grains
-             ? curves_section(content, "grains", "Grains: energies and contacts",
+             ? folded_section(content, "grains", "Grains: energies and contacts",
                               "Quantities that the integration of the grains records at each tap. "
                               "Energies are in m g d per sphere.",
                               "engine")
-             : curves_section(content, "relaxation", "Relaxation",
+             : folded_section(content, "relaxation", "Relaxation",
                               "Quantities that the relaxation records at each tap.", "engine");
 }
 
@@ -41,10 +52,10 @@ Json other_section(const PageContent& content) {
   static const std::set<std::string> analyses{
       "steady",           "spectrum", "ageing", "hysteresis", "cost",  "sweep",
       "target_precision", "ordering", "motion", "volumes",    "memory"},
-      parts{"profile",          "sides", "layers",  "coordination",
-            "pair_correlation", "order", "voronoi", "pores",
-            "void_probability", "holes", "gaps",    "structure_factor",
-            "clusters"};
+      parts{"profile",          "sides",     "layers",  "coordination",
+            "pair_correlation", "order",     "voronoi", "pores",
+            "void_probability", "holes",     "gaps",    "structure_factor",
+            "clusters",         "comparison"};
   Blocks blocks;
   for (const TableView& table : content.file.tables()) {
     const std::string& kind = table.path().front();
@@ -74,7 +85,8 @@ Json page_sections(const DrawnFile& file, const std::vector<Figure>& figures,
   add(curves_section(content, "compaction", "Compaction",
                      "How the bed changes from tap to tap, as means over realizations.",
                      "compaction"));
-  add(curves_section(content, "spread", "Spread over realizations", "", "spread"));
+  add(folded_section(content, "spread", "Spread over realizations",
+                     "The standard deviation over realizations at each tap.", "spread"));
   if (parts.has_packings) {
     add(page_section("packing", "A packing",
                      "Drag to turn; pinch, or click and scroll, to magnify; arrow keys, + and − do "

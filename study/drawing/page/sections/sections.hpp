@@ -12,6 +12,9 @@ struct PageParts {
 Json page_sections(const DrawnFile& file, const std::vector<Figure>& figures,
                    const PageParts& parts);
 
+/// What the file shows in five lines; `run` is the first.
+Json summary_section(const DrawnFile& file, const std::string& run);
+
 // Each null where the file has nothing for it.
 Json fits_section(const PageContent& content);
 Json steady_section(const PageContent& content);

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "study/drawing/drawn/value_text.hpp"
+#include "study/drawing/page/page_json.hpp"
 #include "study/drawing/page/sections/sections.hpp"
 
 // The structure measured inside the kept packings.
@@ -45,7 +49,7 @@ Json numbers_table(const TableView& table, const Part& part) {
   }
   if (names.empty()) return nullptr;
   PageRow head{"tap"};
-  for (const std::string& name : names) head.emplace_back(words(name));
+  for (const std::string& name : names) head.emplace_back(printed_name(name));
   const std::vector<double> taps = table.axis("tap");
   std::vector<PageRow> rows;
   for (std::size_t i = 0; i < taps.size(); ++i) {
@@ -59,12 +63,49 @@ Json numbers_table(const TableView& table, const Part& part) {
   return estimates_block(part.title, head, rows);
 }
 
+/// Differences between sweep points, one line per quantity and pair.
+Json differences_table(const DrawnFile& file, const TableView& table, const Part& part) {
+  const std::vector<std::string> quantities = table.texts("quantity");
+  const auto label = [&](const char* which, std::size_t i) {
+    return file.label(static_cast<std::uint32_t>(table.value(which, i)));
+  };
+  std::vector<PageRow> rows;
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const bool is_shown = std::ranges::find(part.numbers, quantities[i]) != part.numbers.end();
+    if (!is_shown || !std::isfinite(table.value("difference", i))) continue;
+    rows.push_back(
+        {Json{{"print", page_text(printed_name(quantities[i]))}},
+         Json{{"print", page_text(label("to_point", i) + " against " + label("from_point", i))}},
+         number_cell(table, "to_mean", i, 5), number_cell(table, "from_mean", i, 5),
+         value_cell(table, "difference", i), number_cell(table, "p", i, 2),
+         number_cell(table, "p_corrected", i, 2)});
+  }
+  const Json lines = estimates_block(
+      fmt::format("Differences between sweep points after {} taps, {}", table.note("tap"),
+                  table.note("test")),
+      {"quantity", "sweep points", "first", "second", "difference", "p", "p_corrected"}, rows);
+  constexpr std::size_t most_unfolded = 12;
+  if (rows.size() <= most_unfolded) return lines;
+  return details_block(fmt::format("Differences in {} lines", rows.size()), {lines});
+}
+
+/// Sweep points beside each other.
+Blocks comparison_blocks(const PageContent& content, const Part& part) {
+  Blocks blocks{figures_block(content, {.section = part.name, .subject = comparison_subject})};
+  for (const TableView& table : tables_of(content.file, "structure", "comparison")) {
+    if (table.path().back() != part.name || table.is_refused()) continue;
+    blocks.add(differences_table(content.file, table, part));
+  }
+  return blocks;
+}
+
 Json part_section(const PageContent& content, const Part& part) {
   const std::vector<TableView> all = tables_of(content.file, "structure", part.name),
                                made = not_refused(all);
   return page_section(
       part.name, part.title, "",
-      {points_block(content.file, numbers_of(made),
+      {subsection_block("Sweep points beside each other", comparison_blocks(content, part)),
+       points_block(content.file, numbers_of(made),
                     [&](std::uint32_t point) {
                       Blocks blocks{figures_block(content, {.section = part.name, .point = point})};
                       for (const TableView& table : made) {

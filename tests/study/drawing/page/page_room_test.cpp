@@ -172,7 +172,7 @@ void check_thinned_tables(const ResultsFile& file, std::size_t n_points, std::si
              Catch::Contains(fmt::format("of {} sweep points, evenly spread", n_points)));
   std::vector<std::uint64_t> kept;  // the sweep points of the profiles that are drawn
   for (const Json& figure : data.at("figures").elements()) {
-    if (figure.at("section").text() != "profile") continue;
+    if (figure.at("section").text() != "profile" || figure.find("point") == nullptr) continue;
     const std::uint64_t point = figure.at("point").whole_number();
     if (kept.empty() || kept.back() != point) kept.push_back(point);
   }

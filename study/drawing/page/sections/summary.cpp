@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "ensemble/statistics/student_tests.hpp"
+#include "fitting/comparison/held_out.hpp"
+#include "study/drawing/drawn/study_words.hpp"
+#include "study/drawing/drawn/thinning.hpp"
+#include "study/drawing/drawn/value_text.hpp"
+#include "study/drawing/figures/builders.hpp"
+#include "study/drawing/page/sections/sections.hpp"
+
+// What a file shows in five lines: what was run, where the bed ended, by which law, whether it is
+// steady, whether it ages.
+namespace jostle::inline study {
+namespace {
+
+constexpr std::size_t most_named = 8;  // sweep points in a line
+
+std::string linked(const std::vector<std::string>& parts, const std::string& between = ", ") {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+/// A label that a line does not break.
+std::string unbroken(const DrawnFile& file, std::uint32_t point) {
+  std::string label;
+  for (const char c : file.label(point))
+    label += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return label;
+}
+
+/// Answers of sweep points; those with the same answer stand together.
+class Answers {
+ public:
+  explicit Answers(const DrawnFile& file) : file_(file) {}
+
+  void add(std::uint32_t point, const std::string& answer) {
+    auto known = std::ranges::find(answers_, answer, &Answer::text);
+    if (known == answers_.end()) known = answers_.insert(answers_.end(), {answer, {}});
+    known->points.push_back(point);
+  }
+
+  /// "reached at ε = 0.02, ε = 0.1; cannot decide at ε = 0.3"; without points where all agree.
+  std::string text() const {
+    if (answers_.size() == 1 && (file_.n_points() == 1 || answers_[0].points.size() > 1)) {
+      return answers_[0].text + (file_.n_points() > 1 ? ", at all sweep points" : "");
+    }
+    std::vector<std::string> parts;
+    for (const Answer& answer : answers_) parts.push_back(answer.text + " at " + names(answer));
+    return linked(parts, "; ");
+  }
+
+ private:
+  struct Answer {
+    std::string text;
+    std::vector<std::uint32_t> points;
+  };
+
+  std::string names(const Answer& answer) const {
+    if (answer.points.size() > most_named) {
+      return fmt::format("{} of {} sweep points", answer.points.size(), file_.n_points());
+    }
+    std::vector<std::string> labels;
+    for (const std::uint32_t point : answer.points) labels.push_back(unbroken(file_, point));
+    return linked(labels);
+  }
+
+  const DrawnFile& file_;
+  std::vector<Answer> answers_;
+};
+
+/// The packing fraction where one is observed, else the first observable.
+const DrawnColumn* described_column(const DrawnFile& file) {
+  for (const char* const name : {"bulk_fraction", "bottom_fraction", "corrected_fraction"}) {
+    if (const DrawnColumn* const column = file.column(name)) {
+      const bool has_value = std::ranges::any_of(column->mean, [](double x) { return x == x; });
+      if (has_value) return column;
+    }
+  }
+  for (const DrawnCurve& curve : file.curves()) {
+    for (const DrawnColumn& column : curve.columns) {
+      if (column.is_observable) return &column;
+    }
+  }
+  return nullptr;
+}
+
+/// The last mean of every sweep point.
+std::string at_the_end(const DrawnFile& file) {
+  const DrawnColumn* const wanted = described_column(file);
+  if (wanted == nullptr) return "";
+  std::vector<std::string> parts;
+  std::vector<std::size_t> taps;
+  for (const std::size_t i : evenly_spread(file.curves().size(), most_named)) {
+    const DrawnCurve& curve = file.curves()[i];
+    const auto column = std::ranges::find_if(curve.columns, [&](const DrawnColumn& one) {
+      return one.label.name == wanted->label.name;
+    });
+    if (column == curve.columns.end()) continue;
+    for (std::size_t t = curve.taps.size(); t-- > 0;) {
+      if (!std::isfinite(column->mean[t])) continue;
+      std::string part = typeset_with_error(column->mean[t], column->half_width[t]);
+      if (file.n_points() > 1) part += " at " + unbroken(file, curve.point);
+      if (!taps.empty() && taps.front() != curve.taps[t]) {
+        part += fmt::format(" (after {} taps)", curve.taps[t]);
+      }
+      taps.push_back(curve.taps[t]);
+      parts.push_back(std::move(part));
+      break;
+    }
+  }
+  if (parts.empty()) return "";
+  return fmt::format("{} after {} taps: {}", axis_label(wanted->label.name, wanted->label.units),
+                     taps.front(), linked(parts));
+}
+
+/// The laws that held-out realizations do not reject.
+std::string law_answer(const FittedLaws& fitted) {
+  std::vector<std::string> kept;
+  std::size_t n_rejected = 0;
+  for (const TableView& law : fitted.laws) {
+    if (law.value("held_out_p") < LawComparison::level) {
+      ++n_rejected;
+    } else {
+      kept.push_back(law_name(law));
+    }
+  }
+  const std::string laws = linked(kept, " or ");
+  if (n_rejected > 0 && kept.size() == 1) return laws + " (all others rejected)";
+  if (n_rejected > 0) return fmt::format("{} ({} rejected)", laws, n_rejected);
+  return fitted.laws.size() == 1 ? laws + " (no other law fitted)" : laws + " (none rejected)";
+}
+
+std::string law_line(const DrawnFile& file) {
+  std::vector<TableView> made;
+  for (const TableView& table : file.made_of("fits")) {
+    if (table.has("fitted")) made.push_back(table);
+  }
+  if (made.empty()) return "";
+  Answers answers(file);
+  std::string observable;
+  for (const std::uint32_t point : numbers_of(made)) {
+    const std::vector<FittedLaws> fitted = fitted_laws(made, point);
+    if (observable.empty()) observable = fitted.front().observable;
+    for (const FittedLaws& one : fitted) {
+      if (one.observable == observable) answers.add(point, law_answer(one));
+    }
+  }
+  return words(observable) + ": " + answers.text();
+}
+
+/// Of the first observable that the kind of analysis was made of.
+std::string verdict_line(const DrawnFile& file, const std::string& kind,
+                         const std::function<std::string(const TableView&)>& answer_of) {
+  const std::vector<TableView> made = file.made_of("analysis", kind);
+  if (made.empty()) return "";
+  Answers answers(file);
+  for (const TableView& table : made) {
+    if (!table.point() || table.observable() != made.front().observable()) continue;
+    answers.add(*table.point(), answer_of(table));
+  }
+  return words(made.front().observable()) + ": " + answers.text();
+}
+
+std::string steady_answer(const TableView& table) {
+  const std::string verdict = table.note("verdict");
+  if (verdict.starts_with("reached")) return "no drift found";
+  if (verdict.starts_with("not reached")) return "still drifts";
+  return "cannot decide";
+}
+
+std::string ageing_answer(const TableView& table) {
+  const double p = table.value("ageing_p");
+  if (!std::isfinite(p)) return "cannot decide";
+  return p < significance_level ? "A(t, t_W) changes with age" : "no change with age found";
+}
+
+std::string or_hint(const std::string& line, const char* command) {
+  return line.empty() ? std::string("not analysed; command: ") + command : line;
+}
+
+}  // namespace
+
+Json summary_section(const DrawnFile& file, const std::string& run) {
+  return page_section(
+      "summary", "Summary", "",
+      {definitions_block("summary",
+                         {{"run", run},
+                          {"end", at_the_end(file)},
+                          {"law", or_hint(law_line(file), "jostle fit")},
+                          {"steady?", or_hint(verdict_line(file, "steady", steady_answer),
+                                              "jostle analyse FILE steady")},
+                          {"ageing?", or_hint(verdict_line(file, "ageing", ageing_answer),
+                                              "jostle analyse FILE ageing")}})});
+}
+
+}  // namespace jostle::inline study
