@@ -73,7 +73,7 @@ class HalfWidths(Case):
         self.assertEqual(dof, 2)
         half = float(jostle.half_width(error, dof))
         self.assertAlmostEqual(half_of(row[head.index("n_c")]) / half, 1, delta=0.05)
-        figure = next(one for one in self.catalogue() if one["name"].startswith("n-c-by-tap"))
+        figure = next(one for one in self.catalogue() if one["name"].startswith("coordination-n-c-by-tap"))
         self.assertAlmostEqual(figure["panels"][0]["series"][0]["error"][-1], half, delta=1e-12)
 
     def test_a_difference_between_laws_has_its_half_width(self):
