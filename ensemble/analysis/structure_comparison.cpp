@@ -164,7 +164,7 @@ std::vector<Table> comparison_tables(std::span<const ComparedPoint> points, Stre
   if (points.size() < 2) return tables;
   const std::optional<std::uint64_t> tap = last_common_tap(points);
   if (!tap) return tables;
-  std::vector<const PackingNumber*> numbers;  // of all points, in the order of the parts
+  std::vector<const PackingNumber*> numbers;  // each once, in the order of the parts
   for (const ComparedPoint& point : points) {
     for (const PackingNumber& number : point.numbers) {
       const bool is_known = std::ranges::any_of(numbers, [&](const PackingNumber* one) {
