@@ -155,10 +155,13 @@ Json fit_json(const FitOutcome& outcome) {
                        {"parameters", parameters(fit.limit->estimates)}};
   }
   // The limit leads where the least squares are there, in every report.
-  object["reported"] = fit.limit ? object["limit"]
-                                 : Json{{"model", fit.model},
-                                        {"formula", fit.formula},
-                                        {"parameters", parameters(fit.estimates)}};
+  if (fit.limit) {
+    const Json limit = object["limit"];
+    object["reported"] = limit;
+  } else {
+    object["reported"] = {
+        {"model", fit.model}, {"formula", fit.formula}, {"parameters", parameters(fit.estimates)}};
+  }
   if (outcome.resampled) {
     object["resamples"] = outcome.resampled->resamples;
     object["resamples_failed"] = outcome.resampled->failed;
