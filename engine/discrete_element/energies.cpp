@@ -164,7 +164,7 @@ Energies GrainLoop::energies() const {
 ContactCensus GrainLoop::census() {
   if (!near_lists_hold()) renew_lists();
   ContactCensus census;
-  double sliding = 0, pairs = 0;
+  double pairs = 0;
   for (const KeptPair& pair : lists_.near_pairs()) {
     const double overlap = approach_of(pair).overlap;
     const double force = normal_force(settings_.law, settings_.spheres, overlap, pair.history);
@@ -172,9 +172,6 @@ ContactCensus GrainLoop::census() {
     census.contacts += 2;
     census.mean_overlap += overlap / (2 * std::min(radius_of(pair.first), radius_of(pair.second)));
     ++pairs;
-    const double limit = settings_.spheres.friction * force;
-    // The force was that of the positions a step before.
-    sliding += shear_force(settings_.law, pair.history) >= 0.999 * limit;
   }
   for (const KeptSide& side : lists_.near_sides()) {
     const LawConstants& law = side.side == 0 ? settings_.floor : settings_.sides;
@@ -182,11 +179,23 @@ ContactCensus GrainLoop::census() {
         normal_force(settings_.law, law, approach_of(side).overlap, side.history) > 0;
   }
   census.contacts /= static_cast<double>(n_spheres());
-  if (pairs > 0) {
-    census.mean_overlap /= pairs;
-    census.sliding = settings_.spheres.friction > 0 ? sliding / pairs : 0;
-  }
+  if (pairs > 0) census.mean_overlap /= pairs;
+  if (kernels_.has_spin) census.sliding = sliding_share();
   return census;
+}
+
+// Histories hold the tangential forces of a step before: mechanics() has both forces of one time.
+double GrainLoop::sliding_share() const {
+  constexpr double rounding = 1e-9;
+  const double friction = settings_.spheres.friction;
+  double pairs = 0, sliding = 0;
+  for (const Contact& contact : mechanics().contacts) {
+    if (contact.second >= n_spheres()) continue;
+    const double limit = friction * std::abs(contact.normal_force);
+    ++pairs;
+    sliding += std::sqrt(norm_squared(contact.tangential_force)) >= (1 - rounding) * limit;
+  }
+  return pairs > 0 ? sliding / pairs : 0;
 }
 
 }  // namespace jostle::inline engine

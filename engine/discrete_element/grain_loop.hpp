@@ -33,7 +33,7 @@ struct Energies {
 /// Contacts as they are.
 struct ContactCensus {
   double contacts = 0;      // a sphere, with force; those with floor and sides count once
-  double sliding = 0;       // share at mu N of contacts between spheres with friction
+  double sliding = 0;       // share of the contacts of two spheres whose tangential force is mu N
   double mean_overlap = 0;  // mean overlap of contacts between spheres, diameters of the smaller
 };
 
@@ -114,6 +114,7 @@ class GrainLoop {
   void step();
   void find_forces();
   Energies contact_energies() const;
+  double sliding_share() const;
   void add_contacts(std::vector<Contact>& out);
   void add_velocities(BedMechanics& out);
   void renew_lists();

@@ -96,6 +96,7 @@ class Grains(Case):
             for frame in (0, 1):
                 with self.subTest(frame=frame):
                     self.check_frame(group, point, frame)
+                    self.check_sliding(group, file["observables/point_0000/sliding"], frame)
             vertical = point["granular_temperature_vertical"]
             self.assertEqual([axis[0].name.split("/")[-1] for axis in vertical.dims],
                              ["tap", "realization", "height"])
@@ -131,6 +132,17 @@ class Grains(Case):
             process.communicate(timeout=60)
         self.jostle(*arguments, "--resume")
         self.assertEqual(self.digest("cut.h5"), self.digest("straight.h5"))
+
+    def check_sliding(self, group, sliding, frame):
+        """The share of the stored contacts of two spheres at mu N; friction is 0.1 by default."""
+        contacts = group["contacts"]
+        bounds = np.append(contacts["offset"], len(contacts["first"])).astype(int)
+        here = slice(bounds[frame], bounds[frame + 1])
+        tangential = np.linalg.norm(contacts["tangential_force"][here], axis=1)
+        at_limit = tangential >= (1 - 1e-9) * 0.1 * abs(contacts["normal_force"][here])
+        share = at_limit[contacts["second"][here] < 80].mean()
+        self.assertTrue(0 < share < 1)
+        self.assertAlmostEqual(sliding[group["position/step"][frame], 1], share, places=12)
 
     def check_frame(self, group, point, frame):
         contacts = group["contacts"]

@@ -266,3 +266,43 @@ TEST_CASE("Monte Carlo has neither velocities nor forces") {
   CHECK(bed.velocities.empty());
   CHECK(bed.contacts.empty());
 }
+
+// Forces grow and shrink from step to step, so that those of two steps have another ratio.
+TEST_CASE("two spheres that slide on each other count as sliding from touch to parting") {
+  const ContactLaw law = GENERATE(ContactLaw{WaltonBraun{.friction = 0.1}},
+                                  ContactLaw{LinearSpringDashpot{.friction = 0.1}});
+  const ReducedSettings units = settings(law);
+  const double gap = 1.0000001, speed = 1;
+  GrainLoop loop = loop_of(PeriodicBox{20, 20}, units,
+                           {grain({5, 5, 5}, {0, 3 * speed, -speed}),
+                            grain({5, 5, 5 - gap}, {0, 0, 0}), grain({1, 1, 9})});
+  int touching = 0;
+  for (int step = 0; step < 500; ++step) {
+    loop.run(1);
+    if (loop.mechanics().contacts.empty()) continue;
+    ++touching;
+    CHECK(loop.census().sliding == 1);
+  }
+  CHECK(touching > 20);
+}
+
+TEST_CASE("the share that slides is counted from the contacts' forces, without walls") {
+  const ContactLaw law =
+      GENERATE(ContactLaw{WaltonBraun{.stiffness = 1e4}}, ContactLaw{WaltonBraun{.friction = 0}},
+               ContactLaw{LinearSpringDashpot{.stiffness = 1e4}});
+  const double mu = std::visit([](const auto& one) { return one.friction; }, law);
+  constexpr std::uint32_t n = 60;
+  const ReducedSettings units = settings(law, 1);
+  const Container container = WalledBox{3.3, 4};
+  GrainLoop loop = loop_of(container, units, column_of(container, n));
+  loop.run(static_cast<std::uint64_t>(10 / units.time_step));
+  double pairs = 0, sliding = 0;
+  for (const Contact& one : loop.mechanics().contacts) {
+    if (one.second >= n) continue;
+    ++pairs;
+    if (mu > 0) sliding += length(one.tangential_force) > 0.999999 * mu * one.normal_force;
+  }
+  REQUIRE(pairs > 20);
+  CHECK((mu == 0 || (sliding > 0 && sliding < pairs)));
+  CHECK(loop.census().sliding == sliding / pairs);
+}
