@@ -36,8 +36,9 @@ struct TapRow {
 
 struct SnapshotRecord {
   std::uint64_t tap = 0;
-  std::vector<Vec3> centres;             // [n_spheres], or empty where not kept
-  std::optional<double> coordination;    // mean number of centres within the cut
+  std::vector<Vec3> centres;  // [n_spheres], or empty where not kept
+  std::optional<double>
+      coordination;  // mean number of centres within the cut, as coordination() has it
   std::vector<double> height_histogram;  // [n_bins], or empty where not kept
   // For engines that move spheres in time, empty where not kept. BedMechanics, GranularTemperature:
   std::vector<Vec3> velocities{}, spins{};

@@ -55,7 +55,8 @@ StudyPoint make_point(const Plan& plan) {
                    .motion = plan.motion,
                    .start_sum = sum_of_given(plan.start)};
   for (const Observable& observable : plan.observables)
-    point.observables.push_back(label(observable));
+    point.observables.push_back(
+        label(observable, point.mixture ? Spheres::several_sizes : Spheres::equal));
   return point;
 }
 

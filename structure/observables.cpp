@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -17,9 +18,14 @@ namespace jostle::inline structure {
 namespace {
 
 struct Label {
+  Spheres spheres = Spheres::equal;
+
   Column operator()(const MeanHeight&) const {
     return {std::string(MeanHeight::about.name), "diameter",
-            "mean height of the sphere centres <Z>", "Philippe & Bideau 2001, sec. II"};
+            spheres == Spheres::equal
+                ? "mean height of the sphere centres <Z>"
+                : "mean height of the sphere centres <Z>, weighted by the volumes of the spheres",
+            "Philippe & Bideau 2001, sec. II"};
   }
   Column operator()(const BottomFraction&) const {
     return {std::string(BottomFraction::about.name), "1",
@@ -58,8 +64,11 @@ struct Label {
             "segregation S = 2 (z_L - z_S)/H of two kinds", "jostle"};
   }
   Column operator()(const LaceyIndex& index) const {
-    return {std::string(LaceyIndex::about.name) + suffix(index.kind), "1",
-            "Lacey's mixing index, its random state with fixed numbers of spheres",
+    std::ostringstream text;
+    text << "Lacey's mixing index of "
+         << (index.kind ? "kind " + *index.kind : "the kind of the largest mean diameter")
+         << " on cells of " << index.cell << " d; its random state has fixed numbers of spheres";
+    return {std::string(LaceyIndex::about.name) + suffix(index.kind), "1", text.str(),
             "Gu & Chen 2014, Chem. Eng. Res. Des."};
   }
 
@@ -218,8 +227,8 @@ std::optional<std::string> equal_spheres_fault(const Observable& observable) {
          " is measured of kinds of spheres: list kinds under \"spheres\", or leave it out";
 }
 
-Column label(const Observable& observable) {
-  return std::visit(Label{}, observable);
+Column label(const Observable& observable, Spheres spheres) {
+  return std::visit(Label{spheres}, observable);
 }
 
 std::string_view observable_symbol(std::string_view name) {

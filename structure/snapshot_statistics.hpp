@@ -17,7 +17,7 @@ namespace jostle::inline structure {
 /// radii. Rosato et al. 2010: cut = 1.05. Requires a sphere.
 double coordination(const Packing& packing, double cut = 1.05);
 
-/// The number of centres within `cut` of each centre, [n_spheres].
+/// The number of centres within `cut` of each centre, [n_spheres]; in a mixture, as above.
 std::vector<unsigned> coordination_numbers(const Packing& packing, double cut = 1.05);
 
 /// N_c against the cut.

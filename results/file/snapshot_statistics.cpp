@@ -30,7 +30,10 @@ class StatisticsWriter {
     const Shape shape{n_taps_, n_realizations_};
     const Hdf5Handle dataset = write_numbers<double>(group_, "coordination", shape, coordination,
                                                      chunk_along_first(shape));
-    write_label(dataset, {"coordination", "1", "mean number of centres within contact_cut",
+    write_label(dataset, {"coordination", "1",
+                          point_.mixture ? "mean number of centres within contact_cut times the "
+                                           "sum of the two radii"
+                                         : "mean number of centres within contact_cut",
                           "Rosato et al. 2010"});
     write_attribute(dataset, "contact_cut", point_.snapshots.contact_cut);
     const Hdf5Handle* const axes[] = {&taps_, &realizations_};

@@ -144,6 +144,21 @@ class Mixtures(Case):
         for words in commands:
             self.jostle(*words)
 
+    def test_labels_name_what_is_stored(self):
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            height = file["observables/point_0000/mean_height"]
+            z = file["particles/point_0000_realization_00000/position/value"][0, :, 2]
+            weights = np.array(sum(([kind.get("diameter", 1) ** 3] * kind["count"] for kind in KINDS), []))
+            self.assertAlmostEqual(height[0, 0], np.average(z, weights=weights), places=9)
+            self.assertIn("weighted by the volumes of the spheres", height.attrs["long_name"])
+            mean = file["ensemble/point_0000/mean_height_mean"].attrs["long_name"]
+            self.assertIn("weighted by the volumes of the spheres", mean)
+            coordination = file["snapshots/point_0000/coordination"].attrs["long_name"]
+            self.assertIn("contact_cut times the sum of the two radii", coordination)
+            lacey = file["observables/point_0000/lacey_index_large"].attrs["long_name"]
+            self.assertIn("of kind large on cells of 2 d", lacey)
+
     def test_drawn_diameters_are_those_of_their_realizations(self):
         shipped = json.loads((SOURCE / "config/scenes/binary.json").read_text())
         small, large, intruder = shipped["spheres"]

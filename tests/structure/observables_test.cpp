@@ -26,6 +26,18 @@ TEST_CASE("Observables of the reference deposit are what its maker measured") {
   CHECK(values[2] == Approx(reference.at("phi_bulk").get<double>()).margin(0.5e-5).epsilon(0));
 }
 
+TEST_CASE("Labels name what is measured of spheres of several sizes") {
+  CHECK(label(MeanHeight{}).long_name == "mean height of the sphere centres <Z>");
+  CHECK(label(MeanHeight{}, Spheres::several_sizes).long_name ==
+        "mean height of the sphere centres <Z>, weighted by the volumes of the spheres");
+  CHECK(label(LaceyIndex{.cell = 2.5, .kind = "large"}).long_name ==
+        "Lacey's mixing index of kind large on cells of 2.5 d; its random state has fixed numbers "
+        "of spheres");
+  CHECK(
+      label(LaceyIndex{}).long_name.find("the kind of the largest mean diameter on cells of 3 d") !=
+      std::string::npos);
+}
+
 TEST_CASE("The corrected fraction counts the solids of the first radius 16/11 times") {
   const Packing deposit = reference_deposit();
 

@@ -147,15 +147,17 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
     }
   }
   if (!series.empty()) {
-    add_panel(file, std::nullopt,
-              {.title = "Coordination of the kept packings",
-               .caption = "Mean number of centres within the contact cut of a centre, all spheres, "
-                          "at the taps of the snapshots; bars are 68 % intervals over "
-                          "realizations.",
-               .x = file.tap_axis(),
-               .y = {"mean coordination N_c"},
-               .series = std::move(series)},
-              into, "coordination");
+    add_panel(
+        file, std::nullopt,
+        {.title = "Coordination of the kept packings",
+         .caption = "Mean number of centres within the contact cut of a centre (of spheres of "
+                    "several sizes, the cut times the sum of the two radii), all spheres, "
+                    "at the taps of the snapshots; bars are 68 % intervals over "
+                    "realizations.",
+         .x = file.tap_axis(),
+         .y = {"mean coordination N_c"},
+         .series = std::move(series)},
+        into, "coordination");
   }
   if (!file.made_of("structure", "layers").empty()) return;  // they have n(z), with errors
   std::vector<std::uint32_t> points;
