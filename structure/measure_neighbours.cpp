@@ -129,15 +129,17 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
       {.name = "neighbours",
        .places = "r_end",
        .values = pairs.running_neighbours(),
-       .long_name = "mean number of other centres up to this distance around spheres whose shells "
-                    "are whole",
+       .long_name = "mean number of other centres up to this distance; at each distance around the "
+                    "central spheres whose shell lies in the accessible region",
        .pooling = Pooling::weighted,
        .weights = pairs.shells,
        .beyond = not_a_number},
       {.name = "whole_shells",
        .places = "r_end",
        .values = pairs.shells,
-       .long_name = "central spheres that neighbours are counted around, of all packings",
+       .long_name =
+           "central spheres whose shell at this distance lies in the accessible region, of "
+           "all packings",
        .pooling = Pooling::sum},
       {.name = "density",
        .values = {pairs.density},
@@ -153,11 +155,11 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
        .values = {centres > 0 ? 1.0 : 0.0},
        .long_name = "packings that have a central sphere",
        .pooling = Pooling::sum}};
-  if (pairs.widest_shell + pairs.bin_width < r_max) {
+  if (pairs.widest_shell < r_max - 1e-9) {
+    const double last = std::floor(pairs.widest_shell / pairs.bin_width + 1e-9) * pairs.bin_width;
     std::ostringstream text;
-    text << "no value beyond r_end = " << std::setprecision(4)
-         << pairs.widest_shell + pairs.bin_width
-         << ": no shell that begins farther out has room between the sides";
+    text << "no value beyond r_end = " << std::setprecision(4) << last
+         << ": no larger sphere about a centre has room between the sides";
     out.notes.emplace_back("neighbours", text.str());
   }
   return out;

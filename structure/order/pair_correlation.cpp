@@ -235,12 +235,12 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
       const double share = displacements.share(way);
       if (share <= 0) return;
       ++pairs.counts[bin];
-      const double low = static_cast<double>(bin) * pairs.bin_width;
-      if (whole.exceeds_half_period(low + pairs.bin_width)) {
+      const double high = static_cast<double>(bin + 1) * pairs.bin_width;
+      if (whole.exceeds_half_period(high)) {
         pairs.neighbours[bin] += 1 / std::max(share, least_share);
       } else if (distance <= room) {
         pairs.neighbours[bin] +=
-            static_cast<double>(whole.count(low)) / static_cast<double>(whole.count(distance));
+            static_cast<double>(whole.count(high)) / static_cast<double>(whole.count(distance));
       }
       pairs.found[bin] += displacements.weight(way, from, packing.centres[j]);
     });
@@ -347,13 +347,13 @@ PairCorrelation pair_correlation(const Packing& packing, const PairCorrelationSe
     const double low = static_cast<double>(k) * settings.bin_width, high = low + settings.bin_width;
     const Shell cut =
         pairs.n_centres > 0 ? shell_of(displacements, all_directions, low, high) : Shell{};
-    if (whole.exceeds_sides(low)) {
+    if (whole.exceeds_sides(high)) {
       pairs.shells.push_back(0);
     } else if (!whole.exceeds_half_period(high)) {
-      pairs.shells.push_back(static_cast<double>(whole.count(low)));
+      pairs.shells.push_back(static_cast<double>(whole.count(high)));
     } else {
       const double centres =
-          whole.count_upright(low) > 0 ? static_cast<double>(pairs.n_centres) : 0;
+          whole.count_upright(high) > 0 ? static_cast<double>(pairs.n_centres) : 0;
       pairs.shells.push_back(centres * cut.sampled);
     }
     pairs.expected.push_back(cut.expected);

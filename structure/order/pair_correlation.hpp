@@ -34,7 +34,7 @@ struct PairCorrelation {
   std::vector<double> neighbours;     // in whole shells (whole_shells.hpp), [n_bins]
   std::vector<double> found;          // these, as if centres crowded nowhere at the sides, [n_bins]
   std::vector<double> expected;       // pairs of an uncorrelated packing, [n_bins]
-  std::vector<double> shells;  // central spheres that `neighbours` are counted around, [n_bins]
+  std::vector<double> shells;  // central spheres whose shell at the end of a bin is whole, [n_bins]
   double bin_width = 0;
   double widest_shell = 0;  // radius up to which shells have room between the sides, or infinite
   double density = 0;       // centres a cubic diameter, of the heights that the shells sample
@@ -43,8 +43,9 @@ struct PairCorrelation {
   /// g of each bin, found / expected: 1 for an uncorrelated packing. NaN where nothing is expected.
   std::vector<double> g() const;
 
-  /// Mean number of other centres up to the end of each bin around a sphere whose shells are whole.
-  /// NaN from where no central sphere has whole shells.
+  /// Mean number of other centres up to the end of each bin: a sum over distances, at each of them
+  /// the mean over the spheres whose shell there is whole. NaN from the first bin at whose end no
+  /// central sphere has a whole shell.
   std::vector<double> running_neighbours() const;
 
   /// Pools the counts of another packing, measured in the same bins; density and n_centres become

@@ -57,8 +57,8 @@ std::size_t WholeShells::count_upright(double r) const {
   return count_from(upright_rooms_, r);
 }
 
-bool WholeShells::exceeds_sides(double low) const {
-  return low > widest_ + rounding;
+bool WholeShells::exceeds_sides(double r) const {
+  return r > widest_ + rounding;
 }
 
 bool WholeShells::exceeds_half_period(double high) const {

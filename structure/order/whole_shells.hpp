@@ -31,8 +31,8 @@ class WholeShells {
   std::size_t count_upright(double r) const;
   /// Radius up to which shells have room between the sides; infinite without sides.
   double widest() const { return widest_; }
-  /// True if a shell from this radius on is whole nowhere between the sides.
-  bool exceeds_sides(double low) const;
+  /// True if a shell of this radius is whole nowhere between the sides.
+  bool exceeds_sides(double r) const;
   /// True if a shell up to this radius exceeds half a period.
   bool exceeds_half_period(double high) const;
 

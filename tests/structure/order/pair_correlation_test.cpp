@@ -175,7 +175,7 @@ TEST_CASE("Lattices have the neighbours of their shells in every container") {
   CHECK(neighbours_up_to(pairs, std::floor((spacing - 0.01) / 0.02) * 0.02) == 0);
   CHECK(up_to(1) == Approx(6).epsilon(0.002));
   CHECK(up_to(std::numbers::sqrt2) == Approx(18).epsilon(0.002));
-  if (spacing * std::numbers::sqrt3 > pairs.widest_shell + 0.02) {
+  if (std::round((spacing * std::numbers::sqrt3 + beyond) / 0.02) * 0.02 > pairs.widest_shell) {
     CHECK(std::isnan(up_to(std::numbers::sqrt3)));
     return;
   }
@@ -284,6 +284,46 @@ TEST_CASE("Shells that have no room between the sides count no neighbours") {
   }
   CHECK(neighbours.at(20) == 0);
   CHECK(std::ranges::any_of(pairs.counts, [](std::uint64_t count) { return count > 0; }));
+}
+
+TEST_CASE("Neighbours are a sum over distances, each over the spheres whose shell there is whole") {
+  const Container container = GENERATE(Container{Cylinder{6}}, Container{PeriodicBox{6, 6}});
+  RandomStream random(stream_key(2002, 0, 0, Purpose::start));
+  const Packing bed = make_start(SteepestDescentPour{}, container, 400, random);
+  const double r_max = 1.8, axis = 3, surface = 2 * mean_height(bed) - 0.5;
+  const HeightWindow central = bulk_heights(bed, r_max);
+  const PairCorrelation pairs = pair_correlation(bed, {.r_max = r_max});
+  const bool tube = std::holds_alternative<Cylinder>(container);
+  std::vector<double> rooms(bed.centres.size(), -1.0);
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    const Vec3 a = bed.centres[i];
+    if (a.z < central.low || a.z > central.high) continue;
+    rooms[i] = std::min(a.z - 0.5, surface - a.z);
+    if (tube) rooms[i] = std::min(rooms[i], axis - 0.5 - std::hypot(a.x - axis, a.y - axis));
+  }
+  const auto whole_up_to = [&](double r) {
+    return static_cast<double>(
+        std::ranges::count_if(rooms, [&](double room) { return room >= r; }));
+  };
+  const auto distance = [&](Vec3 a, Vec3 b) {
+    Vec3 way = b - a;
+    if (!tube) way = {std::remainder(way.x, 6), std::remainder(way.y, 6), way.z};
+    return std::sqrt(norm_squared(way));
+  };
+  for (const double r : {1.1, 1.5, 1.8}) {
+    CAPTURE(tube, r);
+    double sum = 0;
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+      for (std::size_t j = 0; j < rooms.size(); ++j) {
+        if (i == j || rooms[i] < 0) continue;
+        const double d = distance(bed.centres[i], bed.centres[j]);
+        if (d < r && d <= rooms[i]) sum += 1 / whole_up_to(d);
+      }
+    }
+    const auto bin = static_cast<std::size_t>(std::lround(r / pairs.bin_width)) - 1;
+    CHECK(pairs.shells[bin] == whole_up_to(r));
+    CHECK(neighbours_up_to(pairs, r) == Approx(sum).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("A bed of two layers has no neighbours where no shell is whole") {
