@@ -136,8 +136,9 @@ class NearLimit {
     const ParameterValues before = limit_.near(at_limit_, 1e2, first, last);
     if (!inside(model_, before)) return std::nullopt;
     Fit counts = found_;
-    const LinearProblem linear = linear_problem(model_, curve_, before, free_);
+    LinearProblem linear = linear_problem(model_, curve_, before, free_);
     if (!linear.jacobian.allFinite()) return std::nullopt;
+    linear.curvature = nullptr;  // this is beside the minimum
     const DependentErrors errors = dependent_errors(curve_, linear, options_.memory, counts);
     const auto variable =
         std::count(free_.begin(), free_.begin() + static_cast<std::ptrdiff_t>(j), true);

@@ -86,11 +86,21 @@ std::string more_of_the_parameters(const Fit& fit) {
   return table(rows) + meanings + '\n';
 }
 
+double largest_error(const Fit& fit) {
+  double largest = 0;
+  for (const Estimate& estimate : fit.estimates) largest = std::max(largest, estimate.error);
+  return largest;
+}
+
 // The source of the errors.
 std::string basis_of_errors(const Fit& fit) {
   std::ostringstream text;
   text << fit.n_points << " points";
   if (fit.n_bins > 0) text << " fitted as " << fit.n_bins << " means over at most 1 % of t";
+  if (fit.n_realizations == 0 && fit.memory.time > 0 && !std::isfinite(largest_error(fit))) {
+    text << "; no errors, as the residuals remember for too long";
+    return text.str();
+  }
   text << "; errors at 68 %, from ";
   if (fit.n_realizations > 0) {
     text << "the scatter of " << fit.n_realizations << " realizations";
@@ -177,7 +187,13 @@ std::string estimate_text(const Estimate& estimate) {
   }
   if (!estimate.has_value()) return "-";
   if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
-  return value_with_error(estimate.value, estimate.half_width());
+  const double half = estimate.half_width();
+  // Half a lopsided interval would reach beyond what 95 % allow on its shorter side.
+  const Interval &middle = estimate.intervals[0], &wide = estimate.intervals[1];
+  const bool lopsided = estimate.value - half < wide.lower || estimate.value + half > wide.upper;
+  if (lopsided && middle.lower < estimate.value && estimate.value < middle.upper)
+    return value_with_limits(estimate.value, middle.lower, middle.upper);
+  return value_with_error(estimate.value, half);
 }
 
 std::string interval_text(const Estimate& estimate, std::size_t level) {

@@ -82,4 +82,16 @@ std::string value_with_error(double value, double error, double scale) {
   return in_last_digits(value / unit, error / unit, decimals + power) + power_text(power);
 }
 
+std::string value_with_limits(double value, double low, double high) {
+  constexpr int most_decimals = 6, digits = 4;
+  constexpr double largest_plain = 1e7;
+  const double up = high - value, down = value - low;
+  const int decimals = std::max(0, 1 - exponent_of(std::min(up, down)));
+  const bool plain = decimals <= most_decimals && std::max(std::abs(value), up) < largest_plain;
+  const auto text = [&](double number) {
+    return plain ? fixed(number, decimals) : number_text(number, digits);
+  };
+  return text(value) + "(+" + text(up) + "/-" + text(down) + ")";
+}
+
 }  // namespace jostle::inline fitting

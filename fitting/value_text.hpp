@@ -13,6 +13,10 @@ namespace jostle::inline fitting {
 /// "-".
 std::string value_with_error(double value, double error, double scale = 1);
 
+/// "56(+18/-11)": a value with the distances to the ends of its interval, the smaller with two
+/// digits. Requires finite numbers, low < value < high.
+std::string value_with_limits(double value, double low, double high);
+
 /// Range of a value: "0.57 to 0.61" with so many digits, "> 0.57", "< 0.61", or "no limit" where
 /// neither end is finite.
 std::string limits_text(double low, double high, int digits);

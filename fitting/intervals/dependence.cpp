@@ -13,6 +13,10 @@ namespace {
 constexpr double least_inflation =
     1e-12;  // realizations that agree in a variable, but for rounding
 
+// Least share of J^T J that the curvature leaves of the second derivatives. With less the minimum
+// is all but level in this direction, and no quadratic.
+constexpr double least_stiffness = 0.1;
+
 constexpr double constant_tolerance =
     1e-6;  // tolerance for a constant's squared length, outside the tangent
 constexpr double least_level_weight = 1e-6;
@@ -43,27 +47,48 @@ Influence influence(const Eigen::MatrixXd& jacobian) {
 }
 
 // From the covariance of Q^T r in units of what independent points give.
-DependentErrors errors_of(const Influence& found, const Eigen::MatrixXd& scatter, double variance,
-                          double dof) {
+// `compliance`: the inverse of the second derivatives of half the squares, in units of Q^T r; the
+// identity where they are J^T J.
+DependentErrors errors_of(const Influence& found, const Eigen::MatrixXd& scatter,
+                          const Eigen::MatrixXd& compliance, double variance, double dof) {
   DependentErrors errors;
-  errors.covariance = found.changes.transpose() * (variance * scatter) * found.changes;
+  const Eigen::MatrixXd moved = compliance * scatter * compliance;
+  errors.covariance = found.changes.transpose() * (variance * moved) * found.changes;
   errors.inflation.resize(found.changes.cols());
   for (Eigen::Index j = 0; j < errors.inflation.size(); ++j) {
     const Eigen::VectorXd direction = found.changes.col(j).normalized();
-    errors.inflation[j] = std::max(direction.dot(scatter * direction), least_inflation);
+    errors.inflation[j] = std::max(
+        direction.dot(moved * direction) / direction.dot(compliance * direction), least_inflation);
   }
   errors.dof = dof;
   return errors;
 }
 
+Eigen::MatrixXd identity(const Influence& found) {
+  return Eigen::MatrixXd::Identity(found.changes.rows(), found.changes.rows());
+}
+
+Eigen::MatrixXd compliance_of(const Influence& found, const Curvature& curvature) {
+  if (!curvature) return identity(found);
+  const Eigen::MatrixXd added = curvature(found.changes.transpose());
+  if (!added.allFinite()) return identity(found);
+  // Singular values of a positive matrix with these eigenvectors: a symmetric one's are its
+  // eigenvalues without signs.
+  const double shift = 1 + added.norm();
+  const auto [values, vectors] = singular_values(added + shift * identity(found));
+  const Eigen::VectorXd stiffness = (values.array() - shift + 1).max(least_stiffness).matrix();
+  return vectors * stiffness.cwiseInverse().asDiagonal() * vectors.transpose();
+}
+
 }  // namespace
 
-DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
-                                 const Eigen::MatrixXd& deviations) {
+DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations,
+                                 const Curvature& curvature) {
   const Influence found = influence(jacobian);
   const Eigen::MatrixXd projected = found.basis.transpose() * deviations;
   const auto m = static_cast<double>(deviations.cols());
-  return errors_of(found, projected * projected.transpose() / (m * (m - 1)), 1, m - 1);
+  return errors_of(found, projected * projected.transpose() / (m * (m - 1)),
+                   compliance_of(found, curvature), 1, m - 1);
 }
 
 double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& jacobian,
@@ -93,9 +118,9 @@ MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& 
   if (sigma_given && !(scatter.diagonal().maxCoeff() > 1)) {
     scatter.setIdentity();
     memory = {.variance = memory.variance, .effective_size = static_cast<double>(t.size())};
-    return {errors_of(found, scatter, 1, infinite), memory};
+    return {errors_of(found, scatter, identity(found), 1, infinite), memory};
   }
-  return {errors_of(found, scatter, unit, dof), memory};
+  return {errors_of(found, scatter, identity(found), unit, dof), memory};
 }
 
 }  // namespace jostle::inline fitting

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace jostle::inline fitting {
 /// Errors of least squares that count the dependence of its points.
 struct DependentErrors {
   Eigen::MatrixXd covariance;  // [n_variables, n_variables]
-  /// [n_variables], > 0: the variance of each variable over what independent points of unit
-  /// variance would give it, with the level weighed. A profile's threshold grows by its root.
+  /// [n_variables], > 0: the variance of each variable over what the second derivatives of the
+  /// squares give it with independent points of unit variance, with the level weighed. A profile's
+  /// threshold grows by its root.
   Eigen::VectorXd inflation;
   /// The weight of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
   double level_weight = 1;
@@ -22,14 +24,21 @@ struct DependentErrors {
   double dof = std::numeric_limits<double>::infinity();
 };
 
+/// Part of the second derivatives that J^T J lacks, along directions of the variables, the columns
+/// V: V^T S V, where S is the sum of r_i times the second derivatives of r_i. It matters where the
+/// law misses the curve.
+using Curvature = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& directions)>;
+
 /// Realizations as clusters (the sandwich of White 1980, doi:10.2307/1912934, over clusters; Liang
 /// & Zeger 1986, doi:10.1093/biomet/73.1.13): to first order the estimate is the mean of one
 /// estimate a realization, which are independent whatever the memory within each, so Student's t of
 /// n_realizations - 1 degrees of freedom is exact for linear laws and normal noise. jacobian:
 /// [n_points, n_variables], weighted; deviations: [n_points, n_realizations] of the realizations
-/// from their mean, with the same weights, n_realizations >= 2.
-DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian,
-                                 const Eigen::MatrixXd& deviations);
+/// from their mean, with the same weights, n_realizations >= 2. `curvature`: makes the sandwich
+/// that of the full second derivatives of the squares, as White has it: a law that misses the curve
+/// moves with a realization by another amount than J^T J alone says. None: J^T J.
+DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations,
+                                 const Curvature& curvature = nullptr);
 
 /// The weight that the weighted mean of the residuals deserves against their other components: the
 /// root of the variance of one of these over that of the mean. Below 1 where realizations keep to

@@ -44,7 +44,7 @@ DependentErrors errors_of_realizations(const Curve& curve, const LinearProblem& 
   const double weight = level_weight(problem.weights, jacobian, scatter);
   weigh_level(problem.weights, weight, jacobian);
   weigh_level(problem.weights, weight, scatter);
-  DependentErrors errors = clustered_errors(jacobian, scatter);
+  DependentErrors errors = clustered_errors(jacobian, scatter, problem.curvature);
   errors.level_weight = weight;
   return errors;
 }
@@ -74,6 +74,29 @@ DependentErrors of_independent_points(const LinearProblem& problem, const Fit& f
   return errors;
 }
 
+// By central differences of J^T r with these residuals, which are those of the minimum.
+Eigen::MatrixXd curvature_along(const CurveResiduals& residuals, const Eigen::VectorXd& minimum,
+                                const Eigen::VectorXd& missed, const Eigen::MatrixXd& directions) {
+  constexpr double step = 1e-2, farthest = 1e-3;  // of a direction; of a variable, or relatively
+  const Eigen::ArrayXd room = farthest * minimum.array().abs().max(1);
+  Eigen::VectorXd r(residuals.n_residuals());
+  Eigen::MatrixXd jacobian(residuals.n_residuals(), residuals.n_variables());
+  const auto gradient = [&](const Eigen::VectorXd& u) -> Eigen::VectorXd {
+    residuals.values_and_jacobian(u, r, jacobian);
+    return jacobian.transpose() * missed;
+  };
+  Eigen::MatrixXd along(directions.cols(), directions.cols());
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    const Eigen::VectorXd direction = directions.col(k);
+    const double share = (direction.array().abs() / room).maxCoeff();
+    const double length = std::min(step, 1 / std::max(share, 1e-300));
+    const Eigen::VectorXd change = length * direction;
+    along.col(k) = directions.transpose() *
+                   (gradient(minimum + change) - gradient(minimum - change)) / (2 * length);
+  }
+  return 0.5 * (along + along.transpose());
+}
+
 }  // namespace
 
 double half_width(double error, double dof, double level) {
@@ -90,6 +113,13 @@ LinearProblem linear_problem(const Model& model, const Curve& curve, const Param
   residuals.values_and_jacobian(u, problem.residuals, problem.jacobian);
   problem.slopes = residuals.slopes(u);
   problem.weights = residuals.weights();
+  // Each parameter takes two Jacobians, and so many parameters are rare.
+  constexpr Eigen::Index most_variables = 8;
+  if (residuals.n_variables() <= most_variables) {
+    problem.curvature = [=, &model, &curve, missed = problem.residuals](const Eigen::MatrixXd& to) {
+      return curvature_along(CurveResiduals(model, curve, values, free), u, missed, to);
+    };
+  }
   return problem;
 }
 

@@ -16,6 +16,9 @@ struct LinearProblem {
   Eigen::MatrixXd jacobian;     // [n_points, n_variables], of the residuals by the variables
   Eigen::VectorXd slopes;       // [n_variables], of the free parameters by the variables
   std::vector<double> weights;  // [n_points], of the residuals
+  /// Second derivatives of the residuals at the minimum (dependence.hpp); empty for a law with many
+  /// parameters. Refers to the model and the curve.
+  Curvature curvature;
 };
 LinearProblem linear_problem(const Model& model, const Curve& curve, const ParameterValues& values,
                              const std::vector<bool>& free);

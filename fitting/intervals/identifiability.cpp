@@ -70,12 +70,10 @@ std::string statement(const Estimate& estimate) {
            << " fit the curve as well (95 %)";
       break;
     case Identifiability::bounded_below:
-      text << name << " is not identifiable: the data say only " << name << " > " << interval.lower
-           << " (95 %)";
+      text << name << " has only a lower limit: " << name << " > " << interval.lower << " (95 %)";
       break;
     case Identifiability::bounded_above:
-      text << name << " is not identifiable: the data say only " << name << " < " << interval.upper
-           << " (95 %)";
+      text << name << " has only an upper limit: " << name << " < " << interval.upper << " (95 %)";
       break;
     case Identifiability::not_identifiable:
       text << name << " is not identifiable: the data set no limit on either side";
@@ -101,6 +99,7 @@ bool is_loose(const Estimate& estimate) {
 
 // Two parameters with a correlation of 0.98 have this one: below, what is loose is so by noise.
 constexpr double tied_condition = 100;
+constexpr double not_unique_condition = 1e3;
 
 // Lists unconstrained parameters, and those that can compensate each other.
 void remark_on_loose(Fit& fit) {
@@ -112,7 +111,9 @@ void remark_on_loose(Fit& fit) {
   std::ostringstream text;
   text.precision(2);
   const bool is_tied = fit.condition >= tied_condition;
-  text << (is_tied ? "The parameters are not unique: " : "The data say little of ");
+  text << (!is_tied                                ? "The data say little of "
+           : fit.condition >= not_unique_condition ? "The parameters are not unique: "
+                                                   : "Parameters are correlated: ");
   for (std::size_t i = 0; i < names.size(); ++i) {
     text << (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") << names[i];
   }
@@ -121,7 +122,9 @@ void remark_on_loose(Fit& fit) {
                           ": few or noisy points; quote intervals, not standard errors.");
     return;
   }
-  text << (names.size() > 1 ? " can make up for each other" : " can make up for the others")
+  const bool partly = fit.condition < not_unique_condition;
+  text << (partly ? " can partly make up for " : " can make up for ")
+       << (names.size() > 1 ? "each other" : "the others")
        << " over the range of t fitted (condition number " << fit.condition
        << "); quote intervals, not standard errors, and compare only fits over the same range.";
   fit.remarks.push_back(text.str());
@@ -135,7 +138,8 @@ void remark_on_memory(Fit& fit) {
        << " in t, so its " << fit.n_points << " points are worth " << fit.effective_size
        << " independent ones";
   if (too_short_for_errors(fit)) {
-    text << ", too few for errors and intervals, and none are given. Fit several realizations.";
+    text << ", too few for errors and intervals, and none are given. Fit several realizations, or, "
+            "where every point is an experiment of its own, fit without memory.";
   } else {
     text << "; errors and intervals count that.";
   }

@@ -39,6 +39,14 @@ TEST_CASE("an error stands in the last digits of its value") {
   CHECK(value_with_error(1.25e9, 3e6) == "1.2500(30)e+09");
 }
 
+TEST_CASE("a lopsided interval is given by both of its distances") {
+  CHECK(value_with_limits(56.04, 45.4, 74.1) == "56(+18/-11)");
+  CHECK(value_with_limits(0.5913, 0.5911, 0.5999) == "0.59130(+0.00860/-0.00020)");
+  CHECK(value_with_limits(-3, -3.5, 1) == "-3.00(+4.00/-0.50)");
+  CHECK(value_with_limits(2e-9, 1e-9, 1e-8) == "2e-09(+8e-09/-1e-09)");
+  CHECK(value_with_limits(3e8, 2e8, 9e8) == "3e+08(+6e+08/-1e+08)");
+}
+
 TEST_CASE("an error may be larger than its value, which may be negative") {
   CHECK(value_with_error(0.3, 1.2) == "0.3(1.2)");
   CHECK(value_with_error(-0.31, 0.12) == "-0.31(12)");
