@@ -151,7 +151,11 @@ std::vector<std::vector<std::size_t>> branches(std::span<const double> strengths
   for (std::size_t i = 1; i < strengths.size(); ++i) {
     if (strengths[i] != strengths[i - 1]) {
       const bool rises = strengths[i] > strengths[i - 1];
-      if (known && rises != rising) all.push_back({i - 1});
+      if (known && rises != rising) {
+        // If several steps have the strength of the turn, the last belongs to the way back alone.
+        if (all.back().size() > 1 && strengths[i - 1] == strengths[i - 2]) all.back().pop_back();
+        all.push_back({i - 1});
+      }
       rising = rises;
       known = true;
     }

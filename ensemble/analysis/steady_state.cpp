@@ -24,7 +24,7 @@ std::string reasons_for_doubt(const SteadyState& state) {
   if (state.trend.tests == 0) {
     add("one realization, too short for its memory, tells nothing of a drift");
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
-    add("only " + state.trend.power());
+    add(state.trend.power("only "));
   }
   if (!state.autocorrelation.found() ||
       n < SteadyStateTest::fewest_times * state.autocorrelation.time) {

@@ -100,7 +100,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
       state.blocking.plateau
           ? fmt::format("from blocks of {} taps",
                         state.blocking.levels[*state.blocking.plateau].block_length)
-          : "none: the taps are too few for the memory of the series";
+          : "none, as the taps are too few for the memory of the series";
   table.notes = {{"observable", series.observable},
                  {"taps", fmt::format("{} to {}", series.first_tap, series.last_tap)},
                  {"realizations", fmt::to_string(state.realizations)},

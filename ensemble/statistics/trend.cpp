@@ -170,15 +170,12 @@ std::string Trend::statement() const {
       halves.value, test);
 }
 
-std::string Trend::power() const {
+std::string Trend::power(const std::string& only) const {
   const double relative = detectable_in_sigma();
-  if (!std::isfinite(relative))
-    return finite_text("a change of {:.2g} over the taps would have been found with 80 %",
-                       detectable);
-  return finite_text(
-      "a change of {:.2g} over the taps, {:.2g} times the scatter of taps about their line, would "
-      "have been found with 80 %",
-      detectable, relative);
+  const std::string found = finite_text(
+      "the test finds {}drifts of {:.2g} or more over the taps (80 % power)", only, detectable);
+  if (!std::isfinite(relative)) return found;
+  return found + finite_text(", {:.2g} times the scatter of taps about their line", relative);
 }
 
 }  // namespace jostle::inline ensemble

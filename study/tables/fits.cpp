@@ -54,12 +54,13 @@ void remark_on_resampled(const ResampledErrors& resampled, Fit& fit) {
     if (!std::isfinite(error) || !std::isfinite(other)) continue;
     if (std::max(error / other, other / error) <= noticed_difference) continue;
     names.push_back(fmt::format("{} ({}, profile {})", fit.estimates[j].parameter.name,
-                                number_text(other, 2), number_text(error, 2)));
+                                number_text(half_width(other, fit.error_dof), 2),
+                                number_text(half_width(error, fit.error_dof), 2)));
   }
   if (names.empty()) return;
   fit.remarks.push_back(fmt::format(
-      "Standard errors from resamples and from profiles differ by more than 25 %: {}. The law is "
-      "far from linear here, or misses the curve; quote the longer error.",
+      "Errors from resamples and from profiles differ by more than 25 % (half widths at 68 %): {}. "
+      "The law is far from linear here, or misses the curve; quote the longer error.",
       fmt::join(names, ", ")));
 }
 

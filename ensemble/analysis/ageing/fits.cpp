@@ -43,8 +43,9 @@ std::string statement(const char* name, const LogEstimate& estimate) {
                        estimate.high_95);
   }
   if (!above && !below) return fmt::format("{} is not identifiable: no limit on either side", name);
-  return finite_text("{} is not identifiable: the data say only {} {} {:.3g} (95 %)", name, name,
-                     above ? '>' : '<', above ? estimate.low_95 : estimate.high_95);
+  return finite_text("{} has only {} limit: {} {} {:.3g} (95 %)", name,
+                     above ? "a lower" : "an upper", name, above ? '>' : '<',
+                     above ? estimate.low_95 : estimate.high_95);
 }
 
 double misfit(const AgeingLeastSquares& fit, std::size_t curve) {
@@ -66,8 +67,9 @@ AgeingLaw law_of(const AgeingLeastSquares& fit, std::size_t curve, LogEstimate a
   }
   AgeingLaw law{a_inf, b, tau, misfit(fit, curve), "", fit.b_is_held()};
   if (!fit.describes()) {
-    law.verdict = fit.curves().size() == 1 ? "eq. 6 does not describe this curve"
-                                           : "eq. 6 does not describe these curves";
+    law.verdict = fit.curves().size() == 1
+                      ? "eq. 6 does not describe this curve"
+                      : "eq. 6 with one B does not describe these curves together";
     return law;
   }
   for (const std::string& text :
@@ -152,6 +154,46 @@ AgeingLaw own_law(const LogCurves& curve) {
                 fit.estimate(AgeingLeastSquares::tau(0)));
 }
 
+namespace {
+
+std::string too_few(std::size_t complete, std::size_t realizations) {
+  const char* rule =
+      "laws and tests of ageing need 3 realizations that reached every tap asked for";
+  if (complete == realizations)
+    return fmt::format("{}, there are {}: run more realizations", rule, realizations);
+  return fmt::format("{}, {} of {} did: run more realizations, or ask for earlier taps", rule,
+                     complete, realizations);
+}
+
+std::string too_few_lags(std::size_t lags) {
+  return fmt::format(
+      "{} lag{} with a change, {} needed for a law of three parameters: ask for more "
+      "lags, or tap longer",
+      lags, lags == 1 ? "" : "s", fewest_lags);
+}
+
+std::size_t most_lags(const TapRows& rows, const AgeingGrid& grid,
+                      const std::vector<std::uint32_t>& realizations) {
+  std::size_t most = 0;
+  for (std::size_t k = 0; k < grid.waiting_times.size(); ++k)
+    most = std::max(most, lags_of_curve(rows, grid, realizations, k));
+  return most;
+}
+
+// Reason why a waiting time has no curve.
+std::string why_no_law(const TapRows& rows, const AgeingGrid& grid,
+                       const std::vector<std::uint32_t>& realizations, std::size_t waiting_time) {
+  const std::size_t lags = lags_of_curve(rows, grid, realizations, waiting_time);
+  if (lags > 0) return too_few_lags(lags);
+  const std::uint64_t first = grid.waiting_times[waiting_time];
+  const bool reached = std::ranges::any_of(
+      grid.lags, [&](std::uint64_t lag) { return !rows.row(first + lag).empty(); });
+  return rows.row(first).empty() || !reached ? "the series ends before"
+                                             : "nothing changes after this waiting time";
+}
+
+}  // namespace
+
 AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) {
   AgeingFits fits;
   const std::size_t n = grid.waiting_times.size();
@@ -168,13 +210,14 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
     }
   };
   if (complete.size() < 3) {
-    say(
-        fmt::format("{} of the realizations reached every tap asked for: fits need 3, so run more "
-                    "of them, or ask for earlier taps",
-                    complete.size()));
+    say(too_few(complete.size(), rows.realizations));
     return fits;
   }
-  say("nothing changes after this waiting time, or the series ends before");
+  say("nothing changes after these waiting times");
+  if (const std::size_t most = most_lags(rows, grid, complete); most > 0 && most < fewest_lags)
+    say(too_few_lags(most));
+  for (std::size_t k = 0; k < n; ++k)
+    fits.own[k].verdict = fits.shared[k].verdict = why_no_law(rows, grid, complete, k);
   const LogCurves curves = log_curves(rows, grid, complete);
   if (curves.size() == 0) return fits;
   for_each(threads, curves.size(), [&](std::size_t curve) {

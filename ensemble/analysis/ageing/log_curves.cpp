@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace jostle::inline ensemble {
 
 namespace {
-
-constexpr std::size_t fewest_lags = 4;  // one more than the law has parameters
 
 struct Logarithms {
   double here;
@@ -28,7 +27,29 @@ Logarithms logarithms(const std::vector<double>& changes, Changes of) {
   return {std::log(sum / static_cast<double>(squares.size())), ln_means_without_one(squares)};
 }
 
+// Nothing where the series does not have both taps, or too few realizations change.
+std::optional<Logarithms> change_over(const TapRows& rows, std::uint64_t from, std::uint64_t lag,
+                                      const std::vector<std::uint32_t>& realizations, Changes of) {
+  const std::span<const double> early = rows.row(from), late = rows.row(from + lag);
+  if (early.empty() || late.empty()) return std::nullopt;
+  std::vector<double> changes;
+  for (const std::uint32_t r : realizations) changes.push_back(late[r] - early[r]);
+  Logarithms found = logarithms(changes, of);
+  if (found.without_one.empty() ||
+      !std::ranges::all_of(found.without_one, [](double x) { return std::isfinite(x); }))
+    return std::nullopt;
+  return found;
+}
+
 }  // namespace
+
+std::size_t lags_of_curve(const TapRows& rows, const AgeingGrid& grid,
+                          const std::vector<std::uint32_t>& realizations, std::size_t waiting_time,
+                          Changes of) {
+  return static_cast<std::size_t>(std::ranges::count_if(grid.lags, [&](std::uint64_t lag) {
+    return change_over(rows, grid.waiting_times[waiting_time], lag, realizations, of).has_value();
+  }));
+}
 
 LogCurves LogCurves::one(std::size_t curve) const {
   const auto from = static_cast<std::ptrdiff_t>(first[curve]);
@@ -54,16 +75,10 @@ LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
   const std::size_t m = realizations.size();
   std::vector<double> ln_a, influences;
   for (std::size_t k = 0; k < grid.waiting_times.size(); ++k) {
-    const std::span<const double> early = rows.row(grid.waiting_times[k]);
     for (std::size_t j = 0; j < grid.lags.size(); ++j) {
-      const std::span<const double> late = rows.row(grid.waiting_times[k] + grid.lags[j]);
-      if (early.empty() || late.empty()) continue;
-      std::vector<double> changes;
-      for (const std::uint32_t r : realizations) changes.push_back(late[r] - early[r]);
-      const auto [here, without] = logarithms(changes, of);
-      if (without.empty() ||
-          !std::ranges::all_of(without, [](double x) { return std::isfinite(x); }))
-        continue;
+      const auto found = change_over(rows, grid.waiting_times[k], grid.lags[j], realizations, of);
+      if (!found) continue;
+      const auto& [here, without] = *found;
       curves.lag_indices.push_back(j);
       curves.lags.push_back(static_cast<double>(grid.lags[j]));
       ln_a.push_back(here);

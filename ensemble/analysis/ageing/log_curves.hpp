@@ -27,6 +27,14 @@ struct LogCurves {
 /// (ensemble/analysis/ageing/ageing.hpp).
 enum class Changes { mean_square, variance };
 
+/// Number of lags that a law needs: one more than it has parameters.
+inline constexpr std::size_t fewest_lags = 4;
+
+/// Number of lags over which two realizations or more change from a waiting time on, by its index.
+std::size_t lags_of_curve(const TapRows& rows, const AgeingGrid& grid,
+                          const std::vector<std::uint32_t>& realizations, std::size_t waiting_time,
+                          Changes of = Changes::mean_square);
+
 /// For some realizations without a gap: the waiting times with enough lags for a law, without the
 /// lags over which fewer than two realizations change.
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,

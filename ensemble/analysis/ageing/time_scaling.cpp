@@ -142,7 +142,7 @@ class PowerOfAge {
     }
     const auto squares = [&](double mu) { return at(mu).residuals.squaredNorm(); };
     const double near = *std::ranges::min_element(values_, {}, squares);
-    double low = near - mu_step, high = near + mu_step;
+    double low = std::max(near - mu_step, least_mu), high = std::min(near + mu_step, most_mu);
     while (high - low > 1e-4) {
       const double third = (high - low) / 3;
       if (squares(low + third) < squares(high - third)) {
@@ -193,7 +193,7 @@ std::string words(const AgeingExponent& found) {
   const bool low = std::isfinite(found.low_95), high = std::isfinite(found.high_95);
   if (!low && !high) return "mu is not identifiable: no limit on either side";
   if (!low || !high) {
-    return finite_text("mu is not identifiable: the data say only mu {} {:.2g} (95 %)",
+    return finite_text("mu has only {} limit: mu {} {:.2g} (95 %)", low ? "a lower" : "an upper",
                        low ? '>' : '<', low ? found.low_95 : found.high_95);
   }
   const auto of = [&](double mu) {
@@ -247,6 +247,8 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   AgeingExponent found{power.best(), error.error,  ends.low[0], ends.high[0],
                        ends.low[1],  ends.high[1], "",          collapse};
   found.verdict = words(found) + "; " + collapse.verdict;
+  if (!std::isfinite(found.low_68) || !std::isfinite(found.high_68))
+    found.mu = found.error = not_a_number;
   return found;
 }
 

@@ -15,7 +15,7 @@ namespace jostle::inline ensemble {
 /// only time scale. After Struik 1978 (Physical Aging in Amorphous Polymers and Other Materials)
 /// and Bouchaud, Cugliandolo, Kurchan & Mezard 1998, arXiv:cond-mat/9702070.
 struct AgeingExponent {
-  double mu, error;        // jackknife error of the least-squares estimate
+  double mu, error;        // least squares, jackknife error; NaN without 68 % limits
   double low_68, high_68;  // values that the slope of the squares does not refute, Student's t
   double low_95, high_95;
   std::string verdict;

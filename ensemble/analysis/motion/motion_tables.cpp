@@ -191,7 +191,8 @@ Table displacement_table(const std::string& prefix, const MotionRecords& records
   };
   add("msd_lateral", "diameter^2", "mean square displacement sideways, x and y together", "",
       lateral_squares);
-  table.add_means_of({"settling", "diameter", "mean vertical displacement", ""},
+  table.add_means_of({"settling", "diameter",
+                      "mean vertical displacement upwards: negative where spheres settle", ""},
                      [&](std::size_t o, std::size_t l, std::size_t) {
                        return copy(records.row("mean_displacement", o, l, 2));
                      });
@@ -272,7 +273,8 @@ Table layer_table(const std::string& prefix, const MotionRecords& records) {
                      [&](std::size_t o, std::size_t l, std::size_t layer) {
                        return layer_lateral_squares(records, o, l, layer);
                      });
-  table.add_means_of({"settling", "diameter", "mean vertical displacement", ""},
+  table.add_means_of({"settling", "diameter",
+                      "mean vertical displacement upwards: negative where spheres settle", ""},
                      [&](std::size_t o, std::size_t l, std::size_t layer) {
                        return copy(records.row("layer_settling", o, l, layer));
                      });

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "ensemble/analysis/ordering/ordering_table.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -40,6 +43,24 @@ std::string steady_word(const OrderingPoint& point) {
   return *point.steady == Verdict::not_reached ? "not reached" : "cannot decide";
 }
 
+// True if realizations order at equal taps, in any order of realizations.
+bool same_times(std::vector<OrderingTime> a, std::vector<OrderingTime> b) {
+  const auto earlier = [](const OrderingTime& one, const OrderingTime& other) {
+    return std::pair(one.tap, one.ordered) < std::pair(other.tap, other.ordered);
+  };
+  std::ranges::sort(a, earlier);
+  std::ranges::sort(b, earlier);
+  const auto share = [](const std::vector<OrderingTime>& times, std::size_t i, std::size_t n) {
+    const OrderingTime& time = times[i * times.size() / n];
+    return std::pair(time.tap, time.ordered);
+  };
+  if (a.empty() || b.empty()) return a.empty() == b.empty();
+  const std::size_t n = std::lcm(a.size(), b.size());
+  for (std::size_t i = 0; i < n; ++i)
+    if (share(a, i, n) != share(b, i, n)) return false;
+  return true;
+}
+
 std::string first_statement(const std::vector<OrderingPoint>& points, std::size_t best,
                             const Candidates& found, bool any) {
   if (!any) return "cannot decide: no realization ordered";
@@ -49,8 +70,14 @@ std::string first_statement(const std::vector<OrderingPoint>& points, std::size_
         "test of {} points to exclude any; add realizations",
         points[best].label, points.size());
   }
-  return fmt::format("{}; may be first: {} (97.5 %, permutation log-rank tests of all pairs)",
-                     points[best].label, labels_of(points, found.may_be));
+  // Points with equal times have no order.
+  std::vector<bool> earliest(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    earliest[k] = same_times(points[k].times.known(), points[best].times.known());
+  const bool tie = std::ranges::count(earliest, true) > 1;
+  return fmt::format("{}{}; may be first: {} (97.5 %, permutation log-rank tests of all pairs)",
+                     tie ? "exact tie of " : "", labels_of(points, earliest),
+                     labels_of(points, found.may_be));
 }
 
 std::string largest_statement(const std::vector<OrderingPoint>& points, std::size_t best,
@@ -85,7 +112,17 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
         "(p < 0.05){}",
         not_shown.empty() ? "" : "; that these are steady is not shown at " + not_shown);
   }
-  return "not told apart: may be both, " + labels_of(points, both);
+  const auto only = [](const std::vector<bool>& flags) {
+    return std::ranges::count(flags, true) == 1;
+  };
+  if (only(first.may_be) && only(largest.may_be)) {
+    return labels_of(points, both) +
+           " orders first and has the largest value over the last taps (no other point may)";
+  }
+  return fmt::format(
+      "undecided whether one point orders first and has the largest value over the last taps: {} "
+      "{}",
+      only(both) ? "only this point may, " : "these points may, ", labels_of(points, both));
 }
 
 struct Comparison {

@@ -41,8 +41,8 @@ std::string drift_verdict(const Trend& trend, Detrending detrending) {
     if (trend.tests == 0 || trend.is_constant()) return trend.statement();
     return trend.detectable_in_sigma() <= SteadyStateTest::largest_unseen
                ? trend.statement() + "; " + trend.power()
-               : fmt::format("cannot decide whether it drifts: {}, but only {}", trend.statement(),
-                             trend.power());
+               : fmt::format("cannot decide whether it drifts: {}, but {}", trend.statement(),
+                             trend.power("only "));
   }
   const std::string drift =
       finite_text("{}, {:.0f} % of the variance", trend.statement(), 100 * trend.share);

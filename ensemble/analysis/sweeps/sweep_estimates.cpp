@@ -121,7 +121,12 @@ std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
   const auto& y = curve.fitted_y();
   const auto top = std::ranges::max_element(y);
   if (std::isnan(found.x) && (top == y.begin() || top + 1 == y.end())) {
-    return "none found: the largest value is at an end of the sweep (" + test + ")";
+    const auto least = std::ranges::min_element(y);
+    const bool inside = least != y.begin() && least + 1 != y.end();
+    return "none found: the largest value is at an end of the sweep (" + test + ")" +
+           (inside ? finite_text("; the least value is inside, at {:.4g}: no minimum is tested",
+                                 curve.x()[static_cast<std::size_t>(least - y.begin())])
+                   : "");
   }
   return fmt::format("cannot decide{}: {} ({})", realizations_of(curve),
                      std::isnan(found.x) ? "the points about the largest value do not bend down"

@@ -51,8 +51,9 @@ Table with_half_widths(Table table) {
     const Quantity* const dof = named(table, stem + dof_suffix);
     auto* const errors = std::get_if<std::vector<double>>(&quantity.values);
     const auto* const freedom = dof ? std::get_if<std::vector<double>>(&dof->values) : nullptr;
-    if (!named(table, stem) || !errors) continue;
+    if (!errors) continue;
     if (!freedom || freedom->empty()) {
+      if (!named(table, stem)) continue;
       if (!named(table, stem + "_low_95")) {
         bare.append(bare.empty() ? "" : ", ").append(quantity.name);
       }
@@ -62,7 +63,10 @@ Table with_half_widths(Table table) {
       (*errors)[i] = half((*errors)[i], (*freedom)[freedom->size() == errors->size() ? i : 0]);
     }
     quantity.name = stem + half_width_suffix;
-    quantity.long_name = "half the 68 % interval";
+    const std::string standard = "standard error";
+    const bool more = !named(table, stem) && quantity.long_name.starts_with(standard);
+    quantity.long_name =
+        "half the 68 % interval" + (more ? quantity.long_name.substr(standard.size()) : "");
     used.push_back(dof->name);
   }
   std::erase_if(table.quantities, [&](const Quantity& quantity) {

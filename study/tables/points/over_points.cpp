@@ -28,8 +28,10 @@ SharedTaps shared_taps(std::span<const ReachedTaps> points) {
     if (one.rows == 0) {
       reason = "no realization has taps";
     } else if (2 * last(one.rows) < last(most)) {
-      reason = fmt::format("its realizations have all reached tap {}, those of others tap {}",
-                           last(one.rows), last(most));
+      reason = fmt::format(
+          "its realizations have all reached tap {}, fewer than half of the {} taps that those of "
+          "another point reached",
+          last(one.rows), last(most));
     } else {
       const auto [at, first] = shared.try_emplace(one.planned, one.rows);
       if (!first) at->second = std::min(at->second, one.rows);

@@ -37,7 +37,9 @@ TEST_CASE("Branches end where the strength turns, and share the step at the turn
   CHECK(branches(std::vector{1.0, 2.0, 4.0}) == Branches{{0, 1, 2}});
   CHECK(branches(std::vector{1.0, 2.0, 3.0, 2.0, 1.0, 2.0}) ==
         Branches{{0, 1, 2}, {2, 3, 4}, {4, 5}});
-  CHECK(branches(std::vector{1.0, 1.0, 2.0, 2.0, 1.0}) == Branches{{0, 1, 2, 3}, {3, 4}});
+  // A ramp up to 2 and another down from it: each has a step of its own at the turn.
+  CHECK(branches(std::vector{1.0, 1.0, 2.0, 2.0, 1.0}) == Branches{{0, 1, 2}, {3, 4}});
+  CHECK(branches(std::vector{1.0, 2.0, 2.0, 1.0, 1.0, 2.0}) == Branches{{0, 1}, {2, 3}, {4, 5}});
   CHECK(branches(std::vector{3.0, 1.0, 1.0, 0.5}) == Branches{{0, 1, 2, 3}});
 }
 

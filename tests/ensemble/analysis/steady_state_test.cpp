@@ -181,12 +181,14 @@ TEST_CASE("A steady state names the drift that would have refuted it") {
   const SteadyState reached = steady_state(ensemble);
   CHECK(reached.verdict() == Verdict::reached);
   CHECK(reached.detectable() < 1);
-  CHECK(reached.statement().find("would have been found with 80 %") != std::string::npos);
+  CHECK(reached.statement().find("; the test finds drifts of ") != std::string::npos);
+  CHECK(reached.statement().find(" or more over the taps (80 % power), ") != std::string::npos);
   for (auto& series : ensemble) series.resize(200);
   const SteadyState undecided = steady_state(ensemble);
   CHECK(undecided.verdict() == Verdict::cannot_decide);
   CHECK(undecided.detectable() > 1);
   CHECK(undecided.statement().starts_with("cannot decide with 3 realizations: no drift found"));
+  CHECK(undecided.statement().find(", but the test finds only drifts of ") != std::string::npos);
   // One of that size is found.
   for (auto& series : ensemble) {
     series = synthetic::with_ramp(series, 2 * undecided.trend.detectable);

@@ -164,7 +164,7 @@ TEST_CASE("Where B has no limit it is held, and curves keep their scales", "[sta
   for (std::size_t k = 0; k < 3; ++k) {
     const AgeingLaw& law = fits.shared[k];
     CAPTURE(k, law.verdict);
-    CHECK(law.verdict.starts_with("B is not identifiable: the data say only B < "));
+    CHECK(law.verdict.starts_with("B has only an upper limit: B < "));
     CHECK(law.verdict.find("it is held at ") != std::string::npos);
     CHECK(law.b_is_held);
     CHECK(law.b.low_95 == 0);
@@ -198,7 +198,8 @@ TEST_CASE(
     CHECK(fits.own[k].verdict == "eq. 6 does not describe this curve");
     CHECK(!fits.own[k].is_determined());
     CHECK(fits.shared[k].verdict ==
-          "eq. 6 does not describe these curves: no shared law, nothing to scale by");
+          "eq. 6 with one B does not describe these curves together: no shared law, nothing to "
+          "scale by");
   }
   const Table table = ageing_table("ageing", height, rows, grid);
   CHECK(std::isnan(scalar(table, "collapse_relative")));
@@ -229,10 +230,34 @@ TEST_CASE("Too few realizations for a fit are named, with what to do") {
   const AgeingFits fits = fit_ageing(rows, grid);
   CHECK(fits.realizations == 2);
   CHECK(std::isnan(fits.own[0].tau.value));
-  CHECK(fits.shared[2].verdict ==
-        "2 of the realizations reached every tap asked for: fits need 3, so run more of them, or "
-        "ask for earlier taps");
-  CHECK(fits.collapse.verdict.starts_with("cannot decide: 2 of the realizations"));
+  CHECK(
+      fits.shared[2].verdict ==
+      "laws and tests of ageing need 3 realizations that reached every tap asked for, 2 of 4 did: "
+      "run more realizations, or ask for earlier taps");
+  CHECK(fits.collapse.verdict.starts_with("cannot decide: laws and tests of ageing need 3"));
+  // Earlier taps do not help where all reached every tap.
+  const AgeingFits two = fit_ageing(eq_6_rows(4, 2), grid);
+  CHECK(two.ageing.verdict ==
+        "cannot decide: laws and tests of ageing need 3 realizations that reached every tap asked "
+        "for, there are 2: run more realizations");
+}
+
+TEST_CASE("Waiting times without a law say why there is none") {
+  const AgeingGrid few{.waiting_times = grid.waiting_times, .lags = {grid.lags[0], grid.lags[1]}};
+  const TapRows rows = eq_6_rows(4, 4);
+  const std::string lags =
+      "2 lags with a change, 4 needed for a law of three parameters: ask for more lags, or tap "
+      "longer";
+  const AgeingFits fits = fit_ageing(rows, few);
+  CHECK(fits.own[0].verdict == lags);
+  CHECK(fits.shared[1].verdict == lags);
+  CHECK(fits.ageing.verdict == "cannot decide: " + lags);
+  AgeingGrid late = grid;
+  late.waiting_times.back() = rows.taps.back();
+  CHECK(fit_ageing(rows, late).own.back().verdict == "the series ends before");
+  TapRows still = rows;
+  for (double& value : still.values) value = 1;
+  CHECK(fit_ageing(still, grid).own[0].verdict == "nothing changes after this waiting time");
 }
 
 TEST_CASE("A table of ageing has values for all places of its axes") {

@@ -60,7 +60,7 @@ struct Rates {
   Found power, logarithmic;
   void add(const LogCurves& curves, double exact) {
     const AgeingExponent found = ageing_exponent(curves, ages, "a");
-    if (std::isfinite(found.mu)) mu.add(found, exact);
+    if (!std::isnan(found.low_95)) mu.add(found, exact);
     power.add(found.collapse, "collapse not refuted");
     logarithmic.add(logarithmic_collapse(curves, ages, "a"), "collapse not refuted");
   }
@@ -156,7 +156,7 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
   const AgeingExponent none = ageing_exponent(curves, {0, 0, 1000}, "a");
   CHECK(std::isnan(none.mu));
   CHECK(none.verdict == "no mu: cannot decide: fewer than two waiting times above 0 have curves");
-  CHECK(std::isfinite(ageing_exponent(curves, {0, 100, 1000}, "a").mu));
+  CHECK(!std::isnan(ageing_exponent(curves, {0, 100, 1000}, "a").low_95));
   CHECK(logarithmic_collapse(curves, {1, 1, 1000}, "a").verdict ==
         "cannot decide: fewer than two waiting times above 1 have curves");
   const LogCurves three = curves_of(3, 3, power(0.6));
@@ -164,6 +164,25 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
         "cannot decide: the logarithms need 4 realizations");
   CHECK(ageing_exponent(three, ages, "a").verdict ==
         "no mu: cannot decide: mu needs 4 realizations");
+}
+
+TEST_CASE("mu has a value where it is limited on both sides, within the range of the search") {
+  int open = 0, closed = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    for (const double truth : {-0.95, 1.0}) {
+      const AgeingExponent found =
+          ageing_exponent(curves_of(7000 + seed, 4, power(truth)), ages, "a");
+      if (std::isnan(found.low_95)) continue;
+      const bool limited = std::isfinite(found.low_68) && std::isfinite(found.high_68);
+      CAPTURE(seed, truth, found.mu, found.error, found.verdict);
+      CHECK(std::isfinite(found.mu) == limited);
+      CHECK(std::isfinite(found.error) == limited);
+      if (limited) CHECK((found.mu >= -1 && found.mu <= 2));
+      ++(limited ? closed : open);
+    }
+  }
+  CHECK(open > 0);
+  CHECK(closed > 0);
 }
 
 TEST_CASE("Curves with no more points than F has parameters say nothing of mu") {

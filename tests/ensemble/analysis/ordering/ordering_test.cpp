@@ -259,7 +259,25 @@ TEST_CASE("A comparison tells the point that orders first from the one that ends
   }
   SECTION("one that still drifts may yet become the largest") {
     points[1].steady = Verdict::not_reached;
-    CHECK(note(compare(), "verdict") == "not told apart: may be both, lift=0.3");
+    CHECK(note(compare(), "verdict") ==
+          "undecided whether one point orders first and has the largest value over the last taps: "
+          "only this point may, lift=0.3");
+  }
+  SECTION("one point that does both is named") {
+    points[1].last_values = {0.7, 0.701, 0.702, 0.703, 0.704, 0.705};
+    CHECK(
+        note(compare(), "verdict") ==
+        "lift=0.3 orders first and has the largest value over the last taps (no other point may)");
+  }
+  SECTION("points that order at the same taps are a tie") {
+    points[0].times = points[1].times;
+    CHECK_THAT(
+        note(compare(), "orders_first"),
+        Catch::StartsWith("exact tie of lift=0.2, lift=0.3; may be first: lift=0.2, lift=0.3"));
+    for (OrderingPoint& one : points)
+      for (auto& time : one.times.of_realization) time = OrderingTime{0, true};
+    CHECK_THAT(note(compare(), "orders_first"),
+               Catch::StartsWith("exact tie of lift=0.2, lift=0.3, lift=0.4; "));
   }
   SECTION("three realizations cannot exclude a point") {
     for (OrderingPoint& one : points) {

@@ -130,6 +130,9 @@ TEST_CASE("What is no maximum is not called one") {
   CHECK(std::isnan(rising.x));
   CHECK(std::isnan(rising.x_high));
   CHECK(rising.verdict.starts_with("none found: the largest value is at an end of the sweep"));
+  CHECK(rising.verdict.ends_with(")"));
+  CHECK(maximum(SweepCurve(x, {3, 2, 1, 1.5, 2}, error))
+            .verdict.ends_with("; the least value is inside, at 3: no minimum is tested"));
   const SweepMaximum flat = maximum(SweepCurve(x, {1, 1.01, 1.02, 1.01, 1}, error));
   CHECK(flat.p > 0.1);
   CHECK(flat.verdict.starts_with("cannot decide: chance alone"));

@@ -62,15 +62,23 @@ TEST_CASE("Errors of a table become half widths where their degrees of freedom a
   table.quantities = {{"x", along, std::vector{1.0, 2.0}},
                       {"x_error", along, std::vector{0.1, 0.1}},
                       {"x_dof", along, std::vector{2.0, std::numeric_limits<double>::infinity()}},
+                      {"x_pooled_error", along, std::vector{0.2, 0.2}, "1",
+                       "standard error by the pooled variance"},
+                      {"x_pooled_dof", along, std::vector{2.0, 2.0}},
                       {"y", along, std::vector{1.0, 2.0}},
                       {"y_error", along, std::vector{0.1, 0.2}}};
   const Table shown = with_half_widths(table);
-  REQUIRE(shown.quantities.size() == 4);
+  REQUIRE(shown.quantities.size() == 5);
   CHECK(shown.quantities[1].name == "x_half_width");
   const auto& widths = std::get<std::vector<double>>(shown.quantities[1].values);
   CHECK(widths[0] == Approx(0.13212773729262588).epsilon(1e-9));
   CHECK(widths[1] == Approx(0.1).epsilon(1e-12));
-  CHECK(shown.quantities[3].name == "y_error");  // a standard error is a column of its own
+  // Another error of x is one convention with it.
+  CHECK(shown.quantities[2].name == "x_pooled_half_width");
+  CHECK(std::get<std::vector<double>>(shown.quantities[2].values)[0] ==
+        Approx(2 * widths[0]).epsilon(1e-9));
+  CHECK(shown.quantities[2].long_name == "half the 68 % interval by the pooled variance");
+  CHECK(shown.quantities[4].name == "y_error");  // a standard error is a column of its own
   REQUIRE(shown.notes.size() == 1);
   CHECK(shown.notes[0].second.find("half the 68 % interval") != std::string::npos);
   CHECK(shown.notes[0].second.find("y_error: standard errors") != std::string::npos);

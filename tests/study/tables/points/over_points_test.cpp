@@ -12,7 +12,9 @@ TEST_CASE("Points are compared over the taps that they share, those far behind l
   CHECK(shared.rows == std::vector<std::uint64_t>{501, 501, 501, 0, 0, 51});
   CHECK(shared.reasons[0].empty());
   CHECK(shared.reasons[2].empty());
-  CHECK(shared.reasons[3] == "its realizations have all reached tap 499, those of others tap 1000");
+  CHECK(shared.reasons[3] ==
+        "its realizations have all reached tap 499, fewer than half of the 1000 taps that those of "
+        "another point reached");
   CHECK(shared.reasons[4] == "no realization has taps");
   CHECK(shared.reasons[5].empty());
   CHECK(shared_taps(std::vector<ReachedTaps>{{10, 1}, {10, 1}}).rows ==
