@@ -32,10 +32,9 @@ namespace jostle::inline cli {
 namespace {
 
 struct FitArguments {
-  std::string input, observable, point, model, range, csv;
-  std::vector<std::string> fixed;
+  std::string input, observable, point, range, csv;
+  std::vector<std::string> models, fixed, start, bounds;  // the last two are of the own law
   OwnLaw law;
-  std::vector<std::string> start, bounds;  // bounds of the law
   std::string resample = "none";
   std::uint32_t count = 1000;
   std::uint64_t seed = 1;
@@ -126,10 +125,13 @@ std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments)
   const bool own = !arguments.law.formula.empty();
   std::vector<std::unique_ptr<Model>> models;
   if (own) models.push_back(own_law(arguments));
-  if (own && arguments.model.empty()) return models;
-  for (auto& model : models_of_name(arguments.model.empty() ? "all" : arguments.model)) {
-    models.push_back(std::move(model));
-  }
+  if (own && arguments.models.empty()) return models;
+  auto names = arguments.models;
+  if (names.empty()) names = {"all"};
+  for (const std::string& name : names)
+    for (auto& model : models_of_name(name))
+      if (std::ranges::find(models, model->name(), &Model::name) == models.end())
+        models.push_back(std::move(model));
   return models;
 }
 
@@ -264,7 +266,7 @@ int run_fits(const FitArguments& arguments) {
     if (arguments.json) {
       curves.push_back(source_json(fitted));
     } else if (refusal.empty()) {
-      print_report(fits_text(fitted, arguments.layout));
+      print_report(fits_text(fitted, arguments.layout) + memory_hint(fitted));
     }
     if (source.point) {
       const auto fits = fit_tables(fitted, manner);
@@ -333,9 +335,10 @@ void add_fit(Command& app, int& code) {
                      "Sweep point: its number, VALUE or NAME=VALUE (default: every point)");
   command
       .add_option(
-          "--model", a.model,
-          "A law of docs/reference/laws.md, or all: every law of relaxation (default); with "
-          "--law also that")
+          "--model", a.models,
+          "Laws of docs/reference/laws.md, NAME,..., or all: every law of relaxation (default); "
+          "with --law also that")
+      .separated_by(',')
       .offers(model_names());
   add_law_options(command, a);
   command.add_option(
@@ -376,7 +379,7 @@ void add_fit(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction     all laws\n"
-      "  jostle fit bell.h5 --observable bulk_fraction --model kww --range 1:400\n"
+      "  jostle fit bell.h5 --observable bulk_fraction --model kww,inverse_log --range 1:400\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
       "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"

@@ -179,8 +179,10 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   }
   if (stopped) {
     say_which_tables_are_gone(run.tables_before(), run.results().table_names(), settings.output);
-    print_to_standard_error(fmt::format("jostle: stopped by {}; resume with\n  {}\n", stop.reason(),
-                                        resume_command(arguments)));
+    print_to_standard_error(
+        fmt::format("jostle: stopped by {}; resume with{}\n  {}\n", stop.reason(),
+                    arguments.time_limit ? " (omit --time-limit to reach the end)" : "",
+                    resume_command(arguments)));
     return exit_stopped;
   }
   const std::vector<std::string> before = run.tables_before();

@@ -16,8 +16,11 @@ namespace jostle::inline cli {
 namespace {
 
 constexpr const char* verdict_legend =
-    "\na(b): b, in the last digits of a, is half the 68 % interval; -: that interval is open; not "
-    "identifiable: the data set no limit. docs/reference/laws.md describes the rest.\n";
+    "\na(b): b, in the last digits of a, is half the 68 % interval; a(+b/-c): its two sides; -: "
+    "that "
+    "interval is open; not identifiable: the data set no limit. docs/reference/laws.md describes "
+    "the "
+    "rest.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -273,7 +276,22 @@ std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layo
              layout.width);
 }
 
-std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes) {
+std::string memory_hint(const FittedCurve& fitted) {
+  if (fitted.source.point || fitted.source.curve.n_realizations > 0) return "";
+  const bool open = std::ranges::any_of(fitted.outcomes, [](const FitOutcome& outcome) {
+    const auto* fit = std::get_if<Fit>(&outcome.result);
+    return fit != nullptr && fit->memory.time > 0 && !std::isfinite(fit->estimates.front().error);
+  });
+  return open ? "\nWhere every point is an experiment of its own, --independent gives errors.\n"
+              : "";
+}
+
+std::string fit_csv(const Curve& source, const std::vector<FitOutcome>& outcomes) {
+  const bool logarithmic = std::ranges::all_of(outcomes, [](const FitOutcome& outcome) {
+    const auto* fit = std::get_if<Fit>(&outcome.result);
+    return fit == nullptr || fit->logarithmic;
+  });
+  const Curve curve = with_pooled_errors(source, logarithmic);
   std::string text = curve.sigma.empty() ? "t,X" : "t,X,sigma";
   std::vector<const Fit*> fits;
   for (const FitOutcome& outcome : outcomes) {

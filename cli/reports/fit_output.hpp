@@ -31,7 +31,10 @@ std::vector<FitSummary> summary_of(const FittedCurve& fitted);
 /// The rows as one table with the convention of its errors below it. Empty without rows.
 std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layout);
 
+/// The option that gives errors where one measured curve remembers for too long; or nothing.
+std::string memory_hint(const FittedCurve& fitted);
+
 /// The curve with its fits: columns t, X, sigma if given, and one a model that was fitted.
-std::string fit_csv(const Curve& curve, const std::vector<FitOutcome>& outcomes);
+std::string fit_csv(const Curve& source, const std::vector<FitOutcome>& outcomes);
 
 }  // namespace jostle::inline cli

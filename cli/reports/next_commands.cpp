@@ -1,6 +1,7 @@
 #include "cli/reports/next_commands.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "cli/options/command_words.hpp"
 
@@ -31,6 +32,34 @@ std::string fraction_of(const StudyPoint& point) {
   return found != point.observables.end() ? found->name : point.observables.front().name;
 }
 
+/// Returns the first observable of the point that is named under a key "observable".
+std::optional<std::string> named_in(const Json& part, const StudyPoint& point) {
+  if (part.is_array()) {
+    for (const Json& one : part.elements())
+      if (auto found = named_in(one, point)) return found;
+  }
+  if (!part.is_object()) return std::nullopt;
+  for (const auto& [key, member] : part.members()) {
+    if (key != "observable") {
+      if (auto found = named_in(member, point)) return found;
+    } else if (member.is_string() && std::ranges::find(point.observables, member.text(),
+                                                       &Column::name) != point.observables.end()) {
+      return member.text();
+    }
+  }
+  return std::nullopt;
+}
+
+/// Returns what the scene itself fits, analyses or runs until; else a fraction.
+std::string studied_observable(const Json& scene, const StudyPoint& point) {
+  for (const char* part : {"fits", "analyse", "until"}) {
+    const Json* found = scene.find(part);
+    if (found == nullptr) continue;
+    if (auto name = named_in(*found, point)) return *name;
+  }
+  return fraction_of(point);
+}
+
 /// Ramps that follow one another may turn.
 bool goes_up_and_down(const Json& scene) {
   const Json* protocol = scene.find("protocol");
@@ -53,7 +82,7 @@ std::vector<std::vector<std::string>> next_commands(const Study& study, const Js
   const std::string file = operand(path);
   const StudyPoint& point = study.points.front();
   if (point.observables.empty()) return {{"info", file}};
-  const std::string observable = fraction_of(point);
+  const std::string observable = studied_observable(scene, point);
   const bool kept = point.snapshots.positions && !point.snapshots.taps.empty();
   std::vector<std::vector<std::string>> commands;
   const auto propose = [&](bool makes_sense, std::vector<std::string> words) {

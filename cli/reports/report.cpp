@@ -103,13 +103,16 @@ std::string fitting_line(const ResultsFile& file, std::uint32_t point) {
 
 /// Realizations of one point by how they ended, and what they cost.
 struct PointCost {
-  std::uint64_t done = 0, unfinished = 0, failed = 0;
+  std::uint64_t done = 0, unfinished = 0, missing = 0, failed = 0;
   Work work;
+
+  std::uint64_t all() const { return done + unfinished + missing + failed; }
 };
 
 std::string cost_line(const PointCost& cost, const std::string& unit) {
   std::string line = fmt::format("{} done", cost.done);
   if (cost.unfinished > 0) line += fmt::format(", {} unfinished", cost.unfinished);
+  if (cost.missing > 0) line += fmt::format(", {} missing", cost.missing);
   line += fmt::format(", {} failed; {} {} in {} of one core", cost.failed,
                       format_count(static_cast<double>(cost.work.effort.units)), unit,
                       format_duration(Seconds(cost.work.seconds)));
@@ -154,7 +157,7 @@ PointCost cost_of(const ResultsFile& file, std::span<const RealizationSummary> r
     } else if (one.status == RealizationStatus::failed) {
       ++cost.failed;
     } else if (in_share(file.shard(), file.study(), one.id)) {
-      ++cost.unfinished;
+      ++(one.status == RealizationStatus::missing ? cost.missing : cost.unfinished);
     }
   }
   return cost;
@@ -197,12 +200,12 @@ std::string change_of(const PointSeries& series) {
 std::string verdict_line(const ResultsFile& file,
                          std::span<const RealizationSummary> realizations) {
   const PointCost cost = cost_of(file, realizations);
-  std::string text = fmt::format("{} of {} done", cost.done,
-                                 counted(cost.done + cost.failed + cost.unfinished, "realization"));
+  std::string text = fmt::format("{} of {} done", cost.done, counted(cost.all(), "realization"));
   const std::size_t n_points = file.study().points.size();
   if (n_points > 1) text += fmt::format(" at {} sweep points", n_points);
   if (cost.failed > 0) text += fmt::format(", {} FAILED", cost.failed);
   if (cost.unfinished > 0) text += fmt::format(", {} unfinished", cost.unfinished);
+  if (cost.missing > 0) text += fmt::format(", {} missing", cost.missing);
   if (n_points == 1) text += change_of(point_series(file, 0, realizations));
   return text + "\n\n";
 }

@@ -375,8 +375,13 @@ class Reading(Faults):
         done = [one["status"] for one in summary["realizations"]].count("done")
         self.assertIn(done, (1, 2, 3))
         self.assertRegex(text, rf"4 per sweep point: .*\b{done} done")
-        self.assertRegex(text, rf"(?m)^{done} done, {4 - done} unfinished, 0 failed; "
-                               r"[1-9][0-9.]* \w+ trials in ")
+        # Lines above and below the table count alike.
+        states = [one["status"] for one in summary["realizations"]]
+        begun, missing = 4 - done - states.count("missing"), states.count("missing")
+        counted = f"{done} done" + (f", {begun} unfinished" if begun else "") + (
+            f", {missing} missing" if missing else "")
+        self.assertRegex(text, rf"(?m)^{counted}, 0 failed; [1-9][0-9.]* \w+ trials in ")
+        self.assertIn(f"{done} of 4 realizations done", text)
 
     def test_a_stored_scene_that_is_none_is_refused_by_name(self):
         self.run_scene()

@@ -2,6 +2,7 @@
 
 import json
 import math
+import statistics
 import unittest
 from random import Random
 
@@ -122,6 +123,43 @@ class Measured(WithCurve):
         t, x, law = map(float, lines[5].split(",")[:3])
         self.assertEqual((t, x), self.rows[4])
         self.assertLess(abs(law - x), 2e-4)
+
+    def test_several_laws_compete_by_name(self):
+        self.write(self.realizations(4, 1e-4), "data.csv")
+        for words in (("--model", "kww,inverse_log"), ("--model", "kww", "--model", "inverse_log"),
+                      ("--model", "kww,inverse_log,kww")):
+            with self.subTest(words=words):
+                curve = self.fit_json("data.csv", "--realizations", *words)["curves"][0]
+                self.assertEqual([fit["model"] for fit in curve["fits"]], ["kww", "inverse_log"])
+                self.assertIn("comparison", curve)
+        self.assertIn("--model kwv: there is none",
+                      self.jostle("fit", "data.csv", "--model", "inverse_log,kwv", expect=BAD_INPUT).stderr)
+
+    def test_the_errors_of_a_mean_are_written_and_read_back(self):
+        self.write(self.realizations(5, 1e-3), "data.csv")
+        self.jostle("fit", "data.csv", "--realizations", "--model", "kww", "--csv", "out.csv")
+        lines = [line.split(",") for line in (self.folder / "out.csv").read_text().splitlines()]
+        self.assertEqual(lines[0], ["t", "X", "sigma", "kww"])
+        rows = [[float(field) for field in line.split(",")]
+                for line in (self.folder / "data.csv").read_text().splitlines()[1:]]
+        variance = sum(statistics.variance(row[1:]) for row in rows) / len(rows)
+        for line in lines[1:]:
+            self.assertAlmostEqual(float(line[2]) / (variance / 5) ** 0.5, 1, places=9)
+        chi2 = sum(((float(x) - float(law)) / float(sigma)) ** 2 for _, x, sigma, law in lines[1:])
+        fit = self.fit_json("data.csv", "--realizations", "--model", "kww")["curves"][0]["fits"][0]
+        self.assertAlmostEqual(chi2 / fit["residual_sum"], 1, places=6)
+
+    def test_a_curve_that_remembers_for_too_long_has_no_errors_and_a_remedy(self):
+        random, walk, lines = Random(2), 0.0, ["t,X,sigma"]
+        for t, x in self.rows:
+            walk += random.gauss(0, 1e-3)
+            lines.append(f"{t},{x + walk},0.001")
+        self.write("\n".join(lines) + "\n", "data.csv")
+        told = self.jostle("fit", "data.csv", "--model", "kww", environment=UNFOLDED).stdout
+        self.assertIn("no errors, as the residuals remember for too long", told)
+        self.assertNotIn("Student's t of", told)
+        self.assertIn("--independent gives errors", told)
+        self.assertNotIn("--independent", self.jostle("fit", "data.csv", "--model", "kww", "--independent").stdout)
 
     def test_bad_input_is_named(self):
         self.write(self.table(), "data.csv")

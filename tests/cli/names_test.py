@@ -30,7 +30,7 @@ class Names(Case):
                 self.write(SLOW, f"{name}.json")
                 stopped = self.jostle("run", "--no-progress", f"--output={name}.h5", "--time-limit=0.1",
                                       "--", f"{name}.json", expect=STOPPED)
-                command = stopped.stderr.split("resume with\n  ")[1]
+                command = stopped.stderr.split("resume with (omit --time-limit to reach the end)\n  ")[1]
                 self.assertIn("--resume", command)
                 self.bash(command.replace("--time-limit=0.1", ""))
                 self.assertEqual(self.info(f"./{name}.h5")["state"], "complete")

@@ -73,6 +73,7 @@ class Stops(Case):
             if result.returncode != STOPPED:
                 break
             self.assertIn("stopped by the time limit", result.stderr)
+            self.assertIn("resume with (omit --time-limit to reach the end)\n", result.stderr)
             stops += 1
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater(stops, 0)

@@ -160,6 +160,15 @@ class Terminal(Case):
                     self.jostle(*words[1:])
         self.assertNotIn("next:", self.run_scene("--shard", "1/2", "-o", "part.h5").stdout)
 
+    def test_proposals_are_of_the_observable_that_the_scene_studies(self):
+        for scene, name in ((BED, "bottom_fraction"),
+                            (changed(BED, analyse={"steady": [{"observable": "mean_height", "last": 20}]}),
+                             "mean_height")):
+            with self.subTest(name=name):
+                self.write(scene)
+                told = self.run_scene("--force", environment={"COLUMNS": ""}).stdout
+                self.assertRegex(told.split("\nnext:\n")[1], rf"fit \S+ --observable {name}\n")
+
 
 if __name__ == "__main__":
     unittest.main()

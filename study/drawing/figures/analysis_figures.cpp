@@ -73,8 +73,8 @@ FigurePanel covariance_ratio(const TableView& table) {
       .title = "Covariance ratio of " + words(table.path().back()),
       .caption =
           "C(t, t_W): covariance over realizations of the values at t_W and t_W+t, over the "
-          "variance at t_W alone: 1 at lag 0, above 1 where realizations spread apart; bars are 68 "
-          "% intervals, left out where half of one is above 1.",
+          "variance at t_W alone: 1 at lag 0, above 1 where realizations spread apart. Bars are 68 "
+          "% intervals; those longer than 1 to a side are not drawn.",
       .source = table.source("c"),
       .x = {"lag t (taps)", AxisKind::logarithmic},
       .y = {"C(t, t_W)"},
@@ -152,8 +152,9 @@ void add_steady(const DrawnFile& file, Figures& into) {
           {.title = "Blocking of " + words(table.path().back()),
            .caption =
                fmt::format("Standard error of the mean of taps {}, if blocks of so many taps were "
-                           "independent; bars are its 68 % intervals. It grows until they are; "
-                           "plateau: {}.",
+                           "independent; bars are its 68 % intervals. The error grows with the "
+                           "length until blocks are independent, then it stays constant. "
+                           "Plateau: {}.",
                            table.note("taps"), table.note("plateau")),
            .source = table.source("block_error"),
            .x = {"block length (taps)", AxisKind::logarithmic},

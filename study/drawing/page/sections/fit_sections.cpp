@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "fitting/value_text.hpp"
 #include "study/drawing/drawn/value_text.hpp"
 #include "study/drawing/figures/builders.hpp"
 #include "study/drawing/page/sections/sections.hpp"
@@ -44,6 +45,10 @@ std::string estimate(const Parameters& parameters, std::size_t j) {
   if (!std::isfinite(value)) return "-";
   const double half = (parameters.high(j, 0) - parameters.low(j, 0)) / 2;
   if (!std::isfinite(half)) return typeset_number(value) + ", error unknown";
+  // Half of a lopsided interval would reach beyond the 95 % limits; the terminal prints both ends.
+  const bool lopsided = value - half < parameters.low(j, 1) || value + half > parameters.high(j, 1);
+  if (lopsided && parameters.low(j, 0) < value && value < parameters.high(j, 0))
+    return value_with_limits(value, parameters.low(j, 0), parameters.high(j, 0));
   return typeset_with_error(value, half);
 }
 
@@ -67,9 +72,8 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-/// How many of its parameters the data determine.
-std::string identified(const TableView& table) {
-  const Parameters parameters{table};
+/// How many of the parameters the data determine.
+std::string identified(const Parameters& parameters) {
   std::vector<std::string> known, others;
   const std::vector<std::string> names = parameters.names();
   for (std::size_t j = 0; j < names.size(); ++j) {
@@ -82,6 +86,12 @@ std::string identified(const TableView& table) {
   return fmt::format("{} {} limited on both sides; {} {} not.", joined(known),
                      known.size() == 1 ? "is" : "are", joined(others),
                      others.size() == 1 ? "is" : "are");
+}
+
+/// Statement on the parameters of the law, or of its limit if that was fitted.
+std::string what_is_identified(const TableView& law) {
+  if (law.note("limit").empty()) return identified({law});
+  return "Fitted as a limit of the law. " + identified({law, "limit_"});
 }
 
 Json comparison(const std::vector<TableView>& laws) {
@@ -109,7 +119,7 @@ Blocks law_blocks(const TableView& law) {
   Blocks blocks{statement_block("", law.note("law"))};
   if (!law.note("limit").empty()) {
     blocks.add(statement_block("Limit", law.note("limit")));
-    blocks.add(parameter_table({law, "limit_"}, law.note("limit_law")));
+    blocks.add(parameter_table({law, "limit_"}, "limit X = " + law.note("limit_law")));
   }
   blocks.add(parameter_table({law}, law_name(law)));
   if (const std::string other = law.note("restated_model"); !other.empty()) {
@@ -132,7 +142,7 @@ Blocks curve_blocks(const PageContent& content, std::uint32_t point, const Fitte
   }
   blocks.add(comparison(fitted.laws));
   for (const TableView& law : fitted.laws) {
-    blocks.add(details_block(law_name(law) + " – " + identified(law), law_blocks(law),
+    blocks.add(details_block(law_name(law) + " – " + what_is_identified(law), law_blocks(law),
                              fitted.laws.size() == 1));
   }
   return blocks;
@@ -149,8 +159,9 @@ Json fits_section(const PageContent& content) {
   std::erase_if(made, [](const TableView& table) { return !table.has("fitted"); });
   return page_section(
       "fits", "Fitted laws",
-      "Estimates are given as value(half of the 68 % interval); “no limit” means that the data "
-      "allow any value beyond.",
+      "Estimates are given as value(half of the 68 % interval), or with the distances to both of "
+      "its "
+      "ends where it is lopsided; “no limit” means that the data allow any value beyond.",
       {points_block(content.file, numbers_of(made),
                     [&](std::uint32_t point) {
                       Blocks blocks;
