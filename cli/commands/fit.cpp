@@ -33,7 +33,7 @@ namespace {
 
 struct FitArguments {
   std::string input, observable, point, range, csv;
-  std::vector<std::string> models, fixed, start, bounds;  // the last two are of the own law
+  std::vector<std::string> models, fixed, start, bounds;  // start, bounds: for an own law
   OwnLaw law;
   std::string resample = "none";
   std::uint32_t count = 1000;

@@ -24,7 +24,7 @@ struct DependentErrors {
   double dof = std::numeric_limits<double>::infinity();
 };
 
-/// Part of the second derivatives that J^T J lacks, along directions of the variables, the columns
+/// Part of the second derivatives beyond J^T J, along directions of the variables, the columns
 /// V: V^T S V, where S is the sum of r_i times the second derivatives of r_i. It matters where the
 /// law misses the curve.
 using Curvature = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& directions)>;
@@ -36,7 +36,7 @@ using Curvature = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& direction
 /// [n_points, n_variables], weighted; deviations: [n_points, n_realizations] of the realizations
 /// from their mean, with the same weights, n_realizations >= 2. `curvature`: makes the sandwich
 /// that of the full second derivatives of the squares, as White has it: a law that misses the curve
-/// moves with a realization by another amount than J^T J alone says. None: J^T J.
+/// moves with a realization by another amount than J^T J alone gives. None: J^T J.
 DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations,
                                  const Curvature& curvature = nullptr);
 

@@ -77,7 +77,9 @@ DependentErrors of_independent_points(const LinearProblem& problem, const Fit& f
 // By central differences of J^T r with these residuals, which are those of the minimum.
 Eigen::MatrixXd curvature_along(const CurveResiduals& residuals, const Eigen::VectorXd& minimum,
                                 const Eigen::VectorXd& missed, const Eigen::MatrixXd& directions) {
-  constexpr double step = 1e-2, farthest = 1e-3;  // of a direction; of a variable, or relatively
+  constexpr double step = 1e-2,
+                   farthest =
+                       1e-3;  // step along a direction; change of a variable, absolute or relative
   const Eigen::ArrayXd room = farthest * minimum.array().abs().max(1);
   Eigen::VectorXd r(residuals.n_residuals());
   Eigen::MatrixXd jacobian(residuals.n_residuals(), residuals.n_variables());
