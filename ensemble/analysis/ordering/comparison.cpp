@@ -122,7 +122,7 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
   return fmt::format(
       "undecided whether one point orders first and has the largest value over the last taps: {} "
       "{}",
-      only(both) ? "only this point may, " : "these points may, ", labels_of(points, both));
+      only(both) ? "only this point may," : "these points may,", labels_of(points, both));
 }
 
 struct Comparison {

@@ -110,7 +110,10 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
 
 TEST_CASE("no value less its error lies below what 95 % allow") {
   // Half of a 68 % interval that reaches far up is longer than the way down.
-  Estimate tau{.parameter = {.name = "tau"}, .value = 56, .error = 14};
+  Estimate tau;
+  tau.parameter.name = "tau";
+  tau.value = 56;
+  tau.error = 14;
   tau.intervals[0] = {46, 74};
   tau.intervals[1] = {43.567, 3587.5};
   tau.identifiability = Identifiability::wide;

@@ -180,7 +180,12 @@ TEST_CASE("Lattices have the neighbours of their shells in every container") {
     return;
   }
   CHECK(up_to(std::numbers::sqrt3) == Approx(26).epsilon(0.002));
-  CHECK(up_to(2) == Approx(32).epsilon(0.005));  // the corners of narrow containers end there
+  // The deepest site of a lattice at the walls has room for 2 a and no more.
+  if (first == 0.5 && n == 6) {
+    CHECK(std::isnan(up_to(2)));
+  } else {
+    CHECK(up_to(2) == Approx(32).epsilon(0.005));  // the corners of narrow containers end there
+  }
 }
 
 TEST_CASE("A lattice in a tube has the neighbours of its shells") {
