@@ -9,7 +9,7 @@
 #include "cli/terminal/log.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "results/hdf5/at_exit.hpp"
 #include "study/bad_input.hpp"
 #include "study/provenance.hpp"

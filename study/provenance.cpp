@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "engine/monte_carlo/trial_loop.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "study/version.hpp"
 
 namespace jostle::inline study {

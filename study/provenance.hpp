@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 namespace jostle::inline study {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "results/checkpoints/seal.hpp"
-#include "results/live_run.hpp"
+#include "results/disk/seal.hpp"
+#include "results/run/live_run.hpp"
 
 namespace jostle::inline study {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/bad_input.hpp"
 
 // Sources of results.

@@ -12,7 +12,7 @@
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
-#include "results/merge.hpp"
+#include "results/run/merge.hpp"
 #include "study/available_cpus.hpp"
 #include "study/bad_input.hpp"
 #include "study/planning/shards.hpp"

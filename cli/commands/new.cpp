@@ -14,8 +14,8 @@
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
 #include "config/shipped_scenes.hpp"
-#include "results/checkpoints/output_path.hpp"
-#include "results/export/input_file.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/disk/output_path.hpp"
 #include "study/provenance.hpp"
 #include "study/running/scene_file.hpp"
 

@@ -9,7 +9,7 @@
 #include "cli/files/output_file.hpp"
 #include "cli/reports/figure_files.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/amounts.hpp"
 #include "study/available_cpus.hpp"
 #include "study/drawing/page/page.hpp"

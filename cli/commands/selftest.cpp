@@ -4,8 +4,8 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/checkpoints/scratch_folder.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/scratch_folder.hpp"
 #include "study/bad_input.hpp"
 #include "study/running/self_checks.hpp"
 

@@ -10,13 +10,13 @@
 #include "cli/files/output_file.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/checkpoints/output_path.hpp"
-#include "results/checkpoints/publish.hpp"
-#include "results/checkpoints/temporary_file.hpp"
-#include "results/error.hpp"
-#include "results/export/printable.hpp"
-#include "results/hdf5/descriptor.hpp"
-#include "results/tables.hpp"
+#include "results/disk/descriptor.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/printable.hpp"
+#include "results/disk/publish.hpp"
+#include "results/disk/temporary_file.hpp"
+#include "results/file/tables.hpp"
 
 namespace jostle::inline cli {
 

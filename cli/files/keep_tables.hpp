@@ -5,9 +5,9 @@
 
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
+#include "results/content/study.hpp"
+#include "results/disk/patience.hpp"
 #include "results/export/export.hpp"
-#include "results/patience.hpp"
-#include "results/study.hpp"
 
 namespace jostle::inline cli {
 

@@ -4,11 +4,11 @@
 
 #include <filesystem>
 
-#include "results/checkpoints/names.hpp"
-#include "results/checkpoints/output_path.hpp"
 #include "results/checkpoints/part.hpp"
-#include "results/checkpoints/publish.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/names.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/publish.hpp"
 #include "study/bad_input.hpp"
 #include "study/results_input.hpp"
 

@@ -15,9 +15,9 @@
 #include <span>
 #include <system_error>
 
-#include "results/checkpoints/output_path.hpp"
-#include "results/checkpoints/scratch_folder.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/scratch_folder.hpp"
 #include "study/provenance.hpp"
 
 extern char** environ;  // glibc alone declares it

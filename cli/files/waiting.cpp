@@ -4,8 +4,8 @@
 
 #include "cli/reports/durations.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/export/printable.hpp"
-#include "results/results_file.hpp"
+#include "results/disk/printable.hpp"
+#include "results/file/results_file.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

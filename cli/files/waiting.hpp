@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/options/command.hpp"
-#include "results/patience.hpp"
+#include "results/disk/patience.hpp"
 
 namespace jostle::inline cli {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ensemble/statistics/finite_text.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline cli {
 

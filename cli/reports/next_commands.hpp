@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/json/json.hpp"
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 namespace jostle::inline cli {
 

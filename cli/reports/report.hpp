@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cli/tables/layout.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline cli {
 

@@ -12,9 +12,9 @@
 #include "cli/reports/redo_command.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
-#include "results/checkpoints/output_path.hpp"
-#include "results/error.hpp"
-#include "results/export/input_file.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/disk/output_path.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/tables/layout.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline cli {
 

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "cli/options/command_words.hpp"
-#include "results/error.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/printable.hpp"
 #include "study/provenance.hpp"
 #include "study/results_input.hpp"
 #include "study/running/run.hpp"

@@ -3,7 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 
 namespace jostle::inline cli {
 

@@ -8,7 +8,7 @@
 #include "cli/terminal/screen.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 
 namespace jostle::inline cli {
 

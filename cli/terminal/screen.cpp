@@ -11,7 +11,7 @@
 #include "cli/reports/curves.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 
 namespace jostle::inline cli {
 namespace {

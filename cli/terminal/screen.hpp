@@ -5,7 +5,7 @@
 
 #include "cli/options/command.hpp"
 #include "cli/tables/layout.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline cli {
 

@@ -8,8 +8,8 @@
 #include "cli/tables/layout.hpp"
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "results/patience.hpp"
-#include "results/study.hpp"
+#include "results/content/study.hpp"
+#include "results/disk/patience.hpp"
 #include "study/results_input.hpp"
 
 namespace jostle::inline cli {

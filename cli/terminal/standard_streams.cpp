@@ -10,7 +10,7 @@
 #include <initializer_list>
 #include <iostream>
 
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline cli {

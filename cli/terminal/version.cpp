@@ -6,7 +6,7 @@
 #include <CLI/Version.hpp>
 
 #include "config/json/json.hpp"
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 #include "study/version.hpp"
 
 namespace jostle::inline cli {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <string_view>
 
-#include "results/checkpoints/checksum.hpp"
-#include "results/checkpoints/names.hpp"
 #include "results/checkpoints/part_content.hpp"
-#include "results/checkpoints/publish.hpp"
-#include "results/error.hpp"
-#include "results/export/input_file.hpp"
+#include "results/disk/checksum.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/disk/names.hpp"
+#include "results/disk/publish.hpp"
 
 namespace jostle::inline results {
 namespace {

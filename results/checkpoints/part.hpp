@@ -8,7 +8,7 @@
 
 #include "engine/bytes.hpp"
 #include "ensemble/sink.hpp"
-#include "results/record.hpp"
+#include "results/content/record.hpp"
 
 // The files under NAME.parts/: for every realization at work one state, replaced at each
 // checkpoint, and numbered segments of its series, each written once.

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/printable.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/lammps_dump.hpp"
-#include "results/export/printable.hpp"
 #include "results/export/vtk_points.hpp"
 
 namespace jostle::inline results {

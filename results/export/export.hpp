@@ -7,7 +7,7 @@
 
 #include "ensemble/sink.hpp"
 #include "results/export/particle_columns.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 // Packings for OVITO, ParaView and other programs.
 namespace jostle::inline results {

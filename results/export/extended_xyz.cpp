@@ -10,11 +10,11 @@
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/mixture.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/disk/printable.hpp"
 #include "results/export/extended_xyz_header.hpp"
-#include "results/export/input_file.hpp"
 #include "results/export/particle_columns.hpp"
-#include "results/export/printable.hpp"
 #include "structure/order/neighbours.hpp"
 
 namespace jostle::inline results {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "engine/number_reading.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <optional>
 
-#include "results/checkpoints/output_path.hpp"
-#include "results/checkpoints/publish.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/publish.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/extended_xyz_header.hpp"
 #include "results/export/packing_file.hpp"

@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include "engine/bed/boundary.hpp"
-#include "results/checkpoints/output_path.hpp"
-#include "results/checkpoints/temporary_file.hpp"
-#include "results/file/particles.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/temporary_file.hpp"
 #include "results/file/study_writer.hpp"
+#include "results/groups/particles.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "results/export/extended_xyz.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <unordered_map>
 
-#include "results/checkpoints/checksum.hpp"
+#include "results/disk/checksum.hpp"
 #include "results/file/content_walk.hpp"
 #include "results/hdf5/policy.hpp"
 #include "results/hdf5/read.hpp"

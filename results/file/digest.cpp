@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
-#include "results/checkpoints/checksum.hpp"
+#include "results/disk/checksum.hpp"
 #include "results/file/content_walk.hpp"
+#include "results/file/results_file.hpp"
+#include "results/file/tables.hpp"
 #include "results/hdf5/child_process.hpp"
 #include "results/hdf5/read.hpp"
-#include "results/results_file.hpp"
-#include "results/tables.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "results/checkpoints/lock.hpp"
-#include "results/checkpoints/output_path.hpp"
-#include "results/checkpoints/seal.hpp"
-#include "results/checkpoints/temporary_file.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/lock.hpp"
+#include "results/disk/output_path.hpp"
+#include "results/disk/seal.hpp"
+#include "results/disk/temporary_file.hpp"
 #include "results/file/contents.hpp"
 #include "results/hdf5/child_process.hpp"
 #include "results/hdf5/read.hpp"

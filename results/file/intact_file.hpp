@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 // A results file is intact if its seal verifies, or, if another program opened it for writing and
 // thereby removed the seal, if its contents verify. All throw ResultsError.

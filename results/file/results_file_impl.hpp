@@ -11,12 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "results/file/layout.hpp"
-#include "results/file/particles.hpp"
 #include "results/file/recently_used.hpp"
+#include "results/file/results_file.hpp"
 #include "results/file/study_writer.hpp"
+#include "results/groups/axes.hpp"
+#include "results/groups/layout.hpp"
+#include "results/groups/particles.hpp"
 #include "results/hdf5/read.hpp"
-#include "results/results_file.hpp"
 
 namespace jostle::inline results {
 

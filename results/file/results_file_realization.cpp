@@ -3,8 +3,8 @@
 #include <map>
 #include <span>
 
-#include "results/file/axes.hpp"
 #include "results/file/results_file_impl.hpp"
+#include "results/groups/axes.hpp"
 
 namespace jostle::inline results {
 

@@ -1,11 +1,11 @@
 #include "results/file/results_writer.hpp"
 
-#include "results/checkpoints/seal.hpp"
-#include "results/checkpoints/temporary_file.hpp"
+#include "results/disk/seal.hpp"
+#include "results/disk/temporary_file.hpp"
 #include "results/file/contents.hpp"
-#include "results/file/layout.hpp"
-#include "results/file/point_writer.hpp"
 #include "results/file/study_writer.hpp"
+#include "results/groups/layout.hpp"
+#include "results/groups/point_writer.hpp"
 #include "results/hdf5/writable_file.hpp"
 
 namespace jostle::inline results {

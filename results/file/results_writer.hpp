@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "results/results_file.hpp"
-#include "results/stored_realization.hpp"
-#include "results/study.hpp"
+#include "results/content/stored_realization.hpp"
+#include "results/content/study.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline results {
 

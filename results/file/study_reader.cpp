@@ -3,9 +3,9 @@
 #include <charconv>
 #include <span>
 
-#include "results/file/layout.hpp"
-#include "results/file/mixtures.hpp"
 #include "results/file/study_writer.hpp"
+#include "results/groups/layout.hpp"
+#include "results/groups/mixtures.hpp"
 #include "results/hdf5/read.hpp"
 
 namespace jostle::inline results {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "engine/number_reading.hpp"
-#include "results/file/layout.hpp"
-#include "results/file/mixtures.hpp"
+#include "results/groups/layout.hpp"
+#include "results/groups/mixtures.hpp"
 #include "results/hdf5/write.hpp"
 
 namespace jostle::inline results {

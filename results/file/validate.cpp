@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "results/hdf5/handle.hpp"
 
 namespace jostle::inline results {
@@ -100,11 +100,6 @@ void validate_point(const StudyPoint& point, const std::string& name) {
 }
 
 }  // namespace
-
-bool is_position(const Vec3& centre) {
-  constexpr double bound = 1e100;
-  return std::abs(centre.x) <= bound && std::abs(centre.y) <= bound && std::abs(centre.z) <= bound;
-}
 
 void validate(const Study& study, const FileProvenance& provenance) {
   require(!study.points.empty(), "the sweep has no points");

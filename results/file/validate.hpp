@@ -2,9 +2,9 @@
 
 #include <string_view>
 
+#include "results/content/record.hpp"
+#include "results/content/study.hpp"
 #include "results/file/study_writer.hpp"
-#include "results/record.hpp"
-#include "results/study.hpp"
 
 // Conditions that every reader requires, and that only files of other programs violate. All throw
 // Hdf5Error.
@@ -15,10 +15,6 @@ void validate(const Study& study, const FileProvenance& provenance);
 
 /// State from which a realization resumes.
 void validate(const RealizationState& state, const StudyPoint& point);
-
-/// True if squares of the coordinates are numbers: a bed that is tapped before it has fallen back
-/// grows without end.
-bool is_position(const Vec3& centre);
 
 /// Brackets within brackets in a JSON text, at most; of a text that is no JSON, no matter what.
 std::size_t nesting_of(std::string_view json);

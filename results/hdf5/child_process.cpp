@@ -14,11 +14,11 @@
 #include <new>
 #include <span>
 
-#include "results/checkpoints/publish.hpp"
-#include "results/error.hpp"
-#include "results/hdf5/descriptor.hpp"
+#include "results/disk/descriptor.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/publish.hpp"
+#include "results/disk/system_calls.hpp"
 #include "results/hdf5/handle.hpp"
-#include "results/hdf5/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {

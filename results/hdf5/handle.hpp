@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 
 namespace jostle::inline results {
 

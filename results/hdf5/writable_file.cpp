@@ -11,7 +11,7 @@
 #include <new>
 #include <vector>
 
-#include "results/checkpoints/publish.hpp"
+#include "results/disk/publish.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -2,10 +2,10 @@
 
 // Results files: series, packings, tables and provenance, and export to formats of other programs.
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/packing_file.hpp"
-#include "results/tables.hpp"
+#include "results/file/tables.hpp"
 #include "study/provenance.hpp"
 #include "study/results_input.hpp"

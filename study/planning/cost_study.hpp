@@ -7,7 +7,7 @@
 #include "config/ladder.hpp"
 #include "ensemble/analysis/accuracy.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

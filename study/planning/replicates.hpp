@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/seconds.hpp"
 
 // How many replicates of jostle cost fit into its budget. A replicate is one realization of every

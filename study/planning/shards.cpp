@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "study/bad_input.hpp"
 #include "study/running/stored_scene.hpp"
 

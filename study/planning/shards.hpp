@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "results/live_run.hpp"
-#include "results/slurm_job.hpp"
+#include "results/disk/slurm_job.hpp"
+#include "results/run/live_run.hpp"
 #include "study/seconds.hpp"
 
 // The files of a run that many jobs share.

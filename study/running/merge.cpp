@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/sweep.hpp"
-#include "results/error.hpp"
-#include "results/results_file.hpp"
+#include "results/disk/error.hpp"
+#include "results/file/results_file.hpp"
 #include "study/running/stored_scene.hpp"
 
 namespace jostle::inline study {

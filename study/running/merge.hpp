@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 namespace jostle::inline study {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ensemble/run.hpp"
-#include "results/patience.hpp"
-#include "results/run_store.hpp"
+#include "results/disk/patience.hpp"
+#include "results/run/run_store.hpp"
 #include "study/bad_input.hpp"
 #include "study/running/scene_file.hpp"
 #include "study/seconds.hpp"

@@ -10,10 +10,10 @@
 
 #include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
-#include "results/error.hpp"
-#include "results/export/input_file.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/disk/printable.hpp"
 #include "results/export/packing_file.hpp"
-#include "results/export/printable.hpp"
 
 namespace jostle::inline study {
 namespace {

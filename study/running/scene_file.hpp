@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

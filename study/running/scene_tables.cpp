@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "config/scene.hpp"
-#include "results/tables.hpp"
+#include "results/file/tables.hpp"
 #include "study/bad_input.hpp"
 #include "study/provenance.hpp"
 #include "study/tables/analyse.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/tables/fits.hpp"
 
 namespace jostle::inline study {

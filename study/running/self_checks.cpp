@@ -15,10 +15,10 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
-#include "results/error.hpp"
-#include "results/record.hpp"
-#include "results/results_file.hpp"
-#include "results/run_store.hpp"
+#include "results/content/record.hpp"
+#include "results/disk/error.hpp"
+#include "results/file/results_file.hpp"
+#include "results/run/run_store.hpp"
 #include "study/provenance.hpp"
 
 namespace jostle::inline study {

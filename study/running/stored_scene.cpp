@@ -1,7 +1,7 @@
 #include "study/running/stored_scene.hpp"
 
 #include "config/json/json_text.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 
 namespace jostle::inline study {
 

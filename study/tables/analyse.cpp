@@ -10,7 +10,7 @@
 #include "config/grids.hpp"
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 #include "ensemble/analysis/hysteresis.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/points/ordering.hpp"
 #include "study/tables/points/over_points.hpp"

@@ -9,7 +9,7 @@
 #include "config/scene.hpp"
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/tables/observable_series.hpp"
 
 namespace jostle::inline study {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fitting/curve.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

@@ -12,7 +12,7 @@
 #include "engine/numbers.hpp"
 #include "fitting/report.hpp"
 #include "fitting/value_text.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/results_input.hpp"
 
 namespace jostle::inline study {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "ensemble/analysis/motion/motion_tables.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

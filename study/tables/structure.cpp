@@ -19,7 +19,7 @@
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/particle_columns.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "structure/measure.hpp"
 
 namespace jostle::inline study {

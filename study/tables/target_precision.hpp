@@ -5,7 +5,7 @@
 
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/target_precision.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

@@ -11,7 +11,7 @@
 #include "ensemble/analysis/hysteresis.hpp"
 #include "ensemble/analysis/volumes/volume_table.hpp"
 #include "ensemble/protocol_steps.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/analyse.hpp"
 #include "study/tables/observable_series.hpp"

@@ -23,9 +23,16 @@ MAY_INCLUDE = {
             "cli"},
 }
 
-# The rooms of study, and the rooms that each may include; its root holds what all of them use.
-STUDY_MAY_INCLUDE = {"tables": set(), "running": {"tables"}, "drawing": {"tables", "running"},
-                     "planning": {"tables", "running"}}
+# The rooms of a folder, and the rooms that each may include; the folder's root holds what all of them use.
+ROOMS = {
+    "study": {"tables": set(), "running": {"tables"}, "drawing": {"tables", "running"},
+              "planning": {"tables", "running"}},
+    "results": {"disk": set(), "content": {"disk"}, "hdf5": {"disk"}, "checkpoints": {"disk", "content"},
+                "groups": {"disk", "content", "hdf5", "checkpoints"},
+                "file": {"disk", "content", "hdf5", "checkpoints", "groups"},
+                "export": {"disk", "content", "hdf5", "groups", "file"},
+                "run": {"disk", "content", "checkpoints", "file"}},
+}
 
 # Other headers that only some folders may include.
 RESERVED = {
@@ -83,18 +90,19 @@ class Architecture(unittest.TestCase):
                  if quote == '"' and name.split("/")[0] not in MAY_INCLUDE[file.parts[0]]]
         self.assertEqual(wrong, [])
 
-    def test_rooms_of_study_follow_their_arrows(self):
-        rooms = {path.name for path in (SOURCE / "study").iterdir() if path.is_dir()}
-        self.assertEqual(rooms, set(STUDY_MAY_INCLUDE))
-        wrong = []
-        for file, quote, name in includes():
-            target = pathlib.PurePath(name).parts
-            if quote != '"' or file.parts[0] != "study" or target[0] != "study" or len(target) < 3:
-                continue
-            room = file.parts[1] if len(file.parts) > 2 else "the root"
-            if target[1] not in STUDY_MAY_INCLUDE.get(room, set()) | {room}:
-                wrong.append(f"{file} includes {name}")
-        self.assertEqual(wrong, [])
+    def test_rooms_follow_their_arrows(self):
+        for folder, may_include in ROOMS.items():
+            rooms = {path.name for path in (SOURCE / folder).iterdir() if path.is_dir()}
+            self.assertEqual(rooms, set(may_include))
+            wrong = []
+            for file, quote, name in includes():
+                target = pathlib.PurePath(name).parts
+                if quote != '"' or file.parts[0] != folder or target[0] != folder or len(target) < 3:
+                    continue
+                room = file.parts[1] if len(file.parts) > 2 else "the root"
+                if target[1] not in may_include.get(room, set()) | {room}:
+                    wrong.append(f"{file} includes {name}")
+            self.assertEqual(wrong, [])
 
     def test_every_type_is_defined_once(self):
         """Two of one name would be one to the linker, which takes either."""

@@ -189,15 +189,15 @@ class Sources(Case):
         "cli/files/python_plot.cpp": "in a scratch folder of its own, O_EXCL",
         "cli/files/keep_tables.cpp": LOOKS,
         "cli/manual/main.cpp": "makes the manual pages when jostle is built",
-        "results/checkpoints/lock.cpp": LOOKS,
-        "results/checkpoints/output_path.cpp": "is what looks",
-        "results/checkpoints/run_parts.cpp": LOOKS,
-        "results/checkpoints/scratch_folder.cpp": LOOKS,
-        "results/checkpoints/seal.cpp": "a TemporaryFile, which is there",
-        "results/checkpoints/temporary_file.cpp": LOOKS,
+        "results/disk/lock.cpp": LOOKS,
+        "results/disk/output_path.cpp": "is what looks",
+        "results/run/run_parts.cpp": LOOKS,
+        "results/disk/scratch_folder.cpp": LOOKS,
+        "results/disk/seal.cpp": "a TemporaryFile, which is there",
+        "results/disk/temporary_file.cpp": LOOKS,
         "results/hdf5/child_process.cpp": "/dev/null",
         "results/hdf5/writable_file.cpp": "a TemporaryFile, which is there",
-        "results/slurm_job.cpp": "/dev/null",
+        "results/disk/slurm_job.cpp": "/dev/null",
         "study/running/self_checks.cpp": "a file of its own in a scratch folder",
     }
 
@@ -220,13 +220,13 @@ class Sources(Case):
         found = {name: len(resolves.findall(text)) for name, text in self.sources()}
         self.assertEqual({name: n for name, n in found.items() if n > 0},
                          {"cli/files/output_file.cpp": 1,  # true for a descriptor
-                          "results/checkpoints/output_path.cpp": 1,
-                          "results/checkpoints/publish.cpp": 1,  # to read
+                          "results/disk/output_path.cpp": 1,
+                          "results/disk/publish.cpp": 1,  # to read
                           "study/provenance.cpp": 1})  # the content of /proc/self/exe
         followed = {name: text.count("end_of_links(") for name, text in self.sources()}
         self.assertEqual({name for name, n in followed.items() if n > 0},
-                         {"results/checkpoints/output_path.cpp", "results/checkpoints/publish.cpp",
-                          "results/checkpoints/publish.hpp", "results/live_run.cpp"})
+                         {"results/disk/output_path.cpp", "results/disk/publish.cpp",
+                          "results/disk/publish.hpp", "results/run/live_run.cpp"})
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

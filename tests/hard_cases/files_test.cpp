@@ -2,10 +2,10 @@
 #include <fstream>
 #include <functional>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "results/export/packing_file.hpp"
-#include "results/live_run.hpp"
-#include "results/tables.hpp"
+#include "results/file/tables.hpp"
+#include "results/run/live_run.hpp"
 #include "study/running/scene_file.hpp"
 #include "study/tables/measured/curve_file.hpp"
 #include "tests/config/scene_files.hpp"

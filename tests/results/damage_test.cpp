@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "results/checkpoints/part.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "results/checkpoints/part.hpp"
-#include "results/export/input_file.hpp"
-#include "results/file/layout.hpp"
-#include "results/record.hpp"
+#include "results/content/record.hpp"
+#include "results/disk/input_file.hpp"
+#include "results/groups/layout.hpp"
 
 using namespace jostle;
 

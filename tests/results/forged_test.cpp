@@ -7,8 +7,8 @@
 #include <random>
 
 #include "hdf5_mutations.hpp"
-#include "results/error.hpp"
-#include "results/tables.hpp"
+#include "results/disk/error.hpp"
+#include "results/file/tables.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

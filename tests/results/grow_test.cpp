@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "results/checkpoints/run_parts.hpp"
-#include "results/error.hpp"
-#include "results/merge.hpp"
+#include "results/disk/error.hpp"
+#include "results/run/merge.hpp"
+#include "results/run/run_parts.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

@@ -10,14 +10,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "results/checkpoints/seal.hpp"
+#include "results/disk/seal.hpp"
 #include "results/export/export.hpp"
 #include "results/export/packing_file.hpp"
+#include "results/file/tables.hpp"
 #include "results/hdf5/writable_file.hpp"
-#include "results/live_run.hpp"
-#include "results/merge.hpp"
-#include "results/run_store.hpp"
-#include "results/tables.hpp"
+#include "results/run/live_run.hpp"
+#include "results/run/merge.hpp"
+#include "results/run/run_store.hpp"
 #include "synthetic.hpp"
 
 namespace jostle::synthetic {

@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "results/checkpoints/part.hpp"
-#include "results/checkpoints/seal.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
+#include "results/disk/seal.hpp"
 #include "results/export/packing_file.hpp"
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/write.hpp"
-#include "results/merge.hpp"
+#include "results/run/merge.hpp"
 #include "runs.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "ensemble/realization.hpp"
-#include "results/results_file.hpp"
-#include "results/run_store.hpp"
+#include "results/file/results_file.hpp"
+#include "results/run/run_store.hpp"
 #include "synthetic.hpp"
 #include "temporary_folder.hpp"
 #include "tests/ensemble/sinking.hpp"

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "results/results_file.hpp"
-#include "results/run_store.hpp"
+#include "results/file/results_file.hpp"
+#include "results/run/run_store.hpp"
 #include "synthetic.hpp"
 
 // Whole runs of the synthetic study.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ensemble/sink.hpp"
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 // A stand-in for the engine: realizations whose numbers are hashes that depend on their state, like
 // real ones, so that a wrong restart gives wrong rows.

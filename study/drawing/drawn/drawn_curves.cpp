@@ -6,7 +6,7 @@
 
 #include "ensemble/moments.hpp"
 #include "fitting/fit.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 #include "study/running/stored_scene.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 // What of a results file is drawn: the page and the figures show the same.
 namespace jostle::inline study {

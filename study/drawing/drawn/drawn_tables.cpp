@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "results/tables.hpp"
+#include "results/file/tables.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "study/drawing/drawn/thinning.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 // What sweep points are called on the page and in figures.
 namespace jostle::inline study {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "results/study.hpp"
+#include "results/content/study.hpp"
 
 // Describes the simulation in the words of pages and figures.
 namespace jostle::inline study {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/drawing/figures/drawn_file.hpp"
 #include "study/drawing/figures/figure.hpp"
 #include "study/tables/fits.hpp"

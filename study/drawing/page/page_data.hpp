@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/json/json.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 
 namespace jostle::inline study {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/number_reading.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 
 namespace jostle::inline study {
 Json page_number(double value) {

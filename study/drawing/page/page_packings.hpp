@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/json/json.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "config/json/json.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/drawing/figures/drawn_file.hpp"
 
 namespace jostle::inline study {

@@ -9,7 +9,7 @@
 
 #include "config/json/json_text.hpp"
 #include "fitting/models/models.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "fitting/mean_of_present.hpp"
-#include "results/export/printable.hpp"
+#include "results/disk/printable.hpp"
 #include "study/bad_input.hpp"
 #include "study/number_text.hpp"
 

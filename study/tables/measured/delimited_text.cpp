@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "results/export/input_file.hpp"
+#include "results/disk/input_file.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

@@ -10,7 +10,7 @@
 #include "engine/numbers.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
-#include "results/file/layout.hpp"
+#include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

@@ -5,7 +5,7 @@
 
 #include "config/scene.hpp"
 #include "ensemble/analysis/ordering/ordering_table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/tables/observable_series.hpp"
 
 namespace jostle::inline study {

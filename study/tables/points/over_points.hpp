@@ -7,7 +7,7 @@
 
 #include "config/scene.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/tables/points/point_scenes.hpp"
 
 // Analyses over the sweep points of one file together. An impossible analysis gives a table with

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/sweep.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
 

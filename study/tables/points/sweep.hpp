@@ -6,7 +6,7 @@
 
 #include "config/scene.hpp"
 #include "ensemble/analysis/table.hpp"
-#include "results/results_file.hpp"
+#include "results/file/results_file.hpp"
 #include "study/tables/points/derived_value.hpp"
 
 namespace jostle::inline study {

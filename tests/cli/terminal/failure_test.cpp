@@ -4,7 +4,7 @@
 #include <new>
 
 #include "cli/terminal/standard_streams.hpp"
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "study/running/run.hpp"
 
 using namespace jostle;

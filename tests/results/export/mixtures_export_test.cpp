@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "results/export/extended_xyz.hpp"
 #include "results/export/h5md.hpp"
 #include "results/export/lammps_dump.hpp"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <random>
 
-#include "results/error.hpp"
+#include "results/disk/error.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 

@@ -3,10 +3,10 @@
 #include <random>
 
 #include "results/file/digest.hpp"
+#include "results/file/results_file.hpp"
 #include "results/file/results_writer.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
-#include "results/results_file.hpp"
 #include "tests/results/synthetic.hpp"
 #include "tests/results/temporary_folder.hpp"
 

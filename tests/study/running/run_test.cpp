@@ -5,7 +5,7 @@
 #include <set>
 #include <thread>
 
-#include "results/live_run.hpp"
+#include "results/run/live_run.hpp"
 #include "study/planning/shards.hpp"
 #include "study/running/scene_tables.hpp"
 #include "study/tables/points/point_scenes.hpp"

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "results/live_run.hpp"
-#include "results/run_store.hpp"
+#include "results/run/live_run.hpp"
+#include "results/run/run_store.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "tests/results/synthetic.hpp"
 #include "tests/results/temporary_folder.hpp"

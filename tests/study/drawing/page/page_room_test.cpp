@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "results/file/results_writer.hpp"
-#include "results/tables.hpp"
+#include "results/file/tables.hpp"
 #include "study/drawing/page/page.hpp"
 #include "study/drawing/page/page_data.hpp"
 #include "study/drawing/page/page_json.hpp"

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "results/disk/descriptor.hpp"
+
+namespace jostle::inline results {
+
+/// A file on its way to its name: written as NAME.xxxxxxxx.tmp, of random digits, that nobody else
+/// has, and then given its name at one stroke. It is removed with this object unless it was
+/// published. Everything throws ResultsError.
+class TemporaryFile {
+ public:
+  /// Makes an empty file beside `path`. An existing file will be replaced: its permissions are
+  /// copied. A link, a directory or a write-protected file is rejected.
+  explicit TemporaryFile(const std::string& path);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+
+  const std::string& name() const { return name_; }
+  /// Where it goes.
+  const std::string& target() const { return target_; }
+  void write(std::span<const std::byte> bytes);
+  /// On disk first, then under its name, then the name on disk. `before` is called once it is on
+  /// disk: what must go when the new file comes, and must stay if it does not.
+  void publish(const std::function<void()>& before = {});
+  /// On disk, not yet under its name, and closed: nothing more is written to it.
+  void finish();
+
+ private:
+  std::string target_, name_;
+  Descriptor file_;
+  bool published_ = false;
+};
+
+/// Publishes several finished files that belong together.
+/// Where one cannot be given its name, earlier ones that replaced nothing are removed again.
+void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files);
+
+/// Removes what killed processes left on the way to `path`. For the owner of its lock.
+void remove_stale_temporaries(const std::string& path);
+
+}  // namespace jostle::inline results

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ensemble/analysis/table.hpp"
+#include "results/content/study.hpp"
+#include "results/disk/patience.hpp"
+
+// Tables derived from a run's data and kept in its file: the groups /fits, /analysis and
+// /structure. They can be made again from the data at any time, and are not part of the digest.
+namespace jostle::inline results {
+
+inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"};
+
+/// Tables that belong into one of the groups.
+struct TableGroup {
+  std::string name;
+  std::vector<Table> tables;
+};
+
+/// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
+/// axes as dimension scales, notes as attributes of the table. A table of the same name is
+/// replaced, others stay. Every table records its origin: attributes version, git_revision,
+/// command_line, made. The file is never written in place: a changed copy is published over it.
+/// Throws ResultsError; LockHeld where another process holds the file's lock for longer than
+/// `patience` lasts; std::invalid_argument for a quantity whose number of values its axes do not
+/// give.
+void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
+                  const Provenance& provenance, const Patience& patience = {});
+
+/// Like store_tables(), for several groups in one replacement of the file.
+void store_tables(const std::string& path, std::span<const TableGroup> groups,
+                  const Provenance& provenance, const Patience& patience = {});
+
+/// The tables of a group, in the order of their names; none where there is no such group. Throws
+/// ResultsError.
+std::vector<Table> read_tables(const std::string& path, const std::string& group);
+
+/// Names of all tables of the file with their group first, in order: "fits/point_0000/...".
+std::vector<std::string> table_names(const std::string& path);
+
+}  // namespace jostle::inline results
