@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
@@ -40,12 +41,20 @@ void require_region(const MeasuredPacking& in) {
   }
 }
 
+/// Parts that are defined for spheres of several sizes.
+template <class Settings>
+constexpr bool takes_sizes =
+    std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, CoordinationSettings> ||
+    std::is_same_v<Settings, GapsSettings>;
+
 template <class Settings>
 void add_part(const char* name, MeasuredPacking& in, const std::optional<Settings>& settings,
               bool needs_region, std::vector<Measurement>& all) {
   if (!settings) return;
   Measurement measurement{.part = name};
   try {
+    if (!takes_sizes<Settings>)
+      require_equal_spheres(in.packing, ("measures of " + std::string(name)).c_str());
     if (needs_region) require_region(in);
     measurement = measure_part(in, *settings);
     measurement.part = name;
@@ -86,7 +95,6 @@ Region bulk_of(const Packing& packing) {
 
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {
-  require_equal_spheres(packing, "measures of structure");
   require_diameters(packing);
   MeasuredPacking in{
       .packing = packing, .region = settings.region.value_or(bulk_of(packing)), .points = points};
@@ -107,11 +115,60 @@ std::vector<Measurement> measure(const Packing& packing, const StructureSettings
   return all;
 }
 
+KindPairs::KindPairs(const MeasuredPacking& in) : in_(in) {
+  const Sizes& sizes = *in.packing.sizes;
+  const std::size_t n = sizes.kinds().size();
+  in_region_.assign(n * n, 0.0);
+  all_ = in_region_;
+  spheres_.assign(n, 0.0);
+  region_spheres_ = spheres_;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    spheres_[sizes.kind(i)] += 1;
+    if (in.in_region(i)) region_spheres_[sizes.kind(i)] += 1;
+  }
+}
+
+void KindPairs::add(std::size_t i, std::size_t j) {
+  const Sizes& sizes = *in_.packing.sizes;
+  const std::size_t pair = sizes.kind(i) * spheres_.size() + sizes.kind(j);
+  all_[pair] += 1;
+  if (in_.in_region(i)) in_region_[pair] += 1;
+}
+
+void KindPairs::write(std::string_view of_region, std::string_view of_all,
+                      std::string_view region_meaning, std::string_view all_meaning,
+                      Measurement& out) const {
+  std::vector<std::string> kinds, pairs;
+  for (const SphereKind& kind : in_.packing.sizes->kinds()) kinds.push_back(kind.name);
+  std::vector<double> region, all;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    for (std::size_t j = 0; j < kinds.size(); ++j) {
+      const std::size_t pair = i * kinds.size() + j;
+      pairs.push_back(kinds[i] + "-" + kinds[j]);
+      region.push_back(in_region_[pair] / region_spheres_[i]);  // NaN where the kind has none
+      all.push_back(all_[pair] / spheres_[i]);
+    }
+  }
+  out.places.push_back({"pair", std::move(pairs), "1", "kind of the sphere, kind of its partners"});
+  out.places.push_back({"kind", std::move(kinds), "1", "kind of spheres"});
+  out.quantities.push_back({.name = of_region,
+                            .places = "pair",
+                            .values = std::move(region),
+                            .long_name = region_meaning});
+  out.quantities.push_back(
+      {.name = of_all, .places = "pair", .values = std::move(all), .long_name = all_meaning});
+  out.quantities.push_back({.name = "spheres_of_kind",
+                            .places = "kind",
+                            .values = spheres_,
+                            .long_name = "spheres of a kind, of the whole packing"});
+}
+
 double fraction_of(const Packing& packing, const Region& region) {
   const Boundary boundary(packing.container);
   if (boundary.has_floor()) return solids_fraction(packing, {region.low, region.high});
-  return static_cast<double>(packing.centres.size()) * sphere_volume /
-         (footprint_area(packing.container) * boundary.height);
+  const double solid = packing.sizes ? solid_volume(packing)
+                                     : static_cast<double>(packing.centres.size()) * sphere_volume;
+  return solid / (footprint_area(packing.container) * boundary.height);
 }
 
 std::vector<double> middles_of_bins(std::size_t n, double width) {

@@ -43,11 +43,45 @@ Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, 
   return {all / spheres, rattlers / spheres, contacts / (spheres - rattlers)};
 }
 
-std::string tolerance_note(double tolerance) {
+/// Contacts with spheres within the tolerance by kinds, and rattlers by kind.
+void add_kinds(const MeasuredPacking& in, const NeighbourTable& near, double tolerance,
+               unsigned least, Measurement& out) {
+  const Backbone held = backbone(in.packing, near, tolerance, least);
+  KindPairs pairs(in);
+  std::vector<double> loose(in.packing.sizes->kinds().size(), 0.0), spheres(loose);
+  double all_loose = 0, all = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (const Neighbour& neighbour : near.of(i)) {
+      if (neighbour.distance_squared <= (1 + tolerance) * (1 + tolerance))
+        pairs.add(i, neighbour.sphere);
+    }
+    if (!in.in_region(i)) continue;
+    spheres[in.packing.sizes->kind(i)] += 1;
+    all += 1;
+    loose[in.packing.sizes->kind(i)] += held.rattler[i] ? 1 : 0;
+    all_loose += held.rattler[i] ? 1 : 0;
+  }
+  for (std::size_t k = 0; k < loose.size(); ++k)
+    loose[k] = all_loose < all ? loose[k] / spheres[k] : std::nan("");
+  pairs.write("contacts_of_pair", "contacts_of_pair_all",
+              "mean number of spheres of the second kind that touch one of the first, over the "
+              "region",
+              "mean number of spheres of the second kind that touch one of the first, over all "
+              "spheres",
+              out);
+  out.quantities.push_back({.name = "rattlers_of_kind",
+                            .places = "kind",
+                            .values = std::move(loose),
+                            .long_name = "fraction of rattlers of a kind, of packings with a "
+                                         "backbone",
+                            .with_packings = true});
+}
+
+std::string tolerance_note(double tolerance, const char* unit) {
   char gap[32];
   std::snprintf(gap, sizeof gap, "%g", tolerance);
-  return std::string("surfaces up to ") + gap +
-         " d apart touch. A packing in which such contacts hold no sphere, as of hard spheres that "
+  return std::string("surfaces up to ") + gap + unit +
+         " apart touch. A packing in which such contacts hold no sphere, as of hard spheres that "
          "Monte Carlo stops at a distance, has no backbone: it counts neither in rattlers nor in "
          "backbone_contacts";
 }
@@ -57,13 +91,13 @@ std::string tolerance_note(double tolerance) {
 Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   const std::vector<double> grid = gap_grid(settings.largest);
   const double reach = std::max({settings.largest, settings.tolerance, settings.window.high});
-  const NeighbourTable near = neighbours_within(in.packing, 1 + reach);
+  const NeighbourTable near = neighbours_within_contacts(in.packing, 1 + reach);
   const auto least = static_cast<unsigned>(
       settings.least_contacts.value_or(least_contacts_of(in.packing.container)));
   const ShellPart part(in.packing.container);
   std::vector<double> gaps, weights;  // shells that sides cut count as if they were whole
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!in.in_region(i)) continue;
+    if (in.packing.sizes || !in.in_region(i)) continue;
     for (const Neighbour& neighbour : near.of(i)) {
       const double distance = std::sqrt(neighbour.distance_squared);
       gaps.push_back(distance - 1);
@@ -82,7 +116,8 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   }
   const Contacts found = contacts_within(in, near, settings.tolerance, least);
   Measurement out;
-  out.places = {{"gap", grid, "diameter", "distance of surfaces up to which spheres touch"}};
+  out.places = {{"gap", grid, in.packing.sizes ? "sum of radii" : "diameter",
+                 "distance of surfaces up to which spheres touch"}};
   out.quantities = {
       {.name = "z_of_gap",
        .places = "gap",
@@ -125,7 +160,15 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .source = donev,
        .with_packings = true}};
   out.notes = {{"least_contacts", std::to_string(least) + " of a sphere that is no rattler"},
-               {"tolerance", tolerance_note(settings.tolerance)}};
+               {"tolerance", tolerance_note(settings.tolerance,
+                                            in.packing.sizes ? " of the sum of radii" : " d")}};
+  if (in.packing.sizes) {
+    std::erase_if(out.quantities, [](const MeasuredQuantity& quantity) {
+      return quantity.name == "exponent_from_gap" || quantity.name == "gap_exponent";
+    });
+    out.notes.emplace_back("gap_exponent", "measures of the exponent require equal spheres");
+    add_kinds(in, near, settings.tolerance, least, out);
+  }
   return out;
 }
 

@@ -60,6 +60,19 @@ constexpr OrderColumn order_columns[] = {
     {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours", steinhardt}};
 constexpr std::size_t n_order_columns = std::size(order_columns), first_bond_column = 3;
 
+/// Neighbours of a mixture within a cut, by kinds.
+void add_kinds(const MeasuredPacking& in, double cut, Measurement& out) {
+  const NeighbourTable near = neighbours_within_contacts(in.packing, cut);
+  KindPairs pairs(in);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (const Neighbour& neighbour : near.of(i)) pairs.add(i, neighbour.sphere);
+  }
+  pairs.write("n_c_of_pair", "n_c_of_pair_all",
+              "mean number of neighbours of the second kind of one of the first, over the region",
+              "mean number of neighbours of the second kind of one of the first, over all spheres",
+              out);
+}
+
 }  // namespace
 
 Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings) {
@@ -75,7 +88,8 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
   const std::vector<double> histogram = shares(neighbour_histogram(in_region));
   Measurement out;
   out.places = {
-      {"cut", curve.cuts, "diameter", "centres at most so far away count"},
+      {"cut", curve.cuts, in.packing.sizes ? "sum of radii" : "diameter",
+       "centres at most so far away count"},
       {"neighbours", whole_numbers(histogram.size()), "1", "other centres within the first cut"}};
   out.quantities = {{.name = "n_c_of_cut",
                      .places = "cut",
@@ -97,6 +111,7 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
                     {.name = "n_spheres",
                      .values = {static_cast<double>(in_region.size())},
                      .long_name = "spheres of the region"}};
+  if (in.packing.sizes) add_kinds(in, settings.cut, out);
   return out;
 }
 

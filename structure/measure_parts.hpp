@@ -39,6 +39,23 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings);
 Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings);
 
+/// Pairs of a mixture by their kinds, counted from the first sphere of each.
+class KindPairs {
+ public:
+  explicit KindPairs(const MeasuredPacking& in);
+  /// Sphere `j` is a partner of sphere `i`; add(j, i) counts it the other way round.
+  void add(std::size_t i, std::size_t j);
+  /// Adds the places "pair" and "kind", the mean numbers of partners over the region's spheres and
+  /// over all, and the number of spheres of each kind. Over all, N_i n_ij = N_j n_ji.
+  void write(std::string_view of_region, std::string_view of_all, std::string_view region_meaning,
+             std::string_view all_meaning, Measurement& out) const;
+
+ private:
+  const MeasuredPacking& in_;
+  std::vector<double> in_region_, all_;           // [n_kinds^2], first kind by second
+  std::vector<double> spheres_, region_spheres_;  // [n_kinds]
+};
+
 /// A deviation, or 0 where it is rounding noise beside the size of what deviates.
 inline double zero_within_rounding(double deviation, double size) {
   constexpr double rounding = 1e-10;

@@ -35,13 +35,15 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
   std::vector<double> squares;
   for (const double cut : cuts) squares.push_back(cut * cut);
   std::vector<std::uint64_t> gained(cuts.size(), 0);  // from one cut to the next
-  const NeighbourFinder finder(packing, cuts.back());
+  const NeighbourFinder finder(packing, reach_of_cut(packing, cuts.back()));
   CoordinationCurve curve{{cuts.begin(), cuts.end()}, {}, 0};
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     if (region && !region->contains(packing.container, packing.centres[i])) continue;
     ++curve.n_spheres;
-    finder.around(i, [&](std::uint32_t, Vec3, double distance_squared) {
-      const auto at = std::lower_bound(squares.begin(), squares.end(), distance_squared);
+    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      const double scaled = distance_squared / contact_squared(packing, i, j);
+      const auto at = std::lower_bound(squares.begin(), squares.end(), scaled);
+      if (at == squares.end()) return;  // beyond all cuts: a pair of small spheres
       ++gained[static_cast<std::size_t>(at - squares.begin())];
     });
   }

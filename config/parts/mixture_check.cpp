@@ -44,9 +44,6 @@ class MixtureCheck {
     if (!scene_.analyse.volumes.empty())
       note("/analyse/volumes",
            "volumes per sphere and compactivity are defined for equal spheres: leave them out");
-    if (sound(faults_, "/structure") && !scene_.structure.empty())
-      note("/structure",
-           "measures of structure require equal spheres of diameter 1: leave them out");
   }
 
  private:

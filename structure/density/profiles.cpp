@@ -29,7 +29,7 @@ std::vector<double> even_edges(double low, double high, double width) {
 }
 
 std::vector<double> height_edges(const Packing& packing, double width) {
-  const double top = top_height(packing) + sphere_radius;
+  const double top = packing.sizes ? surface_height(packing) : top_height(packing) + sphere_radius;
   return even_edges(0, std::max(1.0, std::ceil(top / width)) * width, width);
 }
 
@@ -82,10 +82,11 @@ Profile vertical_profile(const Packing& packing, std::span<const double> edges) 
   const double footprint = footprint_area(packing.container);
   Profile profile =
       empty_profile(edges, 0, HUGE_VAL, [&](double height) { return footprint * height; });
-  for (const Vec3& centre : packing.centres) {
-    const double bottom = centre.z - sphere_radius;
-    share_out(profile, bottom, bottom + 1, [&](double height) {
-      return sphere_volume_in_slab(centre.z, bottom, std::max(bottom, height));
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double z = packing.centres[i].z, diameter = 2 * packing.radius(i);
+    const double bottom = z - packing.radius(i);
+    share_out(profile, bottom, bottom + diameter, [&](double height) {
+      return sphere_volume_in_slab(z, bottom, std::max(bottom, height), diameter);
     });
   }
   divide_by_volumes(profile);

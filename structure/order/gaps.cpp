@@ -10,8 +10,8 @@ namespace jostle::inline structure {
 
 namespace {
 
-unsigned boundary_contacts(const Boundary& boundary, Vec3 r, double tolerance) {
-  const double reach = sphere_radius + tolerance;
+unsigned boundary_contacts(const Boundary& boundary, Vec3 r, double radius, double tolerance) {
+  const double reach = radius + 2 * radius * tolerance;
   unsigned contacts = 0;
   for (const Face& face : Faces(boundary)) contacts += face.distance(r) <= reach ? 1 : 0;
   return contacts;
@@ -61,7 +61,8 @@ Backbone backbone(const Packing& packing, const NeighbourTable& near, double tol
   found.rattler.assign(near.size(), false);
   std::vector<std::size_t> loose;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    unsigned contacts = boundary_contacts(boundary, packing.centres[i], tolerance);
+    unsigned contacts =
+        boundary_contacts(boundary, packing.centres[i], packing.radius(i), tolerance);
     for (const Neighbour& neighbour : near.of(i)) {
       contacts += neighbour.distance_squared <= reach ? 1 : 0;
     }

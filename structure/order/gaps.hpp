@@ -16,10 +16,11 @@ struct Backbone {
       contacts;  // contacts of the other spheres with each other, floor and walls; [n]
 };
 
-/// Two spheres touch where their centres are at most 1 + `tolerance` apart, a sphere and the floor
-/// or a wall where the gap is at most `tolerance`. A sphere with fewer than `least` contacts is a
-/// rattler, supports nothing and is removed, until none is left (Donev, Torquato & Stillinger 2005,
-/// doi:10.1103/PhysRevE.71.011105). `near`: neighbours_within(packing, at least 1 + tolerance).
+/// Two spheres touch where their centres are at most 1 + `tolerance` apart, in sums of their radii;
+/// a sphere and the floor or a wall where the gap is at most `tolerance` of the sphere's diameter.
+/// A sphere with fewer than `least` contacts is a rattler, supports nothing and is removed, until
+/// none is left (Donev, Torquato & Stillinger 2005, doi:10.1103/PhysRevE.71.011105). `near`:
+/// neighbours_within_contacts(packing, at least 1 + tolerance).
 Backbone backbone(const Packing& packing, const NeighbourTable& near, double tolerance,
                   unsigned least);
 

@@ -88,6 +88,22 @@ NeighbourTable neighbours_within(const Packing& packing, double cut) {
   return table;
 }
 
+NeighbourTable neighbours_within_contacts(const Packing& packing, double cut) {
+  if (!packing.sizes) return neighbours_within(packing, cut);
+  const NeighbourFinder finder(packing, reach_of_cut(packing, cut));
+  NeighbourTable table;
+  table.first.push_back(0);
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+      const double scaled = distance_squared / contact_squared(packing, i, j);
+      if (scaled <= cut * cut) table.neighbours.push_back({j, way, scaled});
+    });
+    std::sort(table.neighbours.begin() + table.first.back(), table.neighbours.end(), nearer);
+    table.first.push_back(static_cast<std::uint32_t>(table.neighbours.size()));
+  }
+  return table;
+}
+
 namespace {
 
 /// Leaves out images of centre i, and images beyond 1.5 of a centre that has a nearer one: they
@@ -180,21 +196,28 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
 void require_diameters(const Packing& packing) {
   constexpr double least = 0.5, most = 1.5;
   constexpr std::uint32_t many = 100;
-  const NeighbourFinder finder(packing, most);
+  const NeighbourFinder finder(packing, reach_of_cut(packing, most));
   bool any = finder.size() < many;
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      const double contact = contact_squared(packing, i, j);
+      if (distance_squared > most * most * contact) return;
       any = true;
-      if (distance_squared >= least * least) return;
-      throw std::invalid_argument("spheres " + std::to_string(i) + " and " + std::to_string(j) +
-                                  " are " + std::to_string(std::sqrt(distance_squared)) +
-                                  " apart, and their diameter is 1: lengths must be in diameters");
+      if (distance_squared >= least * least * contact) return;
+      throw std::invalid_argument(
+          "spheres " + std::to_string(i) + " and " + std::to_string(j) + " are " +
+          std::to_string(std::sqrt(distance_squared)) + " apart, and their " +
+          (packing.sizes ? "radii sum to " + std::to_string(std::sqrt(contact)) : "diameter is 1") +
+          ": lengths must be in diameters");
     });
   }
   if (!any) {
     throw std::invalid_argument(
-        "no two spheres are less than 1.5 apart, and their diameter is 1: lengths must be in "
-        "diameters");
+        packing.sizes
+            ? "no two spheres are less than 1.5 times the sum of their radii apart: lengths must "
+              "be in diameters"
+            : "no two spheres are less than 1.5 apart, and their diameter is 1: lengths must be in "
+              "diameters");
   }
 }
 

@@ -99,13 +99,30 @@ struct NeighbourTable {
 /// All centres at most `cut` away.
 NeighbourTable neighbours_within(const Packing& packing, double cut);
 
+/// The square of the distance at which two spheres touch, s_ij = R_i + R_j; 1 for equal spheres.
+inline double contact_squared(const Packing& packing, std::size_t i, std::size_t j) {
+  if (!packing.sizes) return 1;
+  const double contact = packing.radius(i) + packing.radius(j);
+  return contact * contact;
+}
+
+/// The distance within which all pairs at most `cut` times s_ij apart are found.
+inline double reach_of_cut(const Packing& packing, double cut) {
+  return packing.sizes ? cut * 2 * packing.largest_radius() : cut;
+}
+
+/// All spheres at most `cut` times s_ij away. In a mixture `distance_squared` is in squares of
+/// s_ij, `way` in diameters; for equal spheres this is neighbours_within().
+NeighbourTable neighbours_within_contacts(const Packing& packing, double cut);
+
 /// The `count` nearest of the other spheres, fewer only where there are no more. A sphere's own
 /// images are none of them, and of another sphere the nearest image is one; farther images only
 /// within 1.5, where they touch or nearly do. Equally distant ones are in the order of their index.
 NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count = 12);
 
 /// Throws std::invalid_argument where lengths cannot be in diameters: two centres are less than 0.5
-/// apart, or no two of 100 or more are less than 1.5 apart. Centres wrapped, in the container.
+/// s_ij apart, or no two of 100 or more are less than 1.5 s_ij apart; s_ij is 1 for equal spheres.
+/// Centres wrapped, in the container.
 void require_diameters(const Packing& packing);
 
 }  // namespace jostle::inline structure

@@ -217,6 +217,14 @@ std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const Compa
   return comparison_tables(numbers, parsed.scene->streams);
 }
 
+/// The kinds of a mixture in their order, or that there are none.
+std::string kind_names(const Packing& packing) {
+  if (!packing.sizes) return "equal spheres";
+  std::vector<std::string> names;
+  for (const SphereKind& kind : packing.sizes->kinds()) names.push_back('"' + kind.name + '"');
+  return joined(names, ", ");
+}
+
 /// True if two packings have the same centres, in whichever order.
 bool same_centres(const Packing& a, const Packing& b) {
   const auto sorted = [](std::vector<Vec3> centres) {
@@ -279,6 +287,12 @@ std::vector<Table> structure_of(std::span<const std::string> files,
     packings.push_back(read_extended_xyz_frames(path));
     most = std::max(most, packings.back().size());
     for (const Packing& packing : packings.back()) {
+      if (kind_names(packing) != kind_names(packings.front().front())) {
+        throw BadInput(fmt::format(
+            "{}: its kinds of spheres, {}, are not those of {}, {}: only packings of the same "
+            "kinds, in one order, have a mean; name them by kinds=\"...\" in the comment line",
+            path, kind_names(packing), files.front(), kind_names(packings.front().front())));
+      }
       if (packing.container == packings.front().front().container) continue;
       throw BadInput(fmt::format(
           "{}: its container is not that of {}: only packings of one container have a mean", path,
