@@ -64,7 +64,8 @@ class FailedPoints(Case):
             rows = [int(file[f"observables/point_{point:04}/rows"][0]) for point in range(3)]
         self.assertGreater(rows[0], 2 * 24 + 1)
         self.assertEqual(rows[1:], [25, 25])
-        why = f"its realizations have all reached tap 24, those of others tap {rows[0] - 1}"
+        why = ("its realizations have all reached tap 24, fewer than half of the "
+               f"{rows[0] - 1} taps that those of another point reached")
         self.assertIn(f"at 5.196: {why}; at 6.928: {why}", self.analyse(*SWEEP).stdout)
         ordering = ("ordering", "--observable", "mean_height", "--threshold", "5", "--hold", "3")
         self.assertRegex(self.analyse(*ordering).stdout,

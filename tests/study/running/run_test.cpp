@@ -82,12 +82,12 @@ TEST_CASE("A run of a scene fills its file, and tells its observer how it goes")
   const ResultsFile file = run.close();
   const auto names = store_scene_tables(file, 1, heard);
   CHECK(heard.fits == 2);
-  CHECK(heard.tables == 4);
+  CHECK(heard.tables == 5);  // two sweeps, profiles of two points, their comparison
   const ResultsFile stored(file.path());
   const auto in_file = stored.table_names();
   CHECK(std::set<std::string>(names.begin(), names.end()) ==
         std::set<std::string>(in_file.begin(), in_file.end()));
-  CHECK(in_file.size() == 6);
+  CHECK(in_file.size() == 7);
   // The sweep of a fit was drawn of the fits just made.
   for (const Table& table : stored.tables("analysis")) {
     CAPTURE(table.name);

@@ -119,7 +119,7 @@ TEST_CASE(
     for (std::size_t k = 0; k < 3; ++k) {
       for (const AgeingLaw& law : {fits.own[k], fits.shared[k]}) {
         CAPTURE(k, law.verdict);
-        CHECK(law.verdict.starts_with("eq. 6 does not describe"));
+        CHECK(law.verdict.find("does not describe") != std::string::npos);
         for (const LogEstimate& one : {law.a_inf, law.b}) {
           CHECK(one.low_95 == 0);
           CHECK(std::isinf(one.high_95));
