@@ -162,7 +162,7 @@ class Terminal(Case):
 
     def test_proposals_are_of_the_observable_that_the_scene_studies(self):
         for scene, name in ((BED, "bottom_fraction"),
-                            (changed(BED, analyse={"steady": [{"observable": "mean_height", "last": 20}]}),
+                            (changed(BED, analyse={"steady": [{"observable": "mean_height", "last": 32}]}),
                              "mean_height")):
             with self.subTest(name=name):
                 self.write(scene)
