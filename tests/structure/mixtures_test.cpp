@@ -146,7 +146,7 @@ TEST_CASE("structure: contacts with the floor are relative to a sphere's diamete
   StructureSettings settings;
   settings.region = Region{0, 2, 0};
   settings.gaps.emplace();
-  settings.gaps->tolerance = 0.1;  // of 1.5 and 0.6: 0.15 and 0.06
+  settings.gaps->tolerance = 0.1;  // gaps up to 0.15 below the large sphere, 0.06 below small ones
   settings.gaps->least_contacts = 1;
   const auto all = measure(packing, settings, points);
   const Measurement& gaps = part(all, "gaps");
@@ -164,7 +164,7 @@ TEST_CASE("structure: the profile of a mixture cuts each sphere by its own radiu
     solid += profile.values[k] * profile.volumes[k];
     CHECK(profile.values[k] ==
           Approx(solids_fraction(packing, {edges[k], edges[k + 1]})).epsilon(1e-10).margin(1e-12));
-    double quadrature = 0;  // of the area of plane cuts
+    double quadrature = 0;  // integral over the area of plane cuts
     constexpr int n = 400;
     for (int step = 0; step < n; ++step) {
       const double z = edges[k] + (step + 0.5) / n * (edges[k + 1] - edges[k]);
