@@ -49,9 +49,9 @@ struct Trend {
   /// "it drifts: +0.02 over the taps (p = 0.0003 at the 5 % level, 2 tests, ...)",
   /// "no drift found (p = 0.4 at the 5 % level, ...)", or "no drift: the series is constant".
   std::string statement() const;
-  /// "the test finds drifts of 0.01 or more over the taps (80 % power), 0.3 times the scatter of taps
-  /// about their line", or with `only` "finds only drifts of". After at least one test, of series
-  /// that are not constant.
+  /// "the test finds drifts of 0.01 or more over the taps (80 % power), 0.3 times the scatter of
+  /// taps about their line", or with `only` "finds only drifts of". After at least one test, of
+  /// series that are not constant.
   std::string power(const std::string& only = "") const;
   /// `detectable` in deviations `sigma`; 0 where every change is found, infinite without a test.
   double detectable_in_sigma() const { return detectable == 0 ? 0 : detectable / sigma; }
