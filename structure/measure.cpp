@@ -93,6 +93,17 @@ Region bulk_of(const Packing& packing) {
   return region;
 }
 
+std::vector<std::string> parts_of_equal_spheres(const StructureSettings& settings) {
+  std::vector<std::string> names;
+  const auto look_at = [&]<class Settings>(const std::optional<Settings>& part) {
+    if (part && !takes_sizes<Settings>) names.emplace_back(Settings::about.name);
+  };
+  std::apply(
+      [&](const auto& /*region*/, const auto&... part) { (look_at(settings.*part.member), ...); },
+      StructureSettings::fields());
+  return names;
+}
+
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {
   require_diameters(packing);

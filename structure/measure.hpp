@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/bed/packing.hpp"
@@ -276,6 +277,9 @@ StructureSettings all_structure();
 /// Philippe & Bideau's region, 2 R to 20 R high and 2 R away from walls, but never above 2 R below
 /// 2<Z>; all of a fully periodic box.
 Region bulk_of(const Packing& packing);
+
+/// Names of the parts among these that are defined for equal spheres alone.
+std::vector<std::string> parts_of_equal_spheres(const StructureSettings& settings);
 
 /// Each part that has settings, in their order. `points` draws the random points of P0. A part that
 /// the container does not have is refused: it holds the reason and no values. Throws

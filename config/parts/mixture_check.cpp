@@ -40,6 +40,13 @@ class MixtureCheck {
     }
   }
 
+  void structure_takes_sizes() {
+    if (!sound(faults_, "/structure")) return;
+    for (const std::string& part : parts_of_equal_spheres(scene_.structure))
+      note("/structure/" + part,
+           "measures of " + part + " require equal spheres of diameter 1: leave them out");
+  }
+
   void analyses_take_sizes() {
     if (!scene_.analyse.volumes.empty())
       note("/analyse/volumes",
@@ -118,6 +125,7 @@ void check_mixture(const Scene& scene, const DiameterRange& range,
   check.start_takes_sizes();
   check.engine_takes_sizes();
   check.observables_take_sizes(kinds);
+  check.structure_takes_sizes();
   check.analyses_take_sizes();
   if (!sound(faults, "/container")) return;
   for (std::size_t i = 0; i < scene.kinds.size(); ++i) {
