@@ -379,7 +379,7 @@ void add_fit(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle fit quickstart.h5 --observable bottom_fraction     all laws\n"
-      "  jostle fit bell.h5 --observable bulk_fraction --model kww,inverse_log --range 1:400\n"
+      "  jostle fit bell.h5 --observable bulk_fraction --model kww,inverse_log\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
       "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"
