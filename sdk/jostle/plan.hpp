@@ -1,6 +1,6 @@
 #pragma once
 
-// What a study costs before it is run: pilots, error bars against time, shards and batch jobs.
+// The cost of a study before it is run: pilots, error bars against time, shards and batch jobs.
 
 #include "study/planning/cost_run.hpp"
 #include "study/planning/job_plan.hpp"

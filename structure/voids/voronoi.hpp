@@ -11,7 +11,7 @@
 // diameters.
 namespace jostle::inline structure {
 
-/// The other side of a face of a cell: a sphere, or one of these.
+/// Neighbour of a cell beyond a face that is no sphere: a side of the container.
 inline constexpr std::uint32_t container_side = 0xffffffff;
 
 struct VoronoiFace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/disk/slurm_job.hpp"
+#include "results/locks/slurm_job.hpp"
 #include "results/run/live_run.hpp"
 #include "study/seconds.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ensemble/run.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 #include "results/run/run_store.hpp"
 #include "study/bad_input.hpp"
 #include "study/running/scene_file.hpp"

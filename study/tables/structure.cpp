@@ -209,7 +209,7 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   return ensemble;
 }
 
-/// What differs between the points. A scene that cannot be read does not tell whether realizations
+/// Differences between the points. A scene that cannot be read does not tell whether realizations
 /// are pairs: then there is no comparison.
 std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const ComparedPoint> numbers) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);

@@ -135,10 +135,12 @@ struct SweepDifference {
 std::vector<SweepDifference> differences(const SweepCurve& curve,
                                          std::optional<std::size_t> reference);
 
-/// Which points are compared: every pair of them, or each with the first.
+/// The pairs of points to compare: every pair, or each point with the first.
 enum class ComparedPairs { all_pairs, with_first };
-/// By the same tests. A difference whose realizations do not scatter at all has no error and no
-/// p-value: M equal values do not show that others would be equal.
+
+/// Differences of these pairs, by the tests of the overload above. A difference whose realizations
+/// do not scatter at all has no error and no p-value: M equal values do not show that others would
+/// be equal.
 std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which);
 
 /// What is swept: "sqrt_epsilon", its units, and a line for people.

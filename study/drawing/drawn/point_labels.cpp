@@ -64,7 +64,7 @@ std::vector<SweptValues> values_of(const Study& study) {
   return all;
 }
 
-/// Whether the values in `columns` tell all points apart.
+/// True if no two points have the same values in `columns`.
 bool are_distinct(const Study& study, const std::vector<std::size_t>& columns) {
   std::set<std::string> seen;
   return std::ranges::all_of(study.points, [&](const StudyPoint& point) {

@@ -5,7 +5,7 @@
 
 #include "results/content/study.hpp"
 
-// What sweep points are called on the page and in figures.
+// Names of sweep points on the page and in figures.
 namespace jostle::inline study {
 
 /// The labels that the scene gives, else short ones made of the swept values: "ε = 0.05", "Monte

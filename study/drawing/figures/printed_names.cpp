@@ -12,7 +12,8 @@ bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-/// Whether the text at this place stands alone: "Phi_b" holds "Phi", and "alpha_line" no "alpha".
+/// True if the text at this place is a name, not a part of one: "Phi_b" has "Phi", "alpha_line" has
+/// no "alpha".
 bool stands_alone(std::string_view text, std::size_t at, std::size_t length) {
   if (at > 0 && (is_letter_or_digit(text[at - 1]) || text[at - 1] == '_')) return false;
   const std::string_view rest = text.substr(at + length);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto logarithmic = AxisKind::logarithmic, linear = AxisKind::linear;
 
-/// Whether a row has a value beyond the places at which every curve is 0.
+/// True for a row between two places, both included.
 bool is_within(const FigureRow& row, double first, double last) {
   return row.x >= first && row.x <= last;
 }

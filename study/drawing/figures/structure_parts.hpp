@@ -6,7 +6,7 @@
 
 #include "study/drawing/figures/builders.hpp"
 
-// What is drawn of each part of the structure: curves at some taps, numbers against taps.
+// Plots of each part of the structure: curves at some taps, numbers against taps.
 namespace jostle::inline study {
 
 enum class Over { the_axis, its_cube };
@@ -35,7 +35,7 @@ struct NumberTrend {
   std::vector<const char*> names;
 };
 
-/// What is drawn of a part of the structure.
+/// The plots of a part of the structure.
 struct DrawnPart {
   const char* name;
   std::vector<PartPlot> plots;
@@ -51,7 +51,7 @@ std::vector<FigureRow> rows_at(const TableView& table, const PartPlot& plot,
 /// The empty panel of a plot: title, axes, source.
 FigurePanel panel_of(const TableView& table, const PartPlot& plot);
 
-/// What a plot does to the whole panel: leaves out ends where every curve is 0, and clips a peak.
+/// Limits the axes of a panel: leaves out ends where every curve is 0, and clips a peak.
 void finish_panel(const PartPlot& plot, FigurePanel& panel);
 
 /// Adds, for each part that several sweep points have, its first curve at the last tap that they

@@ -67,7 +67,7 @@ std::string with_capitals(std::string text) {
   return text;
 }
 
-/// What the tests of ageing found: a question, its answer, and the test in brackets behind it.
+/// A table of the tests of ageing: a question, its answer, and the test in brackets behind it.
 Json ageing_verdicts(const TableView& table) {
   constexpr std::array<std::array<const char*, 2>, 7> questions{
       {{"Does A change with age?", "ageing_verdict"},

@@ -12,7 +12,7 @@ struct PageParts {
 Json page_sections(const DrawnFile& file, const std::vector<Figure>& figures,
                    const PageParts& parts);
 
-/// What the file shows in five lines; `run` is the first.
+/// A summary of the file in five lines; `run` is the first.
 Json summary_section(const DrawnFile& file, const std::string& run);
 
 // Each null where the file has nothing for it.

@@ -12,8 +12,7 @@
 #include "study/drawing/figures/builders.hpp"
 #include "study/drawing/page/sections/sections.hpp"
 
-// What a file shows in five lines: what was run, where the bed ended, by which law, whether it is
-// steady, whether it ages.
+// A file in five lines: run, packing fraction at the end, law, steady state, ageing.
 namespace jostle::inline study {
 namespace {
 
@@ -153,7 +152,7 @@ std::string law_line(const DrawnFile& file) {
   return words(observable) + ": " + answers.text();
 }
 
-/// Of the first observable that the kind of analysis was made of.
+/// The verdict on the first observable that has this kind of analysis.
 std::string verdict_line(const DrawnFile& file, const std::string& kind,
                          const std::function<std::string(const TableView&)>& answer_of) {
   const std::vector<TableView> made = file.made_of("analysis", kind);
