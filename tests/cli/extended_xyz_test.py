@@ -154,6 +154,14 @@ class ExtendedXyz(Case):
             measured = self.jostle("structure", "a.xyz", "--settings", REGION)
             self.assertIn("n_c_of_pair", measured.stdout)
 
+    def test_packings_of_other_kinds_have_no_mean(self):
+        header = HEADER.replace("pos:R:3", "pos:R:3:radius:R:1")
+        for file, kinds in (("a.xyz", "ls"), ("b.xyz", "lt")):
+            rows = [[kinds[i % 2], *row[1:], 0.3 if i % 2 else 0.5] for i, row in enumerate(self.rows)]
+            self.write(frame(rows, header), file)
+        refused = self.jostle("structure", "a.xyz", "b.xyz", "--settings", REGION, expect=BAD_INPUT)
+        self.assertIn('its kinds of spheres, "l", "t", are not those of a.xyz, "l", "s"', refused.stderr)
+
     def test_listed_kinds_must_match_those_of_the_file(self):
         header = HEADER.replace("pos:R:3", "pos:R:3:radius:R:1")
         rows = [["s" if i % 2 else "l", *row[1:], 0.3 if i % 2 else 0.5] for i, row in enumerate(self.rows)]
