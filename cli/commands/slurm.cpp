@@ -18,7 +18,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/printable.hpp"
-#include "results/disk/slurm_job.hpp"
+#include "results/locks/slurm_job.hpp"
 #include "study/planning/job_plan.hpp"
 #include "study/planning/scene_pilot.hpp"
 #include "study/provenance.hpp"

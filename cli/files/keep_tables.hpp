@@ -6,8 +6,8 @@
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/content/study.hpp"
-#include "results/disk/patience.hpp"
 #include "results/export/export.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline cli {
 

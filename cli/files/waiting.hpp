@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/options/command.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline cli {
 

@@ -9,7 +9,7 @@
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/content/study.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 #include "study/results_input.hpp"
 
 namespace jostle::inline cli {

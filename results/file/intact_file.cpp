@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "results/disk/error.hpp"
-#include "results/disk/lock.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/seal.hpp"
 #include "results/disk/temporary_file.hpp"
 #include "results/file/contents.hpp"
 #include "results/hdf5/child_process.hpp"
 #include "results/hdf5/read.hpp"
+#include "results/locks/lock.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -12,7 +12,7 @@
 #include "results/content/record.hpp"
 #include "results/content/stored_realization.hpp"
 #include "results/content/study.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline results {
 

@@ -6,7 +6,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "results/disk/lock.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/seal.hpp"
@@ -20,6 +19,7 @@
 #include "results/hdf5/read.hpp"
 #include "results/hdf5/writable_file.hpp"
 #include "results/hdf5/write.hpp"
+#include "results/locks/lock.hpp"
 
 namespace jostle::inline results {
 namespace {

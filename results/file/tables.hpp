@@ -6,7 +6,7 @@
 
 #include "ensemble/analysis/table.hpp"
 #include "results/content/study.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 
 // Tables derived from a run's data and kept in its file: the groups /fits, /analysis and
 // /structure. They can be made again from the data at any time, and are not part of the digest.

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "results/disk/error.hpp"
-#include "results/disk/lock.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/scratch_folder.hpp"
 #include "results/disk/system_calls.hpp"
 #include "results/file/results_writer.hpp"
+#include "results/locks/lock.hpp"
 #include "results/run/run_parts.hpp"
 
 namespace jostle::inline results {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "results/disk/lock_owner.hpp"
-#include "results/disk/patience.hpp"
 #include "results/file/results_file.hpp"
+#include "results/locks/lock_owner.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline results {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "results/content/study.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline results {
 

@@ -11,12 +11,12 @@
 
 #include "results/disk/checksum.hpp"
 #include "results/disk/error.hpp"
-#include "results/disk/lock.hpp"
 #include "results/disk/names.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/temporary_file.hpp"
 #include "results/file/results_writer.hpp"
+#include "results/locks/lock.hpp"
 #include "results/run/recorder.hpp"
 #include "results/run/run_parts.hpp"
 

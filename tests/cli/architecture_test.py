@@ -27,11 +27,12 @@ MAY_INCLUDE = {
 ROOMS = {
     "study": {"tables": set(), "running": {"tables"}, "drawing": {"tables", "running"},
               "planning": {"tables", "running"}},
-    "results": {"disk": set(), "content": {"disk"}, "hdf5": {"disk"}, "checkpoints": {"disk", "content"},
+    "results": {"disk": set(), "locks": {"disk"}, "content": {"disk"}, "hdf5": {"disk"},
+                "checkpoints": {"disk", "content"},
                 "groups": {"disk", "content", "hdf5", "checkpoints"},
-                "file": {"disk", "content", "hdf5", "checkpoints", "groups"},
+                "file": {"disk", "locks", "content", "hdf5", "checkpoints", "groups"},
                 "export": {"disk", "content", "hdf5", "groups", "file"},
-                "run": {"disk", "content", "checkpoints", "file"}},
+                "run": {"disk", "locks", "content", "checkpoints", "file"}},
 }
 
 # Other headers that only some folders may include.

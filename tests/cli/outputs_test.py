@@ -189,7 +189,7 @@ class Sources(Case):
         "cli/files/python_plot.cpp": "in a scratch folder of its own, O_EXCL",
         "cli/files/keep_tables.cpp": LOOKS,
         "cli/manual/main.cpp": "makes the manual pages when jostle is built",
-        "results/disk/lock.cpp": LOOKS,
+        "results/locks/lock.cpp": LOOKS,
         "results/disk/output_path.cpp": "is what looks",
         "results/run/run_parts.cpp": LOOKS,
         "results/disk/scratch_folder.cpp": LOOKS,
@@ -197,7 +197,7 @@ class Sources(Case):
         "results/disk/temporary_file.cpp": LOOKS,
         "results/hdf5/child_process.cpp": "/dev/null",
         "results/hdf5/writable_file.cpp": "a TemporaryFile, which is there",
-        "results/disk/slurm_job.cpp": "/dev/null",
+        "results/locks/slurm_job.cpp": "/dev/null",
         "study/running/self_checks.cpp": "a file of its own in a scratch folder",
     }
 

@@ -8,12 +8,12 @@
 #include <iterator>
 
 #include "results/disk/error.hpp"
-#include "results/disk/lock.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/scratch_folder.hpp"
 #include "results/disk/temporary_file.hpp"
 #include "results/file/tables.hpp"
+#include "results/locks/lock.hpp"
 #include "results/run/live_run.hpp"
 #include "results/run/merge.hpp"
 #include "results/run/run_parts.hpp"

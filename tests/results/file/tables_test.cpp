@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "results/disk/error.hpp"
-#include "results/disk/lock.hpp"
 #include "results/file/results_file.hpp"
+#include "results/locks/lock.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 

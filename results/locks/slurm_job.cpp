@@ -1,4 +1,4 @@
-#include "results/disk/slurm_job.hpp"
+#include "results/locks/slurm_job.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "results/disk/lock.hpp"
+#include "results/locks/lock.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>

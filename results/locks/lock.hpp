@@ -3,8 +3,8 @@
 #include <string>
 
 #include "results/disk/descriptor.hpp"
-#include "results/disk/lock_owner.hpp"
-#include "results/disk/patience.hpp"
+#include "results/locks/lock_owner.hpp"
+#include "results/locks/patience.hpp"
 
 namespace jostle::inline results {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "results/disk/slurm_job.hpp"
+#include "results/locks/slurm_job.hpp"
 
 namespace jostle::inline results {
 
