@@ -18,9 +18,13 @@ def body(package: pathlib.Path) -> str:
         sources = [ast.parse(file.read_text()) for file in sorted(folder.glob("*.py"))]
         definitions = {node.name: node for source in sources for node in source.body
                        if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-        for name in public_names(init):
+        public = public_names(init)
+        for name in public:
             if name in definitions:
-                parts.append(entry(module, definitions[name]))
+                node = definitions[name]
+                inner = [definitions[base.id] for base in getattr(node, "bases", []) if isinstance(base, ast.Name)
+                         and base.id in definitions and base.id not in public]
+                parts.append(entry(module, node, inner))
     return "\n".join(parts)
 
 
@@ -31,12 +35,14 @@ def public_names(init: ast.Module) -> list[str]:
     raise ValueError("the package has no __all__")
 
 
-def entry(module: str, node: ast.ClassDef | ast.FunctionDef) -> str:
+def entry(module: str, node: ast.ClassDef | ast.FunctionDef, inner: list[ast.ClassDef]) -> str:
+    """inner: bases of a class that are not public, whose members are listed as its own."""
     anchor = f"{module}.{node.name}"
     head = f'<h3 id="{anchor}">{node.name}</h3>'
     if isinstance(node, ast.FunctionDef):
         return head + signature(node, f"{module}.") + docstring(node)
-    bases = ", ".join(ast.unparse(base) for base in node.bases)
+    hidden = {base.name for base in inner}
+    bases = ", ".join(text for base in node.bases if (text := ast.unparse(base)) not in hidden)
     parts = [head, f'<pre class="signature"><code>class {anchor}{f"({bases})" if bases else ""}</code></pre>',
              docstring(node)]
     fields = [(ast.unparse(one.target), ast.unparse(one.annotation)) for one in node.body
@@ -44,7 +50,8 @@ def entry(module: str, node: ast.ClassDef | ast.FunctionDef) -> str:
     if fields:
         parts.append("<ul>" + "".join(f"<li><code>{html.escape(f'{name}: {kind}')}</code></li>"
                                       for name, kind in fields) + "</ul>")
-    methods = [one for one in node.body if isinstance(one, ast.FunctionDef) and not one.name.startswith("_")]
+    methods = [one for part in (*inner, node) for one in part.body
+               if isinstance(one, ast.FunctionDef) and not one.name.startswith("_")]
     parts += [f'<div class="member">{signature(one)}{docstring(one)}</div>' for one in methods]
     return "\n".join(parts)
 

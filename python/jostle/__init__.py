@@ -14,10 +14,11 @@
 It needs numpy and h5py; xarray, pandas, matplotlib and jsonschema for what is named after them.
 """
 
-from .commands import analyse, cost, export, fit, report, run, structure
+from .commands import (RealizationsFailed, RunStopped, UnfinishedRun, analyse, cost, export, fit, report, run,
+                       structure)
 from .contacts import Contacts
 from .errors import (BadArgument, Fault, JostleError, NoSuchPoint, NotThere, ProgramError, ProgramMissing,
-                     RealizationsFailed, ResultsError, RunStopped, SceneError, UnfinishedRun, WrongType)
+                     ResultsError, SceneError, WrongType)
 from .fits import Choice, Fit, FittedCurve, HeldOut, Parameter
 from .point import Box, Point
 from .program import program_path

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from . import results as results_files
-from .errors import BadArgument, RealizationsFailed, RunStopped, WrongType
+from .errors import BadArgument, ProgramError, WrongType
 from .fits import FittedCurve, fitted_curves
 from .guards import path_text, takes_arguments
 from .program import BROKEN, FAILED, OK, STOPPED, Path, answer, call, refusal
@@ -24,6 +24,20 @@ from .tables import Table, table_from_json
 
 Scene = Mapping[str, Any]
 _NAME = r"[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a scene
+
+
+class UnfinishedRun(ProgramError):
+    """A run that ended without all of its taps; all that it made is stored. results: the file, open."""
+
+    results: Results | None = None
+
+
+class RunStopped(UnfinishedRun):
+    """Stopped by a signal or its time limit (exit code 75): run(..., resume=True) continues."""
+
+
+class RealizationsFailed(UnfinishedRun):
+    """Some realizations failed (exit code 3): results.points[i].reasons has the reasons."""
 
 
 @contextlib.contextmanager

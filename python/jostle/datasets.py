@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable
+from typing import Any, Callable
 
 import numpy as np
 
 from .guards import reads_file
 from .point import FOLDS, STATUS
+from .results_file import ResultsFile
 from .text import attribute
 
 try:
@@ -18,9 +19,6 @@ except ImportError as error:
     raise ImportError("this needs xarray, which is not installed (Debian: python3-xarray; pip: xarray). "
                       "Without it, points[i].mean[name] and points[i].series[name] are numpy arrays") from error
 
-if TYPE_CHECKING:
-    from .results import Results
-
 
 @reads_file
 class SweptArray(BackendArray):
@@ -30,7 +28,7 @@ class SweptArray(BackendArray):
     `fill`.
     """
 
-    def __init__(self, results: Results, path: str, rest: tuple[int, ...], dtype: Any,
+    def __init__(self, results: ResultsFile, path: str, rest: tuple[int, ...], dtype: Any,
                  fill: Any) -> None:
         self._results, self._path, self._fill = results, path, fill
         self._rest = rest
@@ -43,7 +41,7 @@ class SweptArray(BackendArray):
 
     def _read(self, key: tuple[Any, ...]) -> np.ndarray:
         n_axes = len(self._results.sweep.shape)
-        numbers = np.arange(len(self._results.points)).reshape(self._results.sweep.shape)
+        numbers = np.arange(len(self._results.sweep.labels)).reshape(self._results.sweep.shape)
         chosen = _outer(numbers, key[:n_axes])
         rest = key[n_axes:]
         shape = _outer(np.broadcast_to(np.int8(0), self._rest), rest).shape
@@ -68,7 +66,7 @@ def _outer(values: np.ndarray, key: tuple[Any, ...]) -> np.ndarray:
     return np.asarray(values)
 
 
-def _coordinates(results: Results) -> dict[str, Any]:
+def _coordinates(results: ResultsFile) -> dict[str, Any]:
     found: dict[str, Any] = {}
     long_names = {name: f"value of {pointer}" for pointer, name in results.sweep.names.items()}
     for axis in results.sweep.axes:
@@ -84,10 +82,10 @@ def _coordinates(results: Results) -> dict[str, Any]:
     return found
 
 
-def _longest(results: Results) -> tuple[int, np.ndarray]:
+def _longest(results: ResultsFile) -> tuple[int, np.ndarray]:
     """Taps of the point that has come farthest, and their numbers."""
     scales = [results.file.get(f"observables/point_{number:04}/tap")
-              for number in range(len(results.points))]
+              for number in range(len(results.sweep.labels))]
     longest = max((scale for scale in scales if scale is not None), key=len, default=np.zeros(0, np.int64))
     return len(longest), longest[()].astype(np.int64)
 
@@ -95,7 +93,7 @@ def _longest(results: Results) -> tuple[int, np.ndarray]:
 class _Builder:
     """Collects variables over the sweep."""
 
-    def __init__(self, results: Results) -> None:
+    def __init__(self, results: ResultsFile) -> None:
         self._results = results
         self._dims = tuple(axis.name for axis in results.sweep.axes)
         self.variables: dict[str, Any] = {}
@@ -107,8 +105,8 @@ class _Builder:
 
     def _about(self, path: str) -> dict[str, str]:
         """units, long_name and source, of the first point that has the dataset."""
-        for point in self._results.points:
-            dataset = self._results.file.get(path.format(f"point_{point.index:04}"))
+        for number in range(len(self._results.sweep.labels)):
+            dataset = self._results.file.get(path.format(f"point_{number:04}"))
             if dataset is not None:
                 return {name: value for name in ("units", "long_name", "source")
                         if (value := attribute(dataset, name))}
@@ -128,7 +126,7 @@ def _nothing() -> None:
     """The file belongs to the Results."""
 
 
-def ensemble(results: Results) -> xarray.Dataset:
+def ensemble(results: ResultsFile) -> xarray.Dataset:
     n, taps = _longest(results)
     builder = _Builder(results)
     for name in results.observables:
@@ -139,7 +137,7 @@ def ensemble(results: Results) -> xarray.Dataset:
     return builder.dataset(taps, {})
 
 
-def series(results: Results) -> xarray.Dataset:
+def series(results: ResultsFile) -> xarray.Dataset:
     n, taps = _longest(results)
     realizations = results.n_realizations
     builder = _Builder(results)
@@ -153,7 +151,7 @@ def series(results: Results) -> xarray.Dataset:
     return builder.dataset(taps, {"realization": numbers})
 
 
-def opened(results: Results, make: Callable[[Results], xarray.Dataset]) -> xarray.Dataset:
+def opened(results: ResultsFile, make: Callable[[ResultsFile], xarray.Dataset]) -> xarray.Dataset:
     """A dataset that closes the file when it is closed."""
     made = make(results)
     made.set_close(results.close)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Sequence
-
-if TYPE_CHECKING:
-    from .results import Results
+from collections.abc import Sequence
+from typing import NamedTuple
 
 
 class JostleError(Exception):
@@ -69,17 +67,3 @@ class SceneError(ProgramError):
         n = len(self.faults)
         super().__init__("\n".join([f"{n} fault{'s' if n != 1 else ''} in the scene",
                                     *map(str, self.faults)]), **of_program)  # type: ignore[arg-type]
-
-
-class UnfinishedRun(ProgramError):
-    """A run that ended without all of its taps; all that it made is stored. results: the file, open."""
-
-    results: Results | None = None
-
-
-class RunStopped(UnfinishedRun):
-    """Stopped by a signal or its time limit (exit code 75): run(..., resume=True) continues."""
-
-
-class RealizationsFailed(UnfinishedRun):
-    """Some realizations failed (exit code 3): results.points[i].reasons has the reasons."""

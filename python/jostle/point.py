@@ -6,7 +6,7 @@ import copy
 import dataclasses
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Callable
+from typing import Any, Callable
 
 import h5py
 import numpy as np
@@ -14,10 +14,8 @@ import numpy as np
 from .contacts import Contacts, contacts_of
 from .errors import NotThere, ResultsError
 from .guards import reading, reads_file, whole_number
+from .results_file import ResultsFile
 from .text import attribute, text, texts
-
-if TYPE_CHECKING:
-    from .results import Results
 
 STATUS = ("missing", "unfinished", "done", "failed")
 FOLDS = ("mean", "sigma", "error", "count")
@@ -39,7 +37,7 @@ class Box:
 class Columns(Mapping[str, np.ndarray]):
     """Arrays by name, read when they are asked for."""
 
-    def __init__(self, names: list[str], read: Callable[[str], np.ndarray], of: str, results: Results) -> None:
+    def __init__(self, names: list[str], read: Callable[[str], np.ndarray], of: str, results: ResultsFile) -> None:
         self._names, self._read, self._of, self._results = names, read, of, results
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -69,7 +67,7 @@ class Point:
     protocol, whatever was reached.
     """
 
-    def __init__(self, results: Results, index: int) -> None:
+    def __init__(self, results: ResultsFile, index: int) -> None:
         self._results, self.index = results, index
         self._name = f"point_{index:04}"
         with reading(results.path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import pathlib
 import warnings
@@ -15,20 +14,17 @@ import numpy as np
 
 from .contacts import Contacts
 from .errors import NoSuchPoint, ProgramError, ProgramMissing, ResultsError, WrongType
-from .guards import closed, path_text, reading, reads_file, whole_number
+from .guards import path_text, reading, reads_file, whole_number
 from .point import Box, Point
 from .program import beside, digest_of, joined_with_parts
+from .results_file import ResultsFile, opened
 from .seal import has_seal
-from .sweep import Sweep, read_sweep, swept_pointers
 from .tables import Tables, stored_tables
-from .text import text, texts
+from .text import text
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-LAYOUTS = (1, 2)  # attribute jostle_format of the root; 2: with mixtures
-MONTE_CARLO = ["sweeps", "acceptance", "capped", "dropped_offsets"]  # unnamed in files
 
 
 def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = False,
@@ -46,10 +42,10 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
         _verify_contents(name, program)
     parts = pathlib.Path(beside(os.path.realpath(name), ".parts"))
     if live and parts.is_dir():
-        with reading(name), joined_with_parts(name, program) as joined, _opened(name, name) as stored:
+        with reading(name), joined_with_parts(name, program) as joined, opened(name, name) as stored:
             state = text(stored["provenance"].attrs["state"])
-            return Results(name, _opened(joined, name), program, state, live=True)  # open, it outlives its name
-    results = Results(name, _opened(name, name), program)
+            return Results(name, opened(joined, name), program, state, live=True)  # open, it outlives its name
+    results = Results(name, opened(name, name), program)
     if parts.is_dir() and not live:
         warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
                       "live=True reads them too", stacklevel=2)
@@ -69,33 +65,11 @@ def _verify_contents(path: str, program: str | os.PathLike[str] | None) -> None:
                   stacklevel=3)
 
 
-def _opened(path: str, known_as: str) -> h5py.File:
-    try:
-        file = h5py.File(path, "r")
-    except OSError as error:
-        raise ResultsError(f"{known_as}: cannot read it: {error}") from error
-    try:
-        with reading(known_as):
-            _require_layout(file, known_as)
-    except BaseException:
-        file.close()
-        raise
-    return file
-
-
-def _require_layout(file: h5py.File, known_as: str) -> None:
-    layout = file.attrs.get("jostle_format")
-    whole = isinstance(layout, (int, np.integer)) and not isinstance(layout, bool)
-    if not whole or int(layout) not in LAYOUTS:
-        what = "not written by jostle" if layout is None else f"of layout {text(layout)}"
-        raise ResultsError(f"{known_as}: {what}: this package reads results of jostle of layouts 1 and 2")
-
-
 @reads_file
 class Points(Sequence[Point]):
     """The sweep points of a file, in its order."""
 
-    def __init__(self, results: Results, n: int) -> None:
+    def __init__(self, results: ResultsFile, n: int) -> None:
         self._results, self._n = results, n
 
     def __len__(self) -> int:
@@ -116,33 +90,18 @@ class Points(Sequence[Point]):
 
 
 @reads_file
-class Results:
+class Results(ResultsFile):
     """A results file, open to read. Lengths are in sphere diameters, z points up, tap 0 is the start.
 
     It stays open until `close`, or the end of a `with`; a file that a run replaces meanwhile is still read in its old
     state. `file` is its h5py.File.
     """
 
-    def __init__(self, path: str, file: h5py.File,
-                 program: str | os.PathLike[str] | None = None, state: str | None = None, live: bool = False) -> None:
-        self.path, self._file, self._program, self._state = path, file, program, state
-        self.live = live  # checkpoints are joined in
-
     def __enter__(self) -> Results:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    def close(self) -> None:
-        self._file.close()
-
-    @property
-    def file(self) -> h5py.File:
-        """The file; ResultsError after `close`."""
-        if not self._file:
-            raise closed(self.path)
-        return self._file
 
     def __repr__(self) -> str:
         if not self._file:
@@ -152,53 +111,6 @@ class Results:
                     f"point{'s' if len(self.points) != 1 else ''} x {self.n_realizations} realizations>")
         except ResultsError:
             return f"<jostle results {self.path}: damaged>"
-
-    # The request.
-
-    @cached_property
-    def scene(self) -> dict[str, Any]:
-        """The scene, every default written out."""
-        scene = json.loads(self.scene_text("resolved"))
-        if not isinstance(scene, dict) or not isinstance(scene.get("name"), str):
-            raise ResultsError(f"{self.path}: damaged: its scene is none; restore it from a copy")
-        return scene
-
-    @property
-    def scene_verbatim(self) -> str:
-        """The text of the scene as it was written."""
-        return self.scene_text("verbatim")
-
-    def scene_text(self, which: str) -> str:
-        return text(self.file[f"scene/{which}"])
-
-    @cached_property
-    def sweep(self) -> Sweep:
-        """Axes, labels and values of what is swept."""
-        return read_sweep(self.file, self.scene, self.observables)
-
-    @property
-    def n_realizations(self) -> int:
-        """At every sweep point."""
-        return int(self.file["scene"].attrs["realizations"])
-
-    @cached_property
-    def observables(self) -> list[str]:
-        """The columns of the first sweep point, and what others have besides."""
-        names: dict[str, None] = {}
-        for observed in (True, False):
-            for group in self._kept():
-                own = texts(group["diagnostics"]) if "diagnostics" in group else MONTE_CARLO
-                names.update(dict.fromkeys(texts(group["observables"]) if observed else own))
-        return list(names)
-
-    def _kept(self) -> list[h5py.Group]:
-        """Groups of /sweep that name columns: of all points where the sweep changes them."""
-        swept = any(pointer.startswith(("/observe", "/engine")) for pointer in swept_pointers(self.file))
-        numbers = range(len(self.file["sweep/label"]) if swept else 1)
-        groups = [self.file[f"sweep/point_{number:04}"] for number in numbers]
-        return [group for group in groups if "observables" in group]
-
-    # The result.
 
     @property
     def points(self) -> Points:
@@ -227,7 +139,7 @@ class Results:
         tap; a column each NAME_mean, NAME_sigma, NAME_error, NAME_count, of all or of these. Needs
         pandas."""
         from .frames import ensemble_frame
-        return ensemble_frame(self, observables)
+        return ensemble_frame(self, self.points, observables)
 
     def positions(self, point: int = 0, realization: int = 0, tap: int | None = None) -> np.ndarray:
         """[sphere, 3], diameters, z up: the centres after a tap (None: the last that is kept)."""
@@ -245,32 +157,6 @@ class Results:
     def tables(self) -> Tables:
         """Tables derived from the data: fits, analyses, structure."""
         return stored_tables(self.file, self.path)
-
-    # How it came about.
-
-    @property
-    def state(self) -> str:
-        """"running" (also of a run that was killed), "interrupted" or "complete"."""
-        return self._state or text(self.file["provenance"].attrs["state"])
-
-    @property
-    def shard(self) -> tuple[int, int]:
-        """(i, n): share i of n; (1, 1) of a whole run."""
-        index, count = self.file["provenance"].attrs["shard"]
-        return int(index), int(count)
-
-    @property
-    def run_id(self) -> str:
-        return text(self.file["provenance"].attrs["run_id"])
-
-    @property
-    def provenance(self) -> list[dict[str, str]]:
-        """For every process that worked on the file: version, git_revision, libraries, host, cpu,
-        instruction_set, threads, command_line, started (UTC)."""
-        group = self.file["provenance"]
-        columns = {name: texts(group[name]) for name in group if name != "process"}
-        n = len(next(iter(columns.values()), []))
-        return [{name: column[i] for name, column in columns.items()} for i in range(n)]
 
     def digest(self) -> str:
         """SHA-256 of the data alone, the same for equal runs (jostle info --digest of the file); of live

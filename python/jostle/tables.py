@@ -90,8 +90,21 @@ class Table:
     def to_pandas(self, *along: str) -> pandas.DataFrame:
         """The quantities with exactly these axes (default: the longest list), one row per place.
         Needs pandas."""
-        from .frames import frame_along, table_frame
-        return frame_along(self, along) if along else table_frame(self)
+        try:
+            import pandas
+        except ImportError as error:
+            raise ImportError("Table.to_pandas needs pandas, which is not installed (Debian: "
+                              "python3-pandas; pip: pandas); table[name] is a numpy array") from error
+        unknown = [name for name in along if name not in self.axes]
+        if unknown:
+            raise NotThere(f"{self.name} has no axis {unknown[0]!r}; it has {', '.join(self.axes) or 'none'}")
+        axes = along or max((quantity.axes for quantity in self.quantities.values()), key=len, default=())
+        chosen = {name: quantity.values.reshape(-1) if axes else [quantity.values[()]]
+                  for name, quantity in self.quantities.items() if quantity.axes == axes}
+        if not axes:
+            return pandas.DataFrame(chosen)
+        index = pandas.MultiIndex.from_product([self.axes[name].values for name in axes], names=axes)
+        return pandas.DataFrame(chosen, index=index if len(axes) > 1 else index.get_level_values(0))
 
 
 class Tables(Mapping[str, Table]):

@@ -1,7 +1,9 @@
 """The arrows between folders: engine <- structure <- ensemble; fitting is independent; config and results use those;
 study joins them; cli is its command line; bench measures. Read from the include lines, independent of the links of
-CMake."""
+CMake. Modules of the Python package import one another in one direction, too."""
 
+import ast
+import graphlib
 import os
 import pathlib
 import re
@@ -81,6 +83,22 @@ def types_by_name():
     return found
 
 
+def python_imports():
+    """{module of the package: modules of the package that it imports}, anywhere in it, for annotations too."""
+    root = SOURCE / "python/jostle"
+    files = {path.relative_to(root).with_suffix("").parts: path for path in sorted(root.rglob("*.py"))}
+    modules = {tuple(part for part in parts if part != "__init__"): parts for parts in files}
+    found = {}
+    for module, parts in modules.items():
+        found[module] = set()
+        for node in ast.walk(ast.parse(files[parts].read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                source = parts[:len(parts) - node.level] + tuple((node.module or "").split(".") if node.module else ())
+                names = [source + (name.name,) for name in node.names]
+                found[module] |= {name if name in modules else source for name in names}
+    return found
+
+
 class Architecture(unittest.TestCase):
     def test_there_is_something_to_look_at(self):
         folders = {file.parts[0] for file, _, _ in includes()}
@@ -104,6 +122,15 @@ class Architecture(unittest.TestCase):
                 if target[1] not in may_include.get(room, set()) | {room}:
                     wrong.append(f"{file} includes {name}")
             self.assertEqual(wrong, [])
+
+    def test_python_modules_import_one_another_in_one_direction(self):
+        imports = python_imports()
+        self.assertIn(("errors",), imports[("results",)])
+        self.assertIn(("results",), imports[("plot", "curves")])
+        try:
+            graphlib.TopologicalSorter(imports).prepare()
+        except graphlib.CycleError as error:
+            self.fail("circle: " + " -> ".join(".".join(module) for module in error.args[1]))
 
     def test_every_type_is_defined_once(self):
         """Two of one name would be one to the linker, which takes either."""
