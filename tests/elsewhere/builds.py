@@ -1,5 +1,5 @@
 """Builds jostle here with another compiler, another C++ library, for another processor or without what only
-Linux on x86-64 has, and compares the quickstart's digest with the recorded one.
+Linux on x86-64 has, and compares the digests of the quickstart and of the small scenes with the recorded ones.
 
 ./dev test-elsewhere clang | libcxx | arm64 | fallbacks [--tests] calls it, with SOURCE (the checkout) and BUILD
 (where each has a folder of its own).
@@ -16,6 +16,7 @@ import argparse
 import json
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -88,6 +89,15 @@ class Build:
             sys.exit(f"{self.platform}: the quickstart's digest is {digest}, not {recorded}")
         print(f"{self.platform}: the quickstart's digest is the recorded one", flush=True)
 
+    def scenes(self):
+        """Runs the small scenes of `cli: digests`; its scripts call one program, which starts qemu where it must."""
+        program = self.folder / "run-jostle"
+        program.write_text(f'#!/bin/sh\nexec {shlex.join(map(str, [*self.before, self.folder / "cli/jostle"]))} "$@"\n')
+        program.chmod(0o755)
+        run(sys.executable, SOURCE / "tests/cli/digests_test.py",
+            env=os.environ | {"JOSTLE": str(program), "FAULT_SHIM": "", "SOURCE": str(SOURCE)})
+        print(f"{self.platform}: the digests of the small scenes are the recorded ones", flush=True)
+
     def tests(self):
         if self.platform in ("clang", "fallbacks"):
             self.build("all")
@@ -116,6 +126,7 @@ def main():
     else:
         build.build("jostle")
         build.quickstart()
+        build.scenes()
     if arguments.tests:
         build.tests()
 
