@@ -256,7 +256,7 @@ def add_tests(case, names):
 
 
 # numbers_sweep_test.py has the remaining cases.
-QUICK = ["one tap", "one sphere", "all failed"]
+QUICK = ["one sphere", "all failed"]
 
 
 class QuickTexts(Texts):

@@ -179,7 +179,7 @@ class Unfinished(Report):
 
 class Long(Report):
     def test_long_curves_are_thinned_and_the_page_says_so(self):
-        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 1500}],
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 600}],
                            relax={"polar": {}, "stop": {"sweeps": 1}}, realizations=2,
                            snapshots={"taps": []},
                            fits=[{"observable": "mean_height", "model": "kww"}]))
@@ -190,10 +190,10 @@ class Long(Report):
                       run["left_out"])
         taps = panel_of(run, "mean-height")["series"][0]["x"]
         self.assertEqual(taps, sorted(set(taps)))
-        self.assertEqual((taps[:17], taps[-1]), (list(range(17)), 1500))
-        self.assertTrue(90 < len(taps) < 120)
+        self.assertEqual((taps[:17], taps[-1]), (list(range(17)), 600))
+        self.assertTrue(70 < len(taps) < 105)
         t = panel_of(run, "fits-of-mean-height-point-0000")["series"][0]["x"]
-        self.assertEqual((t[0], t[-1]), (1, 1500))
+        self.assertEqual((t[0], t[-1]), (1, 600))
         self.assertTrue(50 < len(t) < 120)
         self.assertLess(len(page), 1_000_000)
 

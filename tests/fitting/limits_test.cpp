@@ -216,7 +216,7 @@ TEST_CASE("One error: half of the 68 % interval is Student's t times it") {
   }
 }
 
-TEST_CASE("X_inf near the limit: intervals hold the truth as they say", "[statistics]") {
+TEST_CASE("X_inf near the limit: intervals hold the truth as they say", "[slow]") {
   check_coverage(4, 0, never, 16);
   check_coverage(4, 0, 800, 16);
   check_coverage(3, 0.99, never, 16);

@@ -49,7 +49,7 @@ const nlohmann::json rough_relaxation = {
 
 }  // namespace
 
-TEST_CASE("Philippe & Bideau: beds densify and age, pores shrink, walls thin", "[statistics]") {
+TEST_CASE("Philippe & Bideau: beds densify and age, pores shrink, walls thin", "[slow]") {
   const nlohmann::json small = {
       {"spheres", 1024},
       {"observe", {"mean_height", "bottom_fraction", "corrected_fraction"}},
@@ -176,7 +176,7 @@ TEST_CASE("Philippe & Bideau: nearly vertical moves decompact, those of pi/4 les
   check_positive(difference(vertical, fractions(0.7853981633974483), 10, 10));  // [19]
 }
 
-TEST_CASE("Rosato et al.: a poured bed lifted by 0.25 grows denser at the floor", "[statistics]") {
+TEST_CASE("Rosato et al.: a poured bed lifted by 0.25 grows denser at the floor", "[slow]") {
   // Fig. 6.
   const Plan plan = short_plan("rosato-dybenko-2010/fig6.json",
                                {{"container", {{"width", 6}}},
@@ -211,7 +211,7 @@ TEST_CASE("Rosato et al.: a lift orders the floor, a held dilation of the same e
       difference(floor({{"dilate_floor_held", 0.025}}), floor({{"lift", 0.25}}), 5, 8));  // [8]
 }
 
-TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too", "[statistics]") {
+TEST_CASE("Rosato et al.: a shake densifies a poured bed, in its upper part too", "[slow]") {
   // Refs. 33 and 37 report little or nothing of the upper part; this tests ten taps.
   const Plan plan = short_plan(
       "rosato-dybenko-2010/shake-lateral.json",

@@ -73,7 +73,7 @@ TEST_CASE("Rosato & Dybenko: poured grains lie looser with more friction", "[sta
 }
 
 TEST_CASE("Tapped grains without friction end denser than Monte Carlo beds from the same pours",
-          "[statistics]") {
+          "[slow]") {
   const auto tapped = [](const nlohmann::json& engine) {
     const Plan plan =
         short_plan("both-engines.json", {{"container", {{"width", 5}}},

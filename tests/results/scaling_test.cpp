@@ -121,7 +121,7 @@ void check_growth_of_sides(double side) {
 
 }  // namespace
 
-TEST_CASE("writing, opening and digesting take time in proportion to realizations") {
+TEST_CASE("writing, opening and digesting take time in proportion to realizations", "[slow]") {
   check_growth("realizations", {.points = 1, .realizations = 60},
                {.points = 1, .realizations = times * 60});
 }

@@ -48,7 +48,7 @@ TEST_CASE("A growth is the change of the pairs' differences, judged by Student's
 
 TEST_CASE("A bias that does not grow is called growing one time in twenty, with any replicates") {
   RandomStream random = test_stream(23);
-  constexpr int repetitions = 4000;
+  constexpr int repetitions = 1500;
   for (const std::size_t replicates : {2u, 3u, 4u, 10u}) {
     int alarms = 0, missed = 0;
     for (int k = 0; k < repetitions; ++k) {

@@ -198,7 +198,7 @@ TEST_CASE("Steady series of two time scales are seldom called unsteady, of any l
 }
 
 TEST_CASE("Drifts are found, and steady states reached, as often as the verdicts say",
-          "[statistics]") {
+          "[slow]") {
   std::vector<Setting> settings;
   for (const std::size_t realizations : {1, 2, 3, 10}) {
     for (const double rho : {0.0, 0.9, 0.99}) settings.push_back({realizations, 300, rho});

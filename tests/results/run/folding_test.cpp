@@ -120,7 +120,8 @@ void check_memory_of_fold(bool of_series) {
 
 }  // namespace
 
-TEST_CASE("series of many blocks are written as those of one, stopped or killed on the way") {
+TEST_CASE("series of many blocks are written as those of one, stopped or killed on the way",
+          "[slow]") {
   const synthetic::StudySize sizes{
       .points = 1, .realizations = 2, .spheres = 2, .taps = 200'000, .snapshot_taps = {}};
   const std::size_t n_columns = synthetic::study(sizes).points[0].n_columns();
@@ -141,7 +142,7 @@ TEST_CASE("series of many blocks are written as those of one, stopped or killed 
   CHECK(file.record({0, 1}).rows.size() == (sizes.taps + 1) * n_columns);
 }
 
-TEST_CASE("snapshots of many blocks are written as those of one, killed on the way") {
+TEST_CASE("snapshots of many blocks are written as those of one, killed on the way", "[slow]") {
   check_snapshots_of_many_blocks(true);
 }
 
@@ -215,7 +216,7 @@ double megabytes_of_merge(std::uint32_t n_inputs) {
   return megabytes;
 }
 
-TEST_CASE("a merge takes 32 MB for every input, however large they are") {
+TEST_CASE("a merge takes 32 MB for every input, however large they are", "[slow]") {
   if (memory_is_watched) return;
   // Measured: 31; what does not grow with the inputs drops out of the difference.
   CHECK((megabytes_of_merge(4) - megabytes_of_merge(2)) / 2 < 34);

@@ -95,7 +95,7 @@ std::function<Packing(const Container&, std::uint64_t)> layered_gases(unsigned n
 
 }  // namespace
 
-TEST_CASE("Points that do not see each other have g = 1 in low and crowded beds", "[statistics]") {
+TEST_CASE("Points that do not see each other have g = 1 in low and crowded beds", "[slow]") {
   const auto gas = GENERATE(values<KnownGas>({
       {"layered, tube", Cylinder{9.3}, layered_gases(400), 24, 4},
       {"layered, walls", WalledBox{9, 8}, layered_gases(400), 24, 4},

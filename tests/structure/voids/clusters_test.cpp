@@ -98,7 +98,7 @@ TEST_CASE("The variance of clusters of independent cells grows as their number")
   }
 }
 
-TEST_CASE("Cells dealt out anew have the variance that is given for independent ones") {
+TEST_CASE("Cells dealt out anew have the variance that is given for independent ones", "[slow]") {
   // The whole of a closed box, and an open region of some 190 cells.
   const Packing closed = poisson_points(), bed = reference_deposit();
   const auto everywhere = [](std::uint32_t) { return true; };

@@ -175,7 +175,7 @@ TEST_CASE("Intervals of eq. 6 hold the truth at every number of realizations", "
 }
 
 TEST_CASE("Tests of ageing and collapse raise few false alarms, and find what there is",
-          "[statistics]") {
+          "[slow]") {
   fmt::print(test_heading);
   const Paths compacting = {.common_part = 0.9};
   constexpr int n = 25;

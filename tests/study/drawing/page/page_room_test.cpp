@@ -187,7 +187,7 @@ void check_thinned_tables(const ResultsFile& file, std::size_t n_points, std::si
 
 TEST_CASE("curves of many sweep points are thinned to the room, ends and peaks kept") {
   const TemporaryFolder folder;
-  check_thinned_curves(file_of({.points = 100, .taps = 300}, folder / "many.h5", 187), 100, 4);
+  check_thinned_curves(file_of({.points = 50, .taps = 300}, folder / "many.h5", 187), 50, 8);
 }
 
 TEST_CASE("curves of hundreds of sweep points are thinned, and their page keeps its bounds",

@@ -81,7 +81,7 @@ void check(std::size_t realizations, double slope, int sweeps) {
 
 TEST_CASE(
     "Lines through a fit's parameter hold the truth, and are called bent as often as they say",
-    "[statistics]") {
+    "[slow]") {
   check(4, 0.003, 40);
 }
 
