@@ -7,6 +7,7 @@
 #include "config/json/json.hpp"
 #include "engine/monte_carlo/rejection_free/directions.hpp"
 #include "tests/config/scene_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 
@@ -65,7 +66,7 @@ std::set<std::string> words_of_code(const std::string& page) {
 }  // namespace
 
 TEST_CASE("The reference of scenes has every key and every word of the schema") {
-  const std::string page = text_of(SOURCE_ROOT "/docs/reference/scene.md");
+  const std::string page = text_of(source_file("docs/reference/scene.md"));
   const Json schema = Json::parse(scene_schema());
   const std::set<std::string> quoted = words_of_code(page);
   std::set<std::string> words;
@@ -87,7 +88,7 @@ TEST_CASE("The reference of scenes has every key and every word of the schema") 
 }
 
 TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
-  const std::string page = text_of(SOURCE_ROOT "/docs/reference/scene.md");
+  const std::string page = text_of(source_file("docs/reference/scene.md"));
   const StepAdaptation adapt;
   const BulkFractionStop bulk;
   const MeanHeightStop mean_height;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/config/scene_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 
@@ -135,7 +136,7 @@ TEST_CASE("A stop by mean height is relative or in diameters") {
 }
 
 TEST_CASE("The scenes of the reference page are scenes") {
-  const std::string page = text_of(SOURCE_ROOT "/docs/reference/scene.md");
+  const std::string page = text_of(source_file("docs/reference/scene.md"));
   const std::string fence = "```json\n";
   std::size_t scenes = 0;
   for (auto begin = page.find(fence); begin != page.npos; begin = page.find(fence, begin)) {

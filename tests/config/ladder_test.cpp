@@ -7,13 +7,14 @@
 #include "config/grids.hpp"
 #include "tests/config/scene_files.hpp"
 #include "tests/monte_carlo_plan.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 
 namespace {
 
 Scene shipped(const std::string& name) {
-  return scene_of(text_of(std::filesystem::path(SOURCE_ROOT) / "config" / "scenes" / name));
+  return scene_of(text_of(std::filesystem::path(source_file("config/scenes")) / name));
 }
 
 const Relaxation& relax_of(const PilotSetting& setting) {
@@ -157,7 +158,7 @@ TEST_CASE("A ladder of discrete elements varies their rest, time step and stiffn
 
 TEST_CASE("Every shipped scene has a ladder whose scene is one, in pairs from the same beds") {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(
-           std::filesystem::path(SOURCE_ROOT) / "config" / "scenes")) {
+           std::filesystem::path(source_file("config/scenes")))) {
     if (entry.path().extension() != ".json") continue;
     INFO(entry.path());
     const Scene scene = scene_of(text_of(entry.path()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 
@@ -28,9 +29,9 @@ inline std::vector<std::filesystem::path> json_files(const std::filesystem::path
   return files;
 }
 
-inline const std::filesystem::path good_scenes = TEST_DATA "/scenes/good";
-inline const std::filesystem::path bad_scenes = TEST_DATA "/scenes/bad";
-inline const std::filesystem::path shipped_scenes = SOURCE_ROOT "/config/scenes";
+inline const std::filesystem::path good_scenes = test_data("scenes/good");
+inline const std::filesystem::path bad_scenes = test_data("scenes/bad");
+inline const std::filesystem::path shipped_scenes = source_file("config/scenes");
 
 /// One line a fault, "pointer: message".
 inline std::string lines(const std::vector<Fault>& faults) {

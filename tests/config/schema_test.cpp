@@ -5,6 +5,7 @@
 
 #include "tests/config/scene_files.hpp"
 #include "tests/config/schema_validator.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 
@@ -224,7 +225,7 @@ TEST_CASE("Shipped scenes are scenes, named as their files, that link their sche
     REQUIRE(json.contains("$schema"));
     const auto linked = file.parent_path() / json["$schema"].get<std::string>();
     CHECK(std::filesystem::weakly_canonical(linked) ==
-          std::filesystem::canonical(SOURCE_ROOT "/config") / "scene.schema.json");
+          std::filesystem::canonical(source_file("config")) / "scene.schema.json");
   }
 }
 

@@ -1,4 +1,5 @@
 #include "ensemble/moments.hpp"
+#include "tests/test_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -34,7 +35,7 @@ double sample_deviation(const Moments& moments) {
 }
 
 double certified_mean(const std::string& name) {
-  std::ifstream file(TEST_DATA "/nist_univariate_cancellation.json");
+  std::ifstream file(jostle::test_data("nist_univariate_cancellation.json"));
   const auto reference = nlohmann::json::parse(file);
   for (const auto& set : reference.at("sets")) {
     if (set.at("name") == name) return set.at("mean");

@@ -5,6 +5,7 @@
 
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 namespace {
@@ -20,7 +21,7 @@ struct ReferenceFit {
 };
 
 ReferenceFit read_reference(const std::string& file_name, const std::string& model) {
-  std::ifstream file(TEST_DATA "/fits/" + file_name + ".json");
+  std::ifstream file(test_data("fits/" + file_name + ".json"));
   const auto json = nlohmann::json::parse(file);
   ReferenceFit reference;
   reference.model = make_model(model);

@@ -7,11 +7,12 @@
 #include "results/content/record.hpp"
 #include "results/disk/input_file.hpp"
 #include "results/groups/layout.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 
 TEST_CASE("The page of the format quotes the numbers of its formats as they are") {
-  const std::string page = read_text_file(SOURCE_ROOT "/docs/reference/file-format.md");
+  const std::string page = read_text_file(source_file("docs/reference/file-format.md"));
   for (const std::string& quoted : {fmt::format("its format's number ({})", part_format),
                                     fmt::format("**layout {}**", layout_version),
                                     fmt::format("`{}`", keeps_what_point_keeps)}) {
@@ -21,7 +22,7 @@ TEST_CASE("The page of the format quotes the numbers of its formats as they are"
 }
 
 TEST_CASE("The page of the format names all that snapshots keep of spheres and by height") {
-  const std::string page = read_text_file(SOURCE_ROOT "/docs/reference/file-format.md");
+  const std::string page = read_text_file(source_file("docs/reference/file-format.md"));
   for (const SphereVector& one : sphere_vectors) {
     INFO(one.name);
     CHECK(page.find(fmt::format("{}/value`", one.name)) != std::string::npos);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/engine/discrete_element/grain_cases.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 using namespace jostle::grain_cases;
@@ -233,7 +234,7 @@ TEST_CASE("collisions go as those of LAMMPS, that stick and that slide") {
   loops.emplace("# sliding floor",
                 loop_from({grain(above, {8 * speed, 2 * speed, -speed}, {0.5, 0, 0})}));
 
-  std::ifstream trace(TEST_DATA "/lammps_collisions.txt");
+  std::ifstream trace(test_data("lammps_collisions.txt"));
   const auto largest = [](Vec3 a) {
     return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
   };

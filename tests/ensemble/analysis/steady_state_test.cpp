@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/ensemble/synthetic_series.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 
@@ -25,7 +26,7 @@ double exact_error(std::size_t n_taps) {
 }
 
 std::vector<double> numbers_of(const std::string& name) {
-  std::ifstream file(TEST_DATA "/" + name);
+  std::ifstream file(test_data(name));
   std::vector<double> numbers;
   for (double number = 0; file >> number;) numbers.push_back(number);
   return numbers;
@@ -57,7 +58,7 @@ TEST_CASE("A constant series is steady, in words without a number") {
 TEST_CASE("Blocking agrees with pyblock, and tells that its series has no plateau") {
   const std::vector<double> series = numbers_of("stats/pyblock_data_1D.dat");
   REQUIRE(series.size() == 1024);
-  std::ifstream file(TEST_DATA "/stats/pyblock_reference.json");
+  std::ifstream file(test_data("stats/pyblock_reference.json"));
   const auto reference = nlohmann::json::parse(file);
   const BlockingResult result = blocked(series);
   REQUIRE(result.levels.size() == reference.at("rows").size());
@@ -89,7 +90,7 @@ TEST_CASE("Series of odd length lose their last value, no series has levels it c
 
 TEST_CASE("The stored AR(1) series has the exact error and autocorrelation time") {
   const std::vector<double> series = numbers_of("psd/ar1_rho0.9_N4096.dat");
-  std::ifstream file(TEST_DATA "/psd/power_law_and_ar1.json");
+  std::ifstream file(test_data("psd/power_law_and_ar1.json"));
   const auto exact = nlohmann::json::parse(file).at("AR1");
   CHECK(exact_error(4096) ==
         Approx(exact.at("exact_se_of_mean").at("4096").get<double>()).epsilon(1e-12));

@@ -1,4 +1,5 @@
 #include "ensemble/statistics/jackknife.hpp"
+#include "tests/test_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 TEST_CASE("The jackknife of estimates left one out agrees with the reference") {
-  std::ifstream file(TEST_DATA "/jackknife_bootstrap.json");
+  std::ifstream file(jostle::test_data("jackknife_bootstrap.json"));
   const auto json = nlohmann::json::parse(file);
   const auto x = json["x"].get<std::vector<double>>();
   double sum = 0;

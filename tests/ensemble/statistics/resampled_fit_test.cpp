@@ -7,6 +7,7 @@
 
 #include "fitting/models/models.hpp"
 #include "tests/ensemble/noise.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 namespace {
@@ -29,7 +30,7 @@ class PowerOfLevel final : public Model {
 };
 
 nlohmann::json reference() {
-  std::ifstream file(TEST_DATA "/jackknife_bootstrap.json");
+  std::ifstream file(test_data("jackknife_bootstrap.json"));
   return nlohmann::json::parse(file);
 }
 

@@ -8,6 +8,7 @@
 #include "fitting/models/models.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/report.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 namespace {
@@ -20,7 +21,7 @@ struct SloppySet {
 };
 
 SloppySet read_sloppy(const std::string& name, const std::string& model) {
-  std::ifstream file(TEST_DATA "/fits/" + name + ".json");
+  std::ifstream file(test_data("fits/" + name + ".json"));
   SloppySet set{make_model(model), {}, nlohmann::json::parse(file)};
   set.curve.t = set.json["x"].get<std::vector<double>>();
   set.curve.x = set.json["y"].get<std::vector<double>>();

@@ -6,12 +6,13 @@
 
 #include "fitting/models/models.hpp"
 #include "fitting/report.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 namespace {
 
 std::string read_text(const std::string& name) {
-  std::ifstream file(SOURCE_ROOT "/" + name);
+  std::ifstream file(source_file(name));
   REQUIRE(file);
   std::ostringstream text;
   text << file.rdbuf();

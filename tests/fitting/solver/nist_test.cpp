@@ -7,6 +7,7 @@
 
 #include "fitting/intervals/fit_statistics.hpp"
 #include "tests/fitting/nist_sets.hpp"
+#include "tests/test_files.hpp"
 
 namespace jostle {
 namespace {
@@ -47,7 +48,7 @@ TEST_CASE("every NIST set is solved from both starts, without a fallback") {
   table << std::fixed << std::setprecision(1)
         << "set        start  digits of parameters, errors  iterations  evaluations  Jacobians\n";
   for (const auto& [name, model] : nist_models()) {
-    const NistSet set = read_nist_set(TEST_DATA "/nist", name, model);
+    const NistSet set = read_nist_set(test_data("nist"), name, model);
     for (int start : {1, 0}) {
       const NistRun result = run(set, start);
       const Minimum& minimum = result.minimum;

@@ -14,6 +14,7 @@
 #include "tests/structure/random_points.hpp"
 #include "tests/structure/reference_deposit.hpp"
 #include "tests/structure/voids/voronoi_points.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 
@@ -260,7 +261,7 @@ TEST_CASE("The hard-sphere fluid has the g(1+) of an independent Monte Carlo", "
   // pairs two cells apart. Ours counts all pairs, which the test above shows.
   const auto [name, step] = GENERATE(table<std::string, double>(
       {{"bulk_0.30.json", 0.26}, {"bulk_0.40.json", 0.13}, {"bulk_0.49.json", 0.07}}));
-  std::ifstream file(TEST_DATA "/" + name);
+  std::ifstream file(test_data(name));
   const nlohmann::json reference = nlohmann::json::parse(file);
   const auto n = reference.at("N").get<std::uint32_t>();
   const double side = std::cbrt(n * sphere_volume / reference.at("phi").get<double>());

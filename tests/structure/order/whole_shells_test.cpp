@@ -10,6 +10,7 @@
 #include "engine/starts/starts.hpp"
 #include "structure/order/pair_correlation.hpp"
 #include "tests/structure/order/shell_volume.hpp"
+#include "tests/test_files.hpp"
 
 // Numbers of neighbours in shells that lie whole within the region that centres can reach.
 using namespace jostle;
@@ -106,7 +107,7 @@ TEST_CASE("A lattice in a tube has the neighbours of its shells") {
 
 TEST_CASE("The lattice between walls that had four neighbours has six") {
   for (const char* name : {"gr_lattice_walls.xyz", "gr_lattice_periodic.xyz"}) {
-    std::ifstream file(std::string(TEST_DATA "/") + name);
+    std::ifstream file(test_data(name));
     std::string line;
     std::getline(file, line);
     std::getline(file, line);

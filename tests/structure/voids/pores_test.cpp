@@ -14,6 +14,7 @@
 #include "tests/structure/random_points.hpp"
 #include "tests/structure/reference_deposit.hpp"
 #include "tests/structure/voids/voronoi_points.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 
@@ -176,7 +177,7 @@ TEST_CASE("The chance of a void in a deposit is near Gotoh's") {
 }
 
 TEST_CASE("Gotoh's chance of a void is that of the table") {
-  std::ifstream file(TEST_DATA "/voronoi/pore_P0.csv");
+  std::ifstream file(test_data("voronoi/pore_P0.csv"));
   int compared = 0;
   for (std::string line; std::getline(file, line);) {
     if (line.front() == '#' || line.front() == 'p') continue;

@@ -8,12 +8,13 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
+#include "tests/test_files.hpp"
 
 // Points of tests/data/voronoi, as packings in fully periodic boxes.
 namespace jostle {
 
 inline std::vector<Vec3> points_of(const std::string& name) {
-  std::ifstream file(TEST_DATA "/voronoi/" + name);
+  std::ifstream file(test_data("voronoi/" + name));
   file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   std::vector<Vec3> points;
   for (Vec3 r; file >> r.x >> r.y >> r.z;) points.push_back(r);
@@ -44,7 +45,7 @@ inline Packing with_noise(Packing packing, double amplitude) {
 
 /// The rows of a CSV file of numbers, without its heading.
 inline std::vector<std::vector<double>> rows_of(const std::string& name) {
-  std::ifstream file(TEST_DATA "/voronoi/" + name);
+  std::ifstream file(test_data("voronoi/" + name));
   std::vector<std::vector<double>> rows;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;

@@ -9,6 +9,7 @@
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/taps.hpp"
 #include "tests/engine/sample_packings.hpp"
+#include "tests/test_files.hpp"
 #include "tests/two_samples.hpp"
 
 using namespace jostle;
@@ -173,7 +174,7 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: accept
 
 TEST_CASE("rejection-free sampling has the law of looking at every trial: 4096 spheres",
           "[nightly]") {
-  std::ifstream file(std::string(TEST_DATA) + "/dep_L32_N4096_s1.dat");
+  std::ifstream file(test_data("dep_L32_N4096_s1.dat"));
   file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   const PeriodicBox box{16, 16};
   Packing bed{box, {}};

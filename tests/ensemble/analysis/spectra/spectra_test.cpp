@@ -12,13 +12,14 @@
 #include "ensemble/analysis/spectra/ensemble_spectrum.hpp"
 #include "ensemble/moments.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
+#include "tests/test_files.hpp"
 
 using namespace jostle;
 
 namespace {
 
 std::vector<double> numbers_of(const std::string& name) {
-  std::ifstream file(TEST_DATA "/psd/" + name);
+  std::ifstream file(test_data("psd/" + name));
   std::vector<double> numbers;
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with('#')) continue;
@@ -45,7 +46,7 @@ double binned(const FrequencyBins& bins, std::size_t bin, std::size_t segment, a
 }  // namespace
 
 TEST_CASE("Spectra agree with scipy's own test vectors") {
-  std::ifstream file(TEST_DATA "/psd/scipy_vectors.json");
+  std::ifstream file(test_data("psd/scipy_vectors.json"));
   const auto reference = nlohmann::json::parse(file);
   for (const auto& vector : reference.at("vectors")) {
     CAPTURE(vector.at("name").get<std::string>());

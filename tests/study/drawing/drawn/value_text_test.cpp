@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "config/json/json.hpp"
+#include "tests/test_files.hpp"
 
 // The page (tests/report/page_test.py) and the Python package (tests/python/plot_test.py) are
 // tested with the same vectors.
@@ -21,7 +22,7 @@ double number_of(const Json& value) {
 }
 
 Json vectors() {
-  std::ifstream file(TEST_DATA "/value_texts.json");
+  std::ifstream file(test_data("value_texts.json"));
   return Json::parse(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
