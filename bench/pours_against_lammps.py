@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 from scipy.spatial import cKDTree
 
-WIDTH, COLUMN = 12.0, 0.2  # diameters; solids fraction of the columns
+WIDTH, COLUMN = 12.0, 0.2  # diameters; packing fraction of the columns
 SECONDS = 1.6  # duration of fall and rest
 DIAMETER, DENSITY, GRAVITY = 0.02, 1200.0, 9.81
 STIFFNESS, RESTITUTION, STEPS_PER_CONTACT = 1e5, 0.9, 40
@@ -184,7 +184,7 @@ def measured(bed, diameters):
     moving = (mass * (velocities**2).sum(axis=1)).sum()
     turning = 0.4 * (mass * radii**2 * (spins**2).sum(axis=1)).sum()
     elastic = 0.5 * Law().stiffness * ((overlaps**2).sum() + (on_floor**2).sum()) / mass.sum()
-    out = {"solids fraction from 1.5 d to 1.5 d below the top": slab_share(centres, diameters, low, high),
+    out = {"packing fraction from 1.5 d to 1.5 d below the top": slab_share(centres, diameters, low, high),
            "mean height (potential energy), d": height,
            "elastic energy of the normal springs, 1e-3 m g d a mass m": 1e3 * elastic,
            "contacts per sphere": (2 * len(pairs) + int((on_floor > 0).sum())) / n,

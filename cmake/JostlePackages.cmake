@@ -29,7 +29,7 @@ set(CPACK_DEBIAN_JOSTLE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_JOSTLE_PACKAGE_SUGGESTS "libjostle-dev, python3-jostle")
 set(CPACK_COMPONENT_JOSTLE_DESCRIPTION
     "Runs many realizations of a bed of spheres that is tapped again and again, by
-Monte Carlo or by discrete elements, and says how it gets denser: compaction
+Monte Carlo or by discrete elements, and measures how it gets denser: compaction
 curves with errors, fits of the published laws, ageing, hysteresis, and the
 structure of the packings.")
 

@@ -119,7 +119,7 @@ def _opened(done: Any, path: Path, program: Path | None) -> Results:
     kind = RunStopped if done.returncode == STOPPED else RealizationsFailed
     said = str(error)
     if kind is RunStopped:  # the program names its own options, and a dict's file is gone
-        said = f"{path}: {said.split('; resume with')[0]}; resume=True goes on"
+        said = f"{path}: {said.split('; resume with')[0]}; resume=True continues it"
     unfinished = kind(said, error.exit_code, error.stderr, error.command)
     if os.path.exists(path):
         unfinished.results = results_files.open(path, program=program)

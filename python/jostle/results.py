@@ -47,7 +47,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, live: bool = Fal
             return Results(name, opened(joined, name), program, state, live=True)  # open, it outlives its name
     results = Results(name, opened(name, name), program)
     if parts.is_dir() and not live:
-        warnings.warn(f"{name}: its run goes on or was killed, and has more taps in its checkpoints: "
+        warnings.warn(f"{name}: its run is not finished or was killed, and has more taps in its checkpoints: "
                       "live=True reads them too", stacklevel=2)
     return results
 

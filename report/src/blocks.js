@@ -20,12 +20,12 @@ function heading(content) {
   return element("span", {}, written(content));
 }
 
-/// Several lines each stand alone.
+/// Several lines, each a paragraph of its own.
 function lines(text) {
   return text.split("\n").flatMap((line, i) => i === 0 ? [line] : [element("br"), line]);
 }
 
-/// What is shown for one sweep point at a time, with a menu.
+/// Blocks that are shown for one sweep point at a time, with a menu.
 function byPoint({points}, chapter) {
   const make = (i) => shownBlocks(points[i].blocks, chapter);
   if (points.length === 1) return element("div", {class: "by-point"}, make(0));

@@ -90,7 +90,7 @@ class Figure {
     if (wasDrawn && this.canvas.isConnected) this.draw();
   }
 
-  /// What is shown has changed.
+  /// Draws the figure again after a change of what is shown.
   update() {
     this.describe();
     this.drawAgain();

@@ -67,7 +67,7 @@ export function words(name) {
 export function csvCell(value) {
   if (value === null || value === undefined || (typeof value === "number" && Number.isNaN(value))) return "";
   const text = String(value);
-  // What a spreadsheet would take for a formula stands behind an apostrophe.
+  // A text that a spreadsheet would read as a formula begins with an apostrophe.
   const safe = typeof value === "string" && /^[=+\-@\t\r]/.test(text) ? `'${text}` : text;
   return /[",\n\r]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }

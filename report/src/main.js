@@ -28,7 +28,7 @@ class Chapter {
     });
   }
 
-  /// Which sweep points the curves show.
+  /// The buttons that choose the sweep points of the curves.
   chips() {
     if (this.drawn.length < 2) return null;
     const boxes = this.drawn.map((point) => {

@@ -5,7 +5,7 @@ import {element} from "./dom.js";
 import {number, superscript, withError} from "./format.js";
 import {cutTo, typeset} from "./typeset.js";
 
-// Where tap 0 stands, in decades: to the left of tap 1, behind a break of the axis.
+// The place of tap 0, in decades: to the left of tap 1, behind a break of the axis.
 const zeroPlace = -0.55;
 const narrowTaps = 30;  // with fewer taps the axis is linear
 const dashes = [undefined, "7,4", "2,3", "9,3,2,3"];
@@ -79,7 +79,7 @@ function axisOf(axis, values) {
           tickFormat: (value) => number(value, 6)};
 }
 
-/// Taps that stand too close to be told apart, on an axis that has a place for each decade.
+/// The smallest distance at which two taps can be distinguished, on an axis that has a place for each decade.
 const closestPlaces = 1 / 36;
 
 function thinned(rows, isTapAxis) {
@@ -97,8 +97,8 @@ function bounds(row) {
   return Number.isFinite(row.error) ? [row.y - row.error, row.y + row.error] : [row.y, row.y];
 }
 
-/// What an axis of y has to hold. On a logarithmic one an error as large as its value would reach down without end,
-/// and a law beside the data, without a band, be of any size.
+/// The values that an axis of y must show. A logarithmic axis leaves out errors as large as their value, which would
+/// reach down without end, and laws without a band, which may have any size.
 function extentOf(series, axis) {
   const isEven = axis.scale !== "log";
   return series.filter((one) => isEven || !one.no_band).flatMap((one) => one.rows.flatMap((row) => {

@@ -1,4 +1,4 @@
-// What was run, by whom, how far it is.
+// The section of the run: its scene, program, machine and progress.
 import {section} from "./blocks.js";
 import {dataTable, element} from "./dom.js";
 import {count, duration, number, words} from "./format.js";
@@ -78,7 +78,7 @@ export function runSection(chapter) {
     ["cost", `${run.unit ? `${count(tally.units)} ${run.unit}, ` : ""}${duration(tally.seconds)} of one core`],
     ["seed", run.points[0]?.seed ?? ""],
     ["version", first.version ? `jostle ${first.version}, revision ${first.git_revision}` : ""],
-    ["digest", run.digest ? element("code", {class: "digest"}, run.digest) : "not known: the run goes on"],
+    ["digest", run.digest ? element("code", {class: "digest"}, run.digest) : "not known: the run is not finished"],
   ], "facts");
   const failures = run.failures.length === 0 ? null : element("div", {class: "failures"},
     element("h4", {}, "Realizations that failed"),
@@ -95,10 +95,10 @@ export function runSection(chapter) {
        one.command_line]), "Processes"));
   const scene = element("details", {}, element("summary", {}, "The scene, with every default"),
     element("pre", {tabindex: 0}, JSON.stringify(run.scene, null, 2)));
-  return section(chapter, "run", "What was run", null, facts, effects(run.scene), failures, points, processes, scene);
+  return section(chapter, "run", "The run", null, facts, effects(run.scene), failures, points, processes, scene);
 }
 
-/// What the page does not show.
+/// The list of what the page leaves out.
 export function leftOut(chapter) {
   if (chapter.run.left_out.length === 0) return null;
   return element("aside", {class: "left-out"}, element("strong", {}, "Thinned for this page: "),

@@ -1,4 +1,4 @@
-// Light and dark: as the reader's system has it, until a button says otherwise.
+// Light and dark: the setting of the reader's system, until a button changes it.
 
 const listeners = new Set();
 let chosen = null;

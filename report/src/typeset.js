@@ -2,7 +2,7 @@
 // everything else is text.
 import {element} from "./dom.js";
 
-// A letter that stands alone, an underscore, and one letter or digit; a superscript may follow.
+// A single letter, an underscore, and one letter or digit; a superscript may follow.
 const subscript = /(?<![\p{L}\p{N}_])(\p{L})_([\p{L}\p{N}\u221e])(?![\p{L}\p{N}_])(?:\^(\p{L})(?![\p{L}\p{N}_]))?/gu;
 
 function pieces(text, lowered) {

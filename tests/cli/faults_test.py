@@ -136,7 +136,7 @@ class Folders(Faults):
         (self.folder / "disk").mkdir()
         ended = self.in_namespace("""
             pause -o disk/tiny.h5 "$@"
-            mount -t tmpfs -o ro none disk/tiny.h5.parts  # what lies there is seen no more
+            mount -t tmpfs -o ro none disk/tiny.h5.parts  # hides the files of the folder
             kill -CONT $run
             wait $run""", *OPTIONS)
         self.assertEqual(ended.returncode, BROKEN, ended.stderr)

@@ -47,7 +47,7 @@ def column(rows, k):
 
 
 def shown_text(path):
-    """What an SVG shows, without the pieces that it is set in."""
+    """The text that an SVG shows, its pieces joined."""
     return "".join(xml.etree.ElementTree.parse(path).getroot().itertext())
 
 

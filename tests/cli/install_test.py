@@ -47,7 +47,7 @@ class Install(Case):
                      f"-DHEADERS={';'.join(f'jostle/{name}' for name in names)}")
         self.command("cmake", "--build", "consumer")
         height = float(self.command("consumer/pour"))
-        # 300 spheres on 36 d^2 at solids fraction 0.5 to 0.65 make a bed 6.7 to 8.7 d deep.
+        # 300 spheres on 36 d^2 at packing fraction 0.5 to 0.65 make a bed 6.7 to 8.7 d deep.
         self.assertTrue(3.2 < height < 4.5, height)
         self.assertIn("power_approach: X = X_inf", self.command("consumer/own_model"))
         self.run_own_sink(program)

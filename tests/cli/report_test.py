@@ -245,7 +245,7 @@ class Data(Report):
             for name in self.info("everything.h5")["tables"]:
                 group, *path = name.split("/")
                 kind = "fits" if group == "fits" else next(part for part in path if not part.startswith("point_"))
-                # Differences between sweep points stand in the section of their part.
+                # The section of a part shows differences between sweep points.
                 shown = sections[path[-1] if kind == "comparison" else kinds.get(kind, kind)]
                 for key, value in file[name].attrs.items():
                     if key in ("note_verdict", "note_refused", "note_choice", "note_ageing_verdict", "note_maximum"):
@@ -277,7 +277,7 @@ class Data(Report):
             self.assertIn(words[re.match(r"not reached|reached|cannot decide", verdict)[0]], lines["steady?"])
 
     def comparisons(self):
-        """Differences between sweep points stand in the section of their part, with Holm's p."""
+        """The section of a part shows differences between sweep points, with Holm's p."""
         sections = {one["id"]: one for one in self.run_data["sections"]}
         with h5py.File(self.folder / "everything.h5") as file:
             stored = file["structure/comparison/order"]
@@ -347,7 +347,7 @@ class Data(Report):
 
 class Wide(Report):
     def test_histograms_of_tens_of_thousands_of_bins_are_joined(self):
-        """Of a bed that was thrown a thousand diameters high."""
+        """Reports a bed that was thrown a thousand diameters high."""
         scene = changed(TINY, protocol=[{"tap": {"dilate": 10}, "count": 3}], snapshots={"taps": [0, 3]},
                         relax={"polar": {}, "stop": {"sweeps": 1}}, realizations=2)
         del scene["sweep"]
@@ -371,7 +371,7 @@ class Wide(Report):
 
 class Hostile(Report):
     def test_hostile_texts_are_data(self):
-        """Of a scene, of a file's name, and of what a forged file keeps."""
+        """Hostile text in a scene, in a file's name and in a forged file is shown as text."""
         self.write(changed(TINY, description=HOSTILE + "\x01\x1b[31m"))
         self.run_scene()
         clean = Elements(self.page("tiny.h5")[0]).elements

@@ -121,8 +121,8 @@ TEST_CASE("The reference of scenes quotes limits and defaults as they are") {
            fmt::format("at most {}; {})", densest_dilution, RandomSettle{}.dilute_fraction),
            fmt::format("`max_sweeps` (1 to {}, {})", power_of_ten(most_sweeps),
                        spaced(Grow{}.max_sweeps)),
-           fmt::format("solids fraction at most {}", densest_growth),
-           fmt::format("a solids fraction of {};", densest_growth),
+           fmt::format("packing fraction at most {}", densest_growth),
+           fmt::format("a packing fraction of {};", densest_growth),
            fmt::format("`max_step` (1e-9 to {}; {})", least_periodic_width, PolarMove{}.max_step),
            fmt::format("`eta` (between 0 and 1; 1e-5) or `change` (above 0, at most 1), "
                        "`every_sweeps` (1 to {}; {})",

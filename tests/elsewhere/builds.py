@@ -54,7 +54,7 @@ def listed(use):
 
 
 def unpack_debian(root):
-    """What the program and its tests link, of the other architecture. Nothing of it is run to install it."""
+    """Unpacks the libraries of the other architecture that the program and its tests link, without running any."""
     if (root / "usr/include").exists():
         return
     shutil.rmtree(root, ignore_errors=True)

@@ -95,7 +95,7 @@ class Packages(unittest.TestCase):
         run(clone / "dev", "package", env={**os.environ, "CCACHE_DISABLE": "1"})
         for name in NAMES:
             self.assertEqual(package(name).read_bytes(), package(name, clone / "build/release").read_bytes(),
-                             f"{name}: diffoscope says what differs")
+                             f"{name}: diffoscope shows the differences")
 
 
 class BareDebian(unittest.TestCase):

@@ -22,7 +22,7 @@ def log_ratio(first, second):
 
 @functools.lru_cache(maxsize=None)
 def exchanges(pairs):
-    """Which pairs are exchanged: all ways, of more than 16 pairs the identity and 49 999 by chance
+    """Exchanges of the pairs: all of them; for more than 16 pairs the identity and 49 999 random ones
     (Phipson & Smyth 2010)."""
     if pairs <= 16:
         return (np.arange(2**pairs)[:, np.newaxis] >> np.arange(pairs)) & 1
@@ -32,8 +32,8 @@ def exchanges(pairs):
 
 
 def p_exchanged(first, second):
-    """Of two means of like distributions being so different: exchanges within pairs. Right for any
-    distribution; squares are skewed, and Student's t says too often that they differ."""
+    """p-value for equal distributions of two means, by exchanges within pairs. Exact for every
+    distribution; squares are skewed, and Student's t-test would reject too often."""
     means = second.sum() + exchanges(first.size) @ (first - second)
     distance = np.abs(np.log(means / (first.sum() + second.sum() - means)))
     return float(np.mean(distance >= distance[-1] * (1 - 1e-12)))

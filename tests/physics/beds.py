@@ -19,7 +19,7 @@ from reduce import read_table, taps_to_keep, text_of, write_table
 
 STEADY = 1000        # taps, as Philippe and Bideau average; runs of fewer have no steady.csv
 WRITTEN = ("$schema", "name", "description", "realizations", "analyse")  # keys that change no bed
-LONG_LIST = 6        # of kept taps: distributions are kept at those that the scene lists by themselves
+LONG_LIST = 6        # kept taps; for longer lists, distributions are kept at the taps that the scene lists singly
 AXES = {"profile": "height", "sides": "x", "layers": "height", "coordination": "neighbours", "voronoi": "free_volume",
         "pores": "xi", "void_probability": "sigma"}
 KEPT = {"profile": ("phi",), "sides": ("phi_xy",), "layers": ("n",), "coordination": ("neighbour_share",),
@@ -27,7 +27,7 @@ KEPT = {"profile": ("phi",), "sides": ("phi_xy",), "layers": ("n",), "coordinati
 
 
 class OtherScene(Exception):
-    """The reduced data are of other settings than the scene."""
+    """The reduced data belong to other settings than the scene's."""
 
 
 def digest_of(scene):
@@ -187,7 +187,7 @@ def add_beds(jostle, path, scene, folder):
     rows, distributions = {}, read_distributions(folder)
     with h5py.File(path) as file:
         if digest_of(json.loads(text_of(file["scene/verbatim"]))) != digest_of(scene):
-            raise OtherScene(f"{path} is of other settings than the scene {scene['name']}.")
+            raise OtherScene(f"{path} was made with other settings than the scene {scene['name']} has.")
         for point, column, realization in beds_of(file):
             if (point, realization) in known:
                 continue

@@ -1,4 +1,4 @@
-"""What the papers say to matter little: periodic sides, the width of the box, lateral and
+"""Effects that the papers call small: periodic sides, the width of the box, lateral and
 height-dependent displacements."""
 import numpy as np
 
@@ -6,7 +6,7 @@ from ageing_figures import falls_with_age, squared_change
 from page_text import at, table, window
 from verdicts import Estimate, are_positive, is_positive, is_within
 
-LITTLE = 0.005  # of a solids fraction
+LITTLE = 0.005  # a difference of packing fractions
 SIDES = ("walls", "periodic")
 
 
@@ -22,7 +22,7 @@ def sides(run):
             for k, name in enumerate(SIDES) for i, strength in enumerate(strengths)]
     statements = []
     for k, name in enumerate(SIDES):
-        ours = " (ours)" if name == "periodic" else ""  # of which the paper says nothing
+        ours = " (ours)" if name == "periodic" else ""  # not in the paper
         gains = [window(curve, *end) - curve[1] for curve in bottom[k]]
         early = [window(curve, 81, 120) - curve[1] for curve in bottom[k]]
         ends = [window(curve, *end) for curve in centre[k]]
@@ -47,7 +47,7 @@ def sides(run):
 
 
 def widths(observable, of):
-    """Whether what a bed gains hangs on its width, up to the widest that was run."""
+    """Compares the gain of each width with that of the widest bed."""
     def write(run):
         across = run.scene["sweep"]["zip"]["/container/width"]
         curves = run.curves(observable)

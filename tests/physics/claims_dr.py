@@ -110,8 +110,8 @@ CLAIMS = [
           "layers grow from the floor at Gamma = 2", own=True),
     Claim("dr15", "the improvement is at most about 5 % (5.5 %)", "p", "dr15",
           "the improvement is at most about 5 % (5.5 %)", p=0.019),
-    Claim("dr15", "no solids fraction above about 0.66 (0.665)", "p", "dr15",
-          "no solids fraction above about 0.66 (0.665)", p=0.007),
+    Claim("dr15", "no packing fraction above about 0.66 (0.665)", "p", "dr15",
+          "no packing fraction above about 0.66 (0.665)", p=0.007),
     *(Claim("both-engines", text, "positive", "both-engines", text + " (ours)", own=True)
       for tap in ("lift 0.25", "held dilation 1.025")
       for text in (f"{tap}, Monte Carlo: Phi grows from tap 1 to 30", f"{tap}, Monte Carlo: pores shrink",

@@ -1,5 +1,5 @@
-"""Figures 2 to 5 of Philippe & Bideau, and their moves: curves against taps, and what hangs on the
-strength and on the settings."""
+"""Figures 2 to 5 of Philippe & Bideau, and their moves: curves against taps, and the effects of
+strength and settings."""
 import itertools
 
 import numpy as np
@@ -300,7 +300,7 @@ def hysteresis(run):
 
 
 def ends_of_branches(run):
-    """What packings are where branches end, and nu there, [end][realization]."""
+    """Packings at the ends of branches, and nu there, [end][realization]."""
     taps, kept = run.scene["snapshots"]["taps"], run.structure(["pores", "profile"])
     nu, alpha = (np.array([packings[part][name] for packings in kept]).T
                  for part, name in (("pores", "nu"), ("profile", "alpha")))

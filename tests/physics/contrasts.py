@@ -103,7 +103,7 @@ def central_bell():
 
 
 def weak_is_frozen():
-    """What 0.0025 gains in the centre from tap 1 to 1000, as a share of what 0.04 does, less a fifth."""
+    """The gain in the centre from tap 1 to 1000 at 0.0025, minus a fifth of the gain at 0.04."""
     first = column("pb6-8", 3, "central", 3, lambda row: row[1] == "1")
     last = column("pb6-8", 3, "central", 3, lambda row: row[1] == "1000")
     return [contrast([last[0], first[0], last[2], first[2]], [-1, 1, 0.2, -0.2], 3, True)]
@@ -116,7 +116,7 @@ def nu_steps():
 
 
 def moves(*weights):
-    """Of gains at d_max = 0.1, weights over theta_0; the variance of all thirty settings."""
+    """A contrast of gains at d_max = 0.1, weights over theta_0; the variance is pooled over all thirty settings."""
     header = read_table(REDUCED / "pb-moves" / "1.csv")[0]
     points = [column("pb-moves", 1, name, 2) for name in header[1:]]
     error = np.sqrt(np.mean([e**2 for names in points for _, _, e in names]))

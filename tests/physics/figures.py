@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the reduced scenes of the papers' figures and judges what came out in docs/validation.md.
+"""Runs the reduced scenes of the papers' figures and writes a page with their tests.
 
 figures.py JOSTLE FOLDER PAGE [--hours H] [FIGURE ...]: results are kept in FOLDER, and a finished
-one is not run again. After H hours the run under way stops, and the next call goes on with it.
+one is not run again. After H hours the run under way stops, and the next call continues it.
 Sections of other figures stay as they are."""
 import argparse
 import pathlib
@@ -29,7 +29,7 @@ PB_SETUP = "4096 spheres in 16 x 16 d"
 DR_SETUP = "3456 spheres in 12 x 12 d, periodic; realizations added until sigma <= 0.001"
 DR_GRAINS = "3456 grains in 12 x 12 d, periodic, 20 realizations"
 
-# figure: scene, writer, other finished runs it may look at, the paper's setup, what it says.
+# figure: scene, writer, other finished runs it may look at, the paper's setup, its statement.
 FIGURES = {
     "pb2": (f"{PB}/fig2", compaction, [], f"{PB_SETUP}, walls; taps and realizations not printed",
             "Phi_b grows as the inverse log, slower for smaller eps; at small eps tau rises "
@@ -71,8 +71,8 @@ FIGURES = {
                  "a large one is less efficient; a very small or large d_max nearly freezes the "
                  "packing; of the law of the angle only the width matters."),
     "pb-sides": (f"{PB}/sides", sides, [], f"{PB_SETUP}, walls and periodic",
-                 "Periodic sides do not qualitatively affect its figs. 3 and 4; of figs. 2 and 5 it "
-                 "does not say."),
+                 "Periodic sides do not qualitatively affect its figs. 3 and 4; no statement on "
+                 "figs. 2 and 5."),
     "pb-widths": (f"{PB}/widths", widths("corrected_fraction", "Phi_c"), [], f"{PB_SETUP}",
                   "One width."),
     "dr2": (f"{DR}/fig2", lift_or_dilation, [], f"{DR_SETUP}; \"many thousand taps\"",
@@ -82,7 +82,7 @@ FIGURES = {
                  "The lift of 0.25 densifies much faster than the held dilation by 1.025, which "
                  "gives little or nothing."),
     "dr-shakes": (f"{DR}/shakes", shakes, [], f"{DR_SETUP}; from its refs. 33 and 37",
-                  "Random lateral displacements leave the solids fraction statistically as it is; "
+                  "Random lateral displacements leave the packing fraction statistically as it is; "
                   "displacements proportional to height densify the upper part of beds 22 d high "
                   "little or not at all, so that the bulk stays relatively loose."),
     "dr-widths": (f"{DR}/widths", widths("bulk_fraction", "Phi"), [], f"{DR_SETUP}", "One width."),
@@ -109,14 +109,14 @@ FIGURES = {
                 "At Gamma = 2 Phi grows from 0.609 to 0.6997 +- 0.0058, single beds in jumps, and "
                 "layers grow from the floor; at Gamma = 0.5 almost nothing happens."),
     "both-engines": (f"{DR}/both-engines", both_engines, [], "no such figure",
-                     "What the Monte Carlo redeposition gets right is asked here."),
+                     "A comparison of Monte Carlo redeposition with discrete elements."),
     "dr15": (f"{DR}/fig15", shaken, [], "8000 spheres, periodic, L/d = 25; time of vibration and "
              "realizations not printed", "Over 0.02 <= a/d <= 0.48 and 10 <= f <= 90 Hz the solids "
              "fraction improves by at most about 5 %; none above about 0.66 was found."),
 }
 
 # figure: its pictures, of the tables of its section; points are those that the paper prints.
-TAPS, STRENGTH, PHI = "taps", "eps^(1/2)", "solids fraction"
+TAPS, STRENGTH, PHI = "taps", "eps^(1/2)", "packing fraction"
 LAYERED = ((0, 0.567), (50, 0.578), (250, 0.597))
 NORMAL = tuple((n, round(float(stats.norm.pdf(n, 7.2713, 1.2550)), 4)) for n in range(3, 13))
 PICTURES = {
@@ -140,9 +140,9 @@ PICTURES = {
     "pb-widths": [Picture(TAPS, "corrected fraction", across=True, columns=r"^\d+$", log="x")],
     "dr2": [Picture(TAPS, PHI, across=True, log="x")],
     "dr2-wide": [Picture(TAPS, PHI, across=True, log="x")],
-    "dr-shakes": [Picture(TAPS, "solids fraction, 11 to 17 d", across=True, table=2, log="x")],
+    "dr-shakes": [Picture(TAPS, "packing fraction, 11 to 17 d", across=True, table=2, log="x")],
     "dr-widths": [Picture(TAPS, PHI, across=True, columns=r"^\d+$", log="x")],
-    "dr3": [Picture("solids fraction of the region", "neighbours within 1.05 d",
+    "dr3": [Picture("packing fraction of the region", "neighbours within 1.05 d",
                     columns="N_c of the region", x_column=2)],
     "dr4": [Picture(TAPS, PHI, across=True, log="x")],
     "dr5": [Picture(TAPS, PHI, across=True, log="x")],
@@ -155,7 +155,7 @@ PICTURES = {
               Picture("neighbours within 1.05 d", "share of the spheres", across=True, table=1,
                       paper=NORMAL),
               Picture("free volume, sphere volumes", "probability density", across=True, table=2)],
-    "dr7-columns": [Picture("solids fraction of the column", PHI, columns="^Phi", x_column=1,
+    "dr7-columns": [Picture("packing fraction of the column", PHI, columns="^Phi", x_column=1,
                             rows="^100000$")],
     "dr10-14": [Picture(TAPS, PHI, across=True, paper=((0, 0.609), (898, 0.6997)), log="x"),
                 Picture("height, diameters", PHI, across=True, table=2),
@@ -166,9 +166,9 @@ PICTURES = {
     "dr15": [Picture("frequency, Hz", "improvement, %", across=True)],
 }
 
-HEAD = """# What the papers' figures become here
+HEAD = """# Which published figures jostle reproduces
 
-Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description says what was reduced and what that biases, and the scene of full size stands beside it, with its core-hours, scaled from the run here by spheres and taps. a ± b: b is half the 68 % interval by Student's t over realizations.
+Made by `./dev physics [--hours H] [FIGURE ...]` at low priority from scenes of reduced size ([config/scenes/](../config/scenes/)*/reduced); each scene's description lists the reductions and their biases. The scene of full size is named with its core-hours, scaled from the run here by spheres and taps. a ± b: b is half the 68 % interval by Student's t over realizations.
 
 **Verdicts** are about the runs as they were made here, each with its test. "agrees" and "disagrees": p, corrected for all tests of the figure together (Holm 1979), is below 5 %, or the 95 % interval that is named decides (these are not corrected: one in twenty errs). Else "cannot decide", with what the same test would have found with 80 % probability. Nothing is carried over from a small bed to the paper's. Pictures show numbers of the tables below them."""
 
@@ -177,8 +177,8 @@ OUTDATED = "(Of earlier numbers.) "
 
 
 def remark_of(page, figure, numbers):
-    """What a person wrote below the numbers, kept when they are made again, and marked if they
-    are not the same any more."""
+    """The remark that a person wrote below the numbers, marked as outdated if the numbers have
+    changed."""
     section = re.search(rf"^## {re.escape(figure)}\n.*?(?=^## |\Z)", page, re.S | re.M)
     found = section and re.match(rf"(.*)\n{re.escape(REMARK)}(.*)", section[0], re.S)
     if not found:
@@ -208,7 +208,7 @@ def setup(run):
 
 
 def with_pictures(figure, text, page):
-    """A section with its pictures, drawn beside the page, below what is said of here and the paper."""
+    """A section with its pictures, drawn beside the page, below the lines on this run and the paper."""
     text = re.sub(r"^!\[.*\n\n", "", text, flags=re.M)
     shown = []
     for k, picture in enumerate(PICTURES.get(figure, [])):
@@ -232,14 +232,14 @@ def section(figure, run, others, page):
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-NOT_REACHED = "**Not reached** in the time that was given: the scene, which goes on with the next call."
+NOT_REACHED = "**Not reached** in the time that was given: the scene, which the next call continues."
 # Put by hand where tests have changed and the run is not at hand; it goes when the figure is made.
 EARLIER_TESTS = "**Of earlier tests**: the run is not at hand, and how some statements are tested has changed."
 OLDER = "**Not reached** in the time that was given: the scene as it is now. Below: an earlier run."
 
 
 def not_reached(figure, run, former):
-    """The section of a figure whose run has not ended; what stood there before is kept, and marked."""
+    """The section of a figure whose run has not ended; the former section is kept and marked."""
     if former is None:
         return "\n\n".join([f"## {figure}", " ".join(run.scene["description"]), NOT_REACHED,
                             full_size(run)]).strip() + "\n"
@@ -249,7 +249,7 @@ def not_reached(figure, run, former):
 
 
 def full_size(run):
-    """The scene of the paper's size, and what it costs on this machine, as far as a run tells."""
+    """The scene of the paper's size, and its cost on this machine, if a run has measured it."""
     scene = run.full_size()
     hours = scene and run.core_hours(scene)
     return f"**Full size**: [{scene.name}](../{scene}), {hours}." if scene else ""
@@ -295,7 +295,7 @@ def main(jostle, folder, page, figures, deadline):
         scene, _, others, _, _ = FIGURES[figure]
         run = Run(jostle, scene, folder)
         if not run.make(deadline):
-            print(f"{figure} is not reached; the next call goes on with {run.path}")
+            print(f"{figure} is not reached; the next call continues {run.path}")
             sections[figure] = not_reached(figure, run, sections.get(figure))
             write_page(page, sections)
             break
@@ -317,7 +317,7 @@ def arguments(command=None):
     for path in ("jostle", "folder", "page"):
         parser.add_argument(path, type=pathlib.Path, help=argparse.SUPPRESS)
     parser.add_argument("--hours", type=float, default=np.inf, metavar="H",
-                        help="stop after so many hours; the next call goes on")
+                        help="stop after H hours; the next call continues")
     parser.add_argument("figures", nargs="*", metavar="FIGURE",
                         help=f"all, or some of {', '.join(FIGURES)}")
     found = parser.parse_intermixed_args(command)

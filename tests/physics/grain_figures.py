@@ -9,7 +9,7 @@ from page_text import at, table, window
 from verdicts import (Estimate, are_positive, is_positive, is_within, of_interval, undecided)
 
 POURED, RANGE = 0.6088, 0.0035  # at a friction of 0.1, "in the range"
-BEST_GAIN, DENSEST = 0.055, 0.665  # what "about 5 %" and "about 0.66" may be
+BEST_GAIN, DENSEST = 0.055, 0.665  # limits of "about 5 %" and "about 0.66"
 LAYERS = 6  # the lowest, that are shown
 WINDOWS = ("bulk_fraction", "mid_heights", "low_heights")
 
@@ -246,7 +246,7 @@ def shaken(run):
         none_above("the improvement is at most about 5 % (5.5 %)", gains, BEST_GAIN,
                    f"the greatest of {len(settings)} settings, {where(best)}: "
                    f"{gains[best].text(1, 100)} %"),
-        none_above("no solids fraction above about 0.66 (0.665)", ends, DENSEST,
+        none_above("no packing fraction above about 0.66 (0.665)", ends, DENSEST,
                    f"the densest of {len(settings)} settings, {where(densest)}: "
                    f"{ends[densest].text()}; the densest single bed "
                    f"{max(after.max() for _, after in phi):.4f}")]

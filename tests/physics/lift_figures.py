@@ -139,7 +139,7 @@ def gain_of_two_hundred(curve, of=""):
 def published_rules(run):
     shown = (0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 250)
     curves, steps = run.curves("bulk_fraction"), run.values()
-    statements = densities(curves[0], {0: 0.567})  # the same beds for every first step
+    statements = densities(curves[0], {0: 0.567})  # every first step has equal beds
     rows = []
     for curve, step in zip(curves, steps):
         of = f", first step {step}"
@@ -150,7 +150,7 @@ def published_rules(run):
 
 
 def reading(max_step, reset_each_tap, measure_start, of):
-    """What the published rules are taken to be, in words."""
+    """The reading of the published rules, in words."""
     return "; ".join([
         f"first step {max_step:g}",
         "reset at each tap" if reset_each_tap else "handed on",

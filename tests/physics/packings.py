@@ -36,7 +36,7 @@ def normal_through(counts):
 def peaks_of_layers(heights, layers=4):
     """Where the density of centres is highest within half a spacing of each of the lowest hcp layers, diameters.
 
-    Kernel: a normal law of 0.05 d. Without layers a peak lies anywhere within half a spacing."""
+    Kernel: a normal law of 0.05 d. Without layers the peak may be anywhere within half a spacing."""
     places = np.arange(-SPACING / 2, SPACING / 2, 0.005)
     found = []
     for layer in range(layers):

@@ -31,7 +31,7 @@ def verdict_table(statements):
 
 
 def parameters(fit, names):
-    """What a law says of its parameters, in words: the program's statements."""
+    """The program's statements on the parameters of a law."""
     if "refused" in fit:
         return ["no fit"] * len(names)
     said = []
@@ -50,14 +50,14 @@ def interval(fit, name):
 
 
 def steady_words(tables, observable, points):
-    """What `jostle analyse steady` says of each sweep point, and its p-value of no drift."""
+    """The verdict of `jostle analyse steady` on each sweep point, and its p-value for no drift."""
     states = [tables[f"point_{point:04}/steady/{observable}"] for point in range(points)]
     return [(state.notes["verdict"].split(":")[0].split(" with")[0], float(state["drift_p"]))
             for state in states]
 
 
 def steadiness(tables, observable, names):
-    """Of every sweep point in a word and the p-value of the tests of drift."""
+    """The verdict on each sweep point in a word, with the p-value of the test of drift."""
     return "; ".join(f"{name}: {word} (drift p = {p:.2g})" for name, (word, p) in
                      zip(names, steady_words(tables, observable, len(names))))
 

@@ -2,8 +2,8 @@
 """Runs the scenes of the papers' figures, bed after bed, and keeps reduced data of each finished bed.
 
 paper_runs.py JOSTLE FOLDER --hours H [--only NAME ...] or --list. The runs are those of paper_runs.csv, in its order.
-One bed is one shard of its scene: it goes on where a call before has stopped, from FOLDER. What is finished is known
-from the reduced data alone: on another machine only the bed under way begins anew."""
+One bed is one shard of its scene, and continues from FOLDER after a stop. The reduced data alone record the finished
+beds: on another machine only the unfinished bed begins anew."""
 import argparse
 import csv
 import dataclasses
@@ -29,7 +29,7 @@ class PaperRun:
     name: str
     scene_path: pathlib.Path
     realizations: int
-    core_hours: float   # of all beds, measured or foretold
+    core_hours: float   # all beds together, measured or predicted
     figures: str
 
     @property
@@ -142,7 +142,7 @@ def advance(jostle, runs, folder, reduced, deadline, say=print):
                 return False
             finished, path = run_bed(jostle, run, bed, folder, deadline, stop)
             if not finished:
-                say(f"{run.name}: bed {bed} has stopped; the next call goes on with it")
+                say(f"{run.name}: bed {bed} has stopped; the next call continues it")
                 return False
             if add_beds(jostle, path, run.scene, reduced / run.name) != [bed]:
                 sys.exit(f"{run.name}: bed {bed} is not in {path}")
@@ -155,7 +155,7 @@ def arguments(command=None):
     parser = argparse.ArgumentParser(prog="./dev physics", allow_abbrev=False)
     for path in ("jostle", "folder"):
         parser.add_argument(path, type=pathlib.Path, help=argparse.SUPPRESS)
-    parser.add_argument("--hours", type=float, metavar="H", help="stop after so many hours; the next call goes on")
+    parser.add_argument("--hours", type=float, metavar="H", help="stop after H hours; the next call continues")
     parser.add_argument("--only", action="append", metavar="NAME", help="a run of the list; may be repeated")
     parser.add_argument("--list", action="store_true", help="print what is done, what is next, and core-hours")
     parser.add_argument("--add", type=pathlib.Path, metavar="FILE",

@@ -1,4 +1,4 @@
-"""`./dev physics --hours` takes what is next, goes on after a stop and keeps reduced data, on beds of seconds."""
+"""`./dev physics --hours` chooses the next run, continues after a stop and keeps reduced data, on beds of seconds."""
 import contextlib
 import csv
 import io

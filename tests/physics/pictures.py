@@ -14,8 +14,8 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0578d", "#b07800", "#3a93c4", "#5
 
 @dataclasses.dataclass
 class Picture:
-    """What is drawn of a section's tables. across: each row is a curve and the numbers in the
-    header are x; else each column is one and the first column is x."""
+    """A picture of a section's tables. across: each row is a curve and the numbers in the
+    header are x; else each column is a curve and the first column is x."""
     x: str
     y: str
     across: bool = False

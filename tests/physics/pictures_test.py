@@ -1,4 +1,4 @@
-"""What pictures show is what the tables of a section say."""
+"""Pictures show the numbers of the tables of a section."""
 import pathlib
 import tempfile
 

@@ -1,4 +1,4 @@
-"""The published figures: what a page says of each, beside its statements (claims_pb.py, claims_dr.py)."""
+"""The published figures: the text of each page, beside its statements (claims_pb.py, claims_dr.py)."""
 import dataclasses
 
 PB, DR = "philippe-bideau-2001", "rosato-dybenko-2010"
@@ -46,9 +46,9 @@ FIGURES = {
                   "Phi = 58.4 % at the start",
                   "The strength (0.02) is ours; \"hardly\" and \"near\" are read as 0.03."),
     "pb10": Figure("PB 10: pores", ("pb10", "pb-pores"), f"{PB}/fig10", "4096", "9999; 0",
-                   "3, 20 / 1", "the tail shrinks (v0 falls)", "Distributions are of Voronoi vertices in the box. The "
+                   "3, 20 / 1", "the tail shrinks (v0 falls)", "Distributions count Voronoi vertices in the box. The "
                    "number of pores counts sets of four neighbours whose centres are in the box. The paper's numbers "
-                   "are of single packings: the deviation of one bed is their error."),
+                   "come from single packings: the standard deviation between beds is their error."),
     "pb-moves": Figure("PB sec. II: settings of the move", ("pb-moves",), f"{PB}/reduced/moves", "4096", "30",
                        "3 / -", "theta_0 = pi/4 compacts most", "Strength, taps and the margin of 0.002 are ours."),
     "pb-sides": Figure("PB text: walls or periodic", ("pb-sides", "pb-widths"), f"{PB}/reduced/sides",

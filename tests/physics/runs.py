@@ -1,4 +1,4 @@
-"""Results files, their curves, and what `jostle analyse`, `fit` and `structure` say of them."""
+"""Results files, their curves, and the tables of `jostle analyse`, `fit` and `structure`."""
 import json
 import pathlib
 import re
@@ -50,11 +50,11 @@ class Run:
         paper, figure = scene.split("/")
         self.scene_path = ROOT / "config" / "scenes" / paper / "reduced" / (figure + ".json")
         self.scene = json.loads(self.scene_path.read_text())
-        self.seconds = 0.0  # of one core; known once it is read
+        self.seconds = 0.0  # core-seconds; known once the file is read
 
     def make(self, deadline=np.inf):
-        """Runs what is not there yet, at low priority, and reads the rest. False: the deadline
-        (time.monotonic()) has passed first; what was run is kept."""
+        """Runs the missing part at low priority, and reads the file. Returns False if the deadline
+        (time.monotonic()) has passed first; finished taps are kept."""
         command = [self.jostle, "run", self.scene_path, "-o", self.path, "--resume",
                    "--no-progress"]
         if np.isfinite(deadline):
@@ -64,7 +64,7 @@ class Run:
         if code == STOPPED:
             return False
         if code != 0:
-            sys.exit(f"{self.name} was not run; if {self.path} is of another scene, move it away")
+            sys.exit(f"{self.name} was not run; if {self.path} belongs to another scene, move it away")
         self.read()
         return True
 
@@ -78,7 +78,7 @@ class Run:
 
     @property
     def is_complete(self):
-        """Whether the file is there and holds all that the scene asks for."""
+        """True if the file exists and holds all that the scene requests."""
         if not self.path.exists():
             return False
         with h5py.File(self.path) as file:
@@ -107,7 +107,7 @@ class Run:
         return {table["name"]: Table(table) for table in answer["tables"]}
 
     def fits(self, observable, law, *options):
-        """What a law says of each sweep point."""
+        """The fit of a law at each sweep point."""
         answer = self.asked("fit", self.path, "--observable", observable, "--model", law, *options)
         return [curve["fits"][0] for curve in answer["curves"]]
 
@@ -117,9 +117,9 @@ class Run:
         return scene.relative_to(ROOT) if scene.exists() else None
 
     def core_hours(self, scene):
-        """Of a scene, as this run took by its spheres and taps (of pours alone, realizations): pilots
-        see the first taps alone, which are others than the later ones. A run that was not read: what
-        `jostle check` makes of such a pilot."""
+        """Core-hours of a scene, scaled from this run by spheres and taps (without taps, by realizations): a
+        pilot sees the first taps alone, which cost more or less than later ones. If the run was not read,
+        the estimate of `jostle check`."""
         if not self.seconds:
             told = subprocess.run([self.jostle, "check", ROOT / scene], check=True, text=True,
                                   stdout=subprocess.PIPE).stdout

@@ -14,7 +14,7 @@ from reduce import REDUCED, read_table
 from verdicts import LEVEL, Estimate, detectable, p_beyond, p_text, p_two_sided, p_within
 
 REPRODUCED, COMPATIBLE, QUALITATIVE = "reproduced", "compatible", "qualitatively"
-NOT, UNDERPOWERED, SILENT = "not reproduced", "underpowered", "paper does not say"
+NOT, UNDERPOWERED, SILENT = "not reproduced", "underpowered", "not in the paper"
 STATUS = (REPRODUCED, COMPATIBLE, QUALITATIVE, NOT, UNDERPOWERED, SILENT)
 DECIDED = STATUS[:4]
 NUMBER = r"-?\d+\.?\d*"
@@ -24,9 +24,9 @@ NUMBER = r"-?\d+\.?\d*"
 class Claim:
     """One statement and how it is tested.
 
-    kind: positive (every estimate above 0; with `relevant`, refuted where it is shown to be less), within (every estimate within the margin of 0), printed (a number
-    with its error; margin: its rounding; relevant: what a test with power must find), interval (low and high,
-    compared with wanted), p (a p-value of the program, in favour or not), refute (a p-value of a test that can
+    kind: positive (every estimate above 0; with `relevant`, refuted where it is
+    shown to be less), within (every estimate within the margin of 0), printed (a number with its error; margin: its rounding; relevant: what a test with power must find), interval (low and high,
+    compared with `wanted`), p (a p-value of the program, in favour or not), refute (a p-value of a test that can
     only refute and had power), shown (by the intervals in note), seen (in single beds), none (not tested),
     silent (the paper prints nothing to test)."""
     figure: str
@@ -35,7 +35,7 @@ class Claim:
     run: str = ""
     source: str = ""          # the statement's row in statements.csv, or "=" and a function of contrasts.py
     pick: tuple = (0,)        # which "a ± b" of that row
-    dof: float = 0.0          # 0: as the row says
+    dof: float = 0.0          # 0: that of the row
     margin: float = 0.0
     printed: float = np.nan
     printed_error: float = 0.0
@@ -192,7 +192,7 @@ def counts(scores):
 
 
 def status_of_figure(scores):
-    """Of the paper's statements of one figure together."""
+    """The status of a figure: that of the paper's statements together."""
     found = [s.status for s in scores if not s.claim.own]
     decided = [status for status in found if status in DECIDED]
     if len(decided) < len(found) / 2 or not decided:

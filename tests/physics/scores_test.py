@@ -116,7 +116,7 @@ def least_effects_keep_their_size(random):
 
 def laws_that_do_not_fit_are_found(random):
     """Means about an inverse log but for one tap, so far off that the best inverse log misses it by the margin: in at
-    most 5 % it is said to fit. An inverse log itself fits with power."""
+    most 5 % the test accepts it. An inverse log itself is accepted with power."""
     taps = np.array([0, 1, 10, 50, 100, 250, 400], float)
     law = 0.61 - 0.035 / (1 + 0.25 * np.log1p(taps / 2))
     claim = Claim("", "", "within", margin=0.005)
@@ -171,7 +171,7 @@ def tops_are_covered(random):
 
 
 def false_decisions(random):
-    """Of statements of which nine in ten are null, at most 5 % of those kept are false."""
+    """At most 5 % of the kept statements are false, if nine in ten are null."""
     shares = []
     for _ in range(ENSEMBLES // 3):
         null = random.random(90)

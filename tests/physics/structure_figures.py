@@ -248,7 +248,7 @@ def pore_statements(pores, taps, fraction, nu, v0, n_pores, shrunk):
                     f"{Estimate.of(shrunk[0]).text(2)} up to the octahedral; sizes' difference: ",
                     digits=2, name="paired t-test")]
     for k, tap in enumerate(taps):
-        # Of the two words the table's is judged at another level.
+        # The status has two words; the table judges the first at another level.
         found = pores["tail_status"][k].decode().split(": ", 1)[-1]
         statements.append(of_program(
             f"the tail is exponential, tap {tap}", found,

@@ -30,7 +30,7 @@ class Estimate:
 
     @staticmethod
     def difference(first, second):
-        """Of two independent means (Welch 1947)."""
+        """The difference of two independent means (Welch 1947)."""
         first, second = Estimate.of(first), Estimate.of(second)
         squares = first.error**2, second.error**2
         of_squares = sum(square**2 / max(mean.dof, 1)
@@ -49,7 +49,7 @@ class Estimate:
         return bool(self.dof > 0 and np.isfinite(self.value) and self.error > 0)
 
     def half_width(self):
-        """Half the 68 % interval, which is what stands behind +-."""
+        """Half the 68 % interval, printed after +-."""
         if not self.testable:
             return np.nan
         return self.error * (stats.t.ppf(0.5 + 0.3413447460685429, self.dof)
@@ -64,21 +64,22 @@ class Estimate:
 
 
 def p_two_sided(estimate, reference=0.0):
-    """Of the true value being `reference`."""
+    """p-value for the true value `reference`."""
     if not estimate.testable:
         return np.nan
     return float(2 * stats.t.sf(abs(estimate.value - reference) / estimate.error, estimate.dof))
 
 
 def p_beyond(estimate, margin):
-    """Of a true value within the margin lying so far from 0."""
+    """p-value for a true value within the margin, given an estimate this far from 0."""
     distance = abs(estimate.value)
     return float(stats.t.sf((distance - margin) / estimate.error, estimate.dof) +
                  stats.t.sf((distance + margin) / estimate.error, estimate.dof))
 
 
 def p_within(estimate, margin):
-    """Of a true value outside the margin lying so near to 0: two one-sided tests (Schuirmann 1987)."""
+    """p-value for a true value outside the margin, given an estimate this near to 0: two one-sided tests
+    (Schuirmann 1987)."""
     return float(stats.t.sf((margin - abs(estimate.value)) / estimate.error, estimate.dof))
 
 
@@ -108,7 +109,7 @@ class Statement:
     found: str
     test: str
     p: float = np.nan
-    favours: bool = False  # what the test would say if it decides: agrees
+    favours: bool = False  # the verdict if the test decides: agrees
     power: Callable[[float], str] = lambda level: ""  # at a level: what would have been found
     word: str = ""  # decided by an interval, not by p
 
@@ -125,8 +126,8 @@ def of_test(estimate, name):
 
 
 def is_positive(paper, estimate, found, what="", digits=4, scale=1.0, name="t-test"):
-    """The paper's number is positive. `found` begins what is printed; `what` says what the
-    estimate is."""
+    """The paper's number is positive. `found` begins the printed text; `what` names the
+    estimate."""
     return Statement(paper, f"{found}{what}{estimate.text(digits, scale)}",
                      of_test(estimate, name), p_two_sided(estimate), estimate.value > 0,
                      lambda level: found_with(estimate, level, digits, scale))
@@ -145,7 +146,7 @@ def is_within(paper, estimate, margin, found, digits=4, scale=1.0):
 
 
 def is_zero(paper, estimate, found, digits=4, scale=1.0):
-    """The paper says exactly 0: can be refuted, but not shown."""
+    """The paper states exactly 0, which a test can refute but not show."""
     return Statement(paper, f"{found}{estimate.text(digits, scale)}",
                      of_test(estimate, "t-test of 0, which can only refute"),
                      p_two_sided(estimate), False,
@@ -197,8 +198,8 @@ def found_with(estimate, level, digits, scale):
 
 
 def found_beyond(estimate, margin, level, digits, scale):
-    """What a test against a margin would have found: beyond it at least so much; within it
-    nothing, where even an estimate of 0 would have left doubt."""
+    """The power of a test against a margin: the least effect beyond it that would have been found.
+    Within the margin nothing is found if even an estimate of 0 would be undecided."""
     if not estimate.testable:
         return ""
     least = margin + detectable(estimate, level)

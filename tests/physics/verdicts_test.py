@@ -1,4 +1,4 @@
-"""Verdicts of docs/validation.md are right as often as they say, at the smallest ensembles."""
+"""Verdicts of docs/validation.md have the error rates that they state, at the smallest ensembles."""
 import os
 import pathlib
 
@@ -59,7 +59,7 @@ def margins(random):
             at_most(rate[wrong], LEVEL, f"M = {realizations}: {wrong} at the margin")
 
 
-        # What is_within says would have been found beyond its margin.
+        # The effect beyond the margin that is_within reports as detectable.
         beyond = 1 + detectable(Estimate(0, 1 / np.sqrt(realizations), realizations - 1))
         rate = words(random, realizations, beyond, lambda e: is_within("", e, 1, ""))[DISAGREES]
         print(f"M = {realizations}: {beyond:.2f} is beyond a margin of 1: {rate:.3f} disagree")
@@ -67,7 +67,7 @@ def margins(random):
 
 
 def all_positive(random):
-    """Of two numbers, one of them 0, whatever the other."""
+    """Two numbers, one of them 0, for any value of the other."""
     for other in (0, 100, -100):
         found = [judge([are_positive("", [Estimate.of(row), Estimate.of(row[::-1] ** 3 + other)],
                                      "")])[0][2] for row in random.normal(0, 1, (ENSEMBLES, 4))]
@@ -79,8 +79,8 @@ def all_positive(random):
 
 
 def all_within(random):
-    """Of two numbers with margins of 1, M = 3 and 6: one on its margin, the other at 0; both on
-    theirs; one far away."""
+    """Two numbers with margins of 1, M = 3 and 6: one on its margin, the other at 0; both on
+    their margins; one far away."""
     for realizations in (3, 6):
         for first, second, wrong in ((1, 0, {AGREES, DISAGREES}), (1, -1, {AGREES, DISAGREES}),
                                      (20, 0, {AGREES, UNDECIDED})):
@@ -122,7 +122,7 @@ def ages(random):
         for truth, wanted in ((1, LEVEL), (factor, POWER)):
             rate = np.mean([p_exchanged(truth * a, b) <= LEVEL for a, b in zip(*squares)])
             print(f"{pairs} pairs, a factor of {truth:.1f}: {rate:.3f} are found")
-            # The factor is of a rate of 400 pairs of ages, which errs too.
+            # The factor comes from a rate over 400 pairs of ages, which has an error too.
             check(abs(rate - wanted) <= 3 * np.sqrt(wanted * (1 - wanted) *
                                                     (1 / ENSEMBLES + (truth > 1) / 400)),
                   "exchanges", pairs, rate)
@@ -139,7 +139,7 @@ def intervals():
     check(word(0.05, 0.09, between=(0.1, 0.2)) == DISAGREES, "outside")
     check(word(np.nan, np.nan, between=(0.1, 0.2)) == UNDECIDED, "no limits")
     one = is_positive("", Estimate.of([1.0]), "")
-    check(judge([one])[0][2] == UNDECIDED, "one realization says nothing")
+    check(judge([one])[0][2] == UNDECIDED, "one realization decides nothing")
 
 
 def fit(**intervals):
@@ -148,7 +148,7 @@ def fit(**intervals):
 
 
 def intervals_of_fits():
-    """What is said of three strengths' fits; a line through ln B passes (0, ln 1) and (0.2, ln 4)."""
+    """Verdicts on fits of three strengths; a line through ln B passes (0, ln 1) and (0.2, ln 4)."""
     def word(statement):
         return judge([statement])[0][2]
     for middle, wanted in (([1.8, 2.1], UNDECIDED), ([1.9, 1.95], DISAGREES), ([2.1, 9], DISAGREES),
@@ -251,7 +251,7 @@ def laws_are_compared_in_words():
 
 
 def numbers_of_the_paper_err_too(random):
-    """Of a printed mean that errs by 0.001 and is rounded, from beds whose truth it is."""
+    """A printed mean with an error of 0.001, rounded, against beds with the same true mean."""
     for realizations, scatter in ((6, 0.0005), (6, 0.004), (20, 0.004)):
         printed = np.round(random.normal(0.578, 0.001, ENSEMBLES), 3)
         ours = random.normal(0.578, scatter, (ENSEMBLES, realizations))
@@ -281,4 +281,4 @@ if __name__ == "__main__":
     remarks_are_those_of_their_section()
     what_is_not_reached_keeps_what_stood_there()
     options_stand_before_or_after_figures()
-    print("verdicts: as often right as they say")
+    print("verdicts: error rates are those stated")

@@ -107,7 +107,7 @@ class Run(Case):
             jostle.run(ENDLESS, time_limit="1s")
         self.assertEqual(raised.exception.exit_code, 75)
         self.assertEqual(str(raised.exception),
-                         "endless.h5: stopped by the time limit; resume=True goes on")
+                         "endless.h5: stopped by the time limit; resume=True continues it")
         results = raised.exception.results
         self.addCleanup(results.close)
         self.assertEqual(results.state, "interrupted")
@@ -148,7 +148,7 @@ class Live(Case):
         self.addCleanup(process.kill)
         while not all(one["taps_recorded"] > 30 for one in self.info()):
             time.sleep(0.05)
-        for _ in ("goes on", "killed"):
+        for _ in ("not finished", "killed"):
             with self.assertWarnsRegex(UserWarning, "live=True reads them too"):
                 bare = self.open("endless.h5")
             self.assertFalse(bare.points[0].begun)

@@ -48,7 +48,7 @@ def called(member):
 VALUES = {
     "words": "one", "not a number": np.nan, "negative": -1, "huge": 2 ** 62, "empty": np.zeros(0),
     "three numbers": np.array([1.0, 2.0, 3.0]), "a matrix": np.zeros((2, 3), int),
-    "bytes that are no text": np.bytes_(b"\xff\xfe{"), "texts": np.array([b"a", b"b"], object),
+    "bytes that are not UTF-8": np.bytes_(b"\xff\xfe{"), "texts": np.array([b"a", b"b"], object),
 }
 
 

@@ -1,4 +1,4 @@
-"""What the package reads, number by number against h5py."""
+"""Compares the numbers that the package reads with those of h5py, one by one."""
 
 import json
 import shutil

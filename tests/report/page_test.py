@@ -88,7 +88,7 @@ class Sections(Open):
                             caption: arguments[0].querySelector("figcaption").textContent};""", figure)
                 self.assertGreater(facts["marks"], 2)
                 self.assertGreater(len(facts["caption"]), 20)
-                self.assertNotIn(".h5", facts["caption"])  # file and bed stand at the top
+                self.assertNotIn(".h5", facts["caption"])  # the top of the page names file and bed
                 self.assertIn(title, facts["label"])
                 self.assertTrue(facts["inside"], "a text leaves its figure")
                 for bad in ("NaN", "Infinity", "undefined", "null"):

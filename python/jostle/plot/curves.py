@@ -94,7 +94,7 @@ def profile(table: Table, quantity: str = "phi", *, taps: Iterable[int] | int | 
     table[quantity]
     along = table.quantities[quantity].axes
     if len(along) != 2 or along[0] != "tap":
-        raise NotThere(f"{table.name}: {quantity} stands along {', '.join(along) or 'nothing'}, not along "
+        raise NotThere(f"{table.name}: {quantity} has the axes {', '.join(along) or 'none'}, not "
                        "the tap and one more axis")
     kept = table["tap"].tolist()
     error = table.error(quantity)

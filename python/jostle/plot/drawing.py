@@ -38,7 +38,7 @@ Description = dict[str, Any]
 
 @contextlib.contextmanager
 def style() -> Iterator[None]:
-    """The same on every machine: settings of the user do not count."""
+    """Settings of matplotlib that are equal on every machine: the user's settings do not count."""
     known = set(font_manager.fontManager.get_font_names())
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
@@ -102,8 +102,8 @@ def _x_scale(panels: list[Description]) -> str:
 
 
 def _extent(series: list[_Series], axis: Description, scale: str, rules: list[float]) -> tuple[float, float]:
-    """What an axis of y holds. On a logarithmic one an error as large as its value would reach down without end,
-    and a law beside the data may be of any size."""
+    """The values that an axis of y must show. A logarithmic axis leaves out errors as large as their value, which
+    would reach down without end, and laws beside the data, which may have any size."""
     values = [np.array(rules)]
     for one in series:
         if scale == "log":
@@ -189,7 +189,7 @@ def _names(ax: Axes, names: list[str]) -> None:
 
 
 def _look(series: Description) -> Description:
-    """Of its points."""
+    """Draws the error bars of a series of points."""
     colour = series["colour"]["light"]
     return {"marker": SYMBOLS[series["symbol"] % len(SYMBOLS)], "markeredgewidth": 0.7, "markeredgecolor": colour, "color": colour,
             "markerfacecolor": "white" if series.get("hollow") else colour}

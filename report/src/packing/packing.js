@@ -23,11 +23,11 @@ export function centresOf(stored) {
 const structures = ["disordered", "fcc", "hcp"];
 const structureColours = [[150, 156, 164], [0, 114, 178], [213, 94, 0]];
 
-/// What spheres may be coloured by: values, their range, and what a value is called.
+/// The quantities that can colour spheres: values, their range, and the name of a value.
 export const colourings = {
   coordination: {label: "coordination", title: "centres within 1.05 diameters", whole: true, values: (packing) => bytesOf(packing.coordination ?? ""),
                  range: () => [0, 12]},
-  structure: {label: "crystalline order", title: "surroundings by common-neighbour analysis", names: structures,
+  structure: {label: "crystalline order", title: "local order by common-neighbour analysis", names: structures,
               values: (packing) => bytesOf(packing.structure ?? "")},
   q6: {label: "bond order q\u2086", title: "q\u2086 of the 12 nearest neighbours",
        values: (packing) => Float32Array.from(bytesOf(packing.q6 ?? ""), (value) => value / 255), range: () => [0.25, 0.6]},
@@ -40,7 +40,7 @@ export const colourings = {
            range: (packing) => [0, packing.upper[2]]},
 };
 
-/// What 19 of 20 spheres do not exceed: few bear very much, and would leave the others one colour.
+/// The force that 19 of 20 spheres do not exceed: few spheres bear far more, and would leave all others one colour.
 function mostForces(packing) {
   const bytes = bytesOf(packing.force).sort();
   return Math.max(bytes[Math.floor(0.95 * (bytes.length - 1))], 1) / 255 * packing.greatest_force;

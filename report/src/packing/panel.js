@@ -35,7 +35,7 @@ class PackingPanel {
   series() {
     return this.packings.filter((one) => one.point === this.point && one.realization === this.realization);
   }
-  /// What any packing can be coloured by; one that cannot has its first.
+  /// The quantities that can colour any packing. A packing without the chosen one shows its first.
   choices() {
     return Object.keys(colourings).filter((name) => this.packings.some((one) => possible(one).includes(name)));
   }

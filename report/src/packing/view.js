@@ -79,7 +79,7 @@ function aboutZ(angle) {
   return [c, -s, 0, s, c, 0, 0, 0, 1];
 }
 
-/// The bed stands upright: it turns about its own vertical, and nods.
+/// The bed stays upright: it turns about its own vertical, and nods.
 const uprightTurn = (about, nod) => multiplied(aboutX(nod), aboutZ(about));
 
 export class View {
@@ -171,7 +171,7 @@ export class View {
     const [sx, sy, sz] = shown.size;
     const round = Math.hypot(sx, sy, sz) / 2 + 0.5;
     const turn = uprightTurn(this.about, this.nod);
-    // What the turned box takes up decides how much is seen.
+    // The extent of the turned box sets the scale.
     const halfOf = (row) => (Math.abs(turn[row]) * sx + Math.abs(turn[row + 1]) * sy + Math.abs(turn[row + 2]) * sz) / 2 + 0.6;
     const aspect = width / height;
     const upright = Math.max(halfOf(3), Math.hypot(sx, sy) / 2 / aspect + 0.3, halfOf(0) / aspect) / this.zoom;
