@@ -3,8 +3,9 @@
 namespace jostle::inline engine {
 
 std::unique_ptr<TrialLoop> make_loop_for_sizes(const Container& container, const Move& move,
-                                               StreamKey key, const ProposalKernels& kernels) {
-  return make_exhaustive<SeveralSizes>(container, move, key, kernels);
+                                               StreamKey key, const Kernels& kernels,
+                                               Sampler sampler) {
+  return make_loop<SeveralSizes>(container, move, key, kernels, sampler);
 }
 
 }  // namespace jostle::inline engine

@@ -2,12 +2,16 @@
 
 #include <limits>
 #include <memory>
+#include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
+#include "engine/monte_carlo/rejection_free/rejection_free_loop.hpp"
 
-// Chooses the typed loop for a container and a move.
+// Chooses the typed loop for a container, a move and a sampler.
 namespace jostle::inline engine {
 
 // Calls act(box, policy) with the container and the move as the loop is compiled for them: a move
@@ -24,34 +28,68 @@ struct WithTypes {
   }
   template <class Box>
   std::unique_ptr<TrialLoop> operator()(const Box& box, const MetropolisMove& move) const {
-    if constexpr (!Box::shape().has_floor()) return act(box, WithoutGravity(move));
-    if (move.beta != std::numeric_limits<double>::infinity())
+    if constexpr (!Box::shape().has_floor()) {
+      return act(box, WithoutGravity(move));
+    } else if (move.beta != std::numeric_limits<double>::infinity()) {
       return act(box, Metropolis(move, key));
-    return act(box, ZeroTemperature(move));
+    } else {
+      return act(box, ZeroTemperature(move));
+    }
   }
 };
 
 template <class Spheres>
 struct MakeExhaustive {
   StreamKey key;
-  ProposalKernels kernels;
+  Kernels kernels;
 
   template <class Box, class Policy>
   std::unique_ptr<TrialLoop> operator()(const Box& box, Policy move) const {
     return std::make_unique<TypedTrialLoop<Box, Policy, Spheres>>(box, std::move(move), key,
-                                                                  kernels);
+                                                                  kernels.proposals);
   }
 };
 
 template <class Spheres>
-std::unique_ptr<TrialLoop> make_exhaustive(const Container& container, const Move& move,
-                                           StreamKey key, const ProposalKernels& kernels) {
-  const MakeExhaustive<Spheres> make{key, kernels};
-  return std::visit(WithTypes<MakeExhaustive<Spheres>>{key, make}, container, move);
+struct MakeRejectionFree {
+  StreamKey key;
+  Kernels kernels;
+
+  template <class Box>
+  std::unique_ptr<TrialLoop> operator()(const Box& box, const Polar& move) const {
+    return make<PolarDirections>(box, move);
+  }
+  template <class Box>
+  std::unique_ptr<TrialLoop> operator()(const Box& box, const ZeroTemperature& move) const {
+    return make<CubicDirections>(box, move);
+  }
+  template <class Box, class Policy>
+  std::unique_ptr<TrialLoop> operator()(const Box&, const Policy&) const {
+    throw std::invalid_argument(
+        "the rejection-free sampler has no bounds for this move: use the exhaustive sampler");
+  }
+
+ private:
+  template <class Directions, class Box, class Policy>
+  std::unique_ptr<TrialLoop> make(const Box& box, const Policy& move) const {
+    return std::make_unique<RejectionFreeLoop<Box, Directions, Spheres>>(
+        box, move, key, kernels.proposals, kernels.rejection_free);
+  }
+};
+
+template <class Spheres>
+std::unique_ptr<TrialLoop> make_loop(const Container& container, const Move& move, StreamKey key,
+                                     const Kernels& kernels, Sampler sampler) {
+  const auto choose = [&](const auto& make) {
+    return std::visit(WithTypes<std::decay_t<decltype(make)>>{key, make}, container, move);
+  };
+  return sampler == Sampler::exhaustive ? choose(MakeExhaustive<Spheres>{key, kernels})
+                                        : choose(MakeRejectionFree<Spheres>{key, kernels});
 }
 
-/// make_exhaustive<SeveralSizes>, compiled apart: it takes as long as the loops of equal spheres.
+/// make_loop<SeveralSizes>, compiled apart: it takes as long as the loops of equal spheres.
 std::unique_ptr<TrialLoop> make_loop_for_sizes(const Container& container, const Move& move,
-                                               StreamKey key, const ProposalKernels& kernels);
+                                               StreamKey key, const Kernels& kernels,
+                                               Sampler sampler);
 
 }  // namespace jostle::inline engine

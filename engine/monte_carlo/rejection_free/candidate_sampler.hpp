@@ -18,7 +18,7 @@ namespace jostle::inline engine {
 /// Draws candidates, the trials that the bounds do not certainly reject, and tries them. Candidates
 /// have numbers of their own: what one draws is a function of the stream, its number, the centres
 /// and the step.
-template <class Box, class Directions>
+template <class Box, class Directions, class Spheres = EqualSpheres>
 class CandidateSampler {
   static constexpr int n_sectors = Directions::n_sectors;
 
@@ -101,8 +101,9 @@ class CandidateSampler {
   }
 
   // Finds the spheres of some candidates of the batch: most are rejected and change nothing, so
-  // that the next ones are already known. After an acceptance fewer.
-  void locate_from(std::uint32_t t) {
+  // that the next ones are already known. After an acceptance fewer. Not inlined: its code then
+  // does not depend on the loop around it.
+  [[gnu::noinline]] void locate_from(std::uint32_t t) {
     n_ahead_ = n_located_ == 0 ? 2 : std::min(2 * n_ahead_, most_ahead);
     first_located_ = t;
     n_located_ = std::min(n_ahead_, CandidateBatch::size - t);
@@ -169,7 +170,8 @@ class CandidateSampler {
     if (!Directions::proposes(d, step_)) return false;
     const std::uint32_t i = located.sphere;
     const PackedCentre& centre = centres()[i];
-    const PackedCentre target = box_.wrapped({centre.xy + Pair{d.x, d.y}, centre.z + d.z, 0});
+    const PackedCentre target = box_.wrapped(
+        {centre.xy + Pair{d.x, d.y}, centre.z + d.z, Spheres::several ? centre.radius : 0});
     if (!box_.clear_of_boundaries(target)) return false;
     if (tables_.blocked(i, d, target, distance_tests_)) return false;
     tables_.move(i, target);
@@ -177,11 +179,11 @@ class CandidateSampler {
     return true;
   }
 
-  PackedBox<Box> box_;
+  PackedBox<Box, Spheres> box_;
   StreamKey key_;
   RejectionFreeKernels kernels_;
   Directions directions_;
-  BoundTables<Box, Directions> tables_;
+  BoundTables<Box, Directions, Spheres> tables_;
   double step_ = 0;
   std::array<SineCosine, n_sectors> sector_begins_;
   double mean_wait_ = 0;

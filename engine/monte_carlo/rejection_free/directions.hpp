@@ -27,13 +27,14 @@ class PolarDirections {
   /// Rejection-free sampling begins below this acceptance ratio. Measured where both samplers cost
   /// the same (docs/developers/performance.md).
   static constexpr double least_acceptance = 0.015;
-  /// Obstacles higher than that above a centre hardly ever bound a step that does not rise, and are
-  /// left out; so are those farther than 1 + obstacle_reach of the longest step. Diameters.
+  /// Obstacles higher than highest_obstacle sums of both radii above a centre hardly ever bound a
+  /// step that does not rise, and are left out; so are those farther from contact than
+  /// obstacle_reach of the longest step.
   static constexpr double highest_obstacle = 0.3, obstacle_reach = 0.5;
 
   explicit PolarDirections(const Polar& move) : theta_table_(move.theta_table()) {}
 
-  static BoundsKernel<n_sectors> bounds(const RejectionFreeKernels& kernels) {
+  static BoundsKernel<n_sectors> bounds(const BoundKernels& kernels) {
     return kernels.polar_bounds;
   }
   Bins bins(double step) const { return polar_bins(theta_table_, step); }
@@ -65,13 +66,14 @@ class CubicDirections {
   using Bins = DirectionBins<n_sectors>;
 
   /// See PolarDirections. A trial at zero temperature is cheap to test; many of its steps
-  /// are nearly horizontal.
+  /// are nearly horizontal. Of an obstacle at the very end of the longest step the chord of the
+  /// kernels has no width: it is left out.
   static constexpr double least_acceptance = 0.004;
-  static constexpr double highest_obstacle = 0.75, obstacle_reach = 1;
+  static constexpr double highest_obstacle = 0.75, obstacle_reach = 1 - 1e-5;
 
   explicit CubicDirections(const ZeroTemperature&) {}
 
-  static BoundsKernel<n_sectors> bounds(const RejectionFreeKernels& kernels) {
+  static BoundsKernel<n_sectors> bounds(const BoundKernels& kernels) {
     return kernels.cubic_bounds;
   }
   static Bins bins(double step) { return cubic_bins(step); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "engine/bed/container.hpp"
@@ -16,17 +15,19 @@ class PlaceGrid {
  public:
   template <class Box>
   explicit PlaceGrid(const Box& box)
-      : units_{Box::shape().periodic_x ? box.extent().x * 0x1p-32 : open_unit,
-               Box::shape().periodic_y ? box.extent().y * 0x1p-32 : open_unit, open_unit} {}
+      : unit_{Box::shape().periodic_x ? box.extent().x * 0x1p-32 : open_unit,
+              Box::shape().periodic_y ? box.extent().y * 0x1p-32 : open_unit, open_unit} {}
 
-  GridPlace operator()(const PackedCentre& centre) const {
-    return {{rounded(centre.xy[0] / units_[0]), rounded(centre.xy[1] / units_[1]),
-             rounded(centre.z / units_[2]), 0}};
+  template <class Spheres>
+  GridPlace place(const PackedCentre& centre) const {
+    return {rounded(centre.xy[0] / unit_.x), rounded(centre.xy[1] / unit_.y),
+            rounded(centre.z / unit_.z),
+            Spheres::several ? static_cast<float>(centre.radius) : 0.0f};
   }
 
-  /// Diameters along x, y or z: 0, 1, 2.
-  double unit(int axis) const { return units_[axis]; }
-  double coarsest() const { return *std::ranges::max_element(units_); }
+  /// Diameters per step of the grid.
+  Vec3 unit() const { return unit_; }
+  double coarsest() const { return std::max({unit_.x, unit_.y, unit_.z}); }
 
  private:
   // Along a direction that is not periodic: spheres within 32 diameters of each other are
@@ -37,7 +38,7 @@ class PlaceGrid {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
   }
 
-  std::array<double, 3> units_;
+  Vec3 unit_;
 };
 
 }  // namespace jostle::inline engine

@@ -3,9 +3,7 @@
 // static functions only.
 #include "engine/monte_carlo/rejection_free/rejection_free_kernels.hpp"
 
-#include <cassert>
-
-#include "engine/monte_carlo/kernel/four_floats.hpp"
+#include "engine/monte_carlo/rejection_free/obstacles.hpp"
 
 namespace jostle::inline engine::JOSTLE_KERNELS {
 
@@ -29,123 +27,8 @@ inline void store(Floats values, float* at) {
   *reinterpret_cast<Floats*>(at) = values;
 }
 
-// Four numbers, of four spheres or the coordinates of one.
-using Four = FourFloats;
-using FourIntegers = std::int32_t __attribute__((vector_size(16)));
-
-inline FourIntegers at(const GridPlace& place) {
-  return *reinterpret_cast<const FourIntegers*>(place.at);
-}
-
-// Number of spheres per group.
-constexpr std::size_t group = 8;
-
-// Obstacles of a group of spheres: r, relative to each centre.
-struct Obstacles {
-  static constexpr std::uint32_t size = group * (most_in_the_way + Planes::most) + 4;
-  std::uint32_t n = 0;
-  alignas(16) float r[size][4];
-};
-
-// Another position relative to a sphere's own. All use one arithmetic for obstacles.
-// Differences wrap around, as places do through periodic sides.
-inline Four seen_from(const Sight& sight, FourIntegers own, FourIntegers other) {
-  using Wrapping = std::uint32_t __attribute__((vector_size(16)));
-  const auto between = (FourIntegers)((Wrapping)other - (Wrapping)own);
-  return __builtin_convertvector(between, Four) * *reinterpret_cast<const Four*>(sight.unit);
-}
-
-// |r|^2 - 1, rounded up; > 0.
-inline Four tangent_squared(Four x, Four y, Four z, float margin) {
-  return ((x * x + y * y + z * z) - 1.0f) + margin;
-}
-
-// Tests four for obstacles, one bit each.
-inline unsigned in_the_way(const Sight& sight, const Four (&r)[4]) {
-  Four x = r[0], y = r[1], z = r[2], rest = r[3];
-  transpose(x, y, z, rest);
-  const auto counts =
-      (tangent_squared(x, y, z, sight.margin) < sight.farthest) & (z > -sight.highest);
-  return bits_of_four(counts);
-}
-
-// Four of a list, from place m on.
-struct ListedFour {
-  std::uint32_t sphere[4];
-  unsigned mask;  // those that are listed; the others repeat the last
-};
-inline ListedFour listed_from(const std::uint32_t* list, std::uint32_t m) {
-  const std::uint32_t last = list[0];
-  ListedFour four;
-  for (std::uint32_t k = 0; k < 4; ++k) four.sphere[k] = list[m + k < last ? m + k : last];
-  four.mask = last - m < 3 ? (2u << (last - m)) - 1 : 15;
-  return four;
-}
-
-inline void look_around(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                        Obstacles& seen) {
-  const std::uint32_t* const list = around.lists + i * around.stride;
-  const FourIntegers own = at(around.places[i]);
-  std::uint32_t n = seen.n;
-  for (std::uint32_t m = 1; m <= list[0]; m += 4) {
-    const ListedFour four = listed_from(list, m);
-    Four r[4];
-    for (int k = 0; k < 4; ++k) r[k] = seen_from(sight, own, at(around.places[four.sphere[k]]));
-    const unsigned counts = in_the_way(sight, r) & four.mask;
-    for (int k = 0; k < 4; ++k) {
-      *reinterpret_cast<Four*>(seen.r[n]) = r[k];
-      n += counts >> k & 1;  // no branch: it could not be guessed
-    }
-    assert(n < seen.n + most_in_the_way);
-  }
-  seen.n = n;
-}
-
-std::uint32_t seen_by(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                      const GridPlace& former, std::uint32_t* seeing) {
-  const std::uint32_t* const list = around.lists + i * around.stride;
-  const FourIntegers before = at(former), now = at(around.places[i]);
-  std::uint32_t n = 0;
-  for (std::uint32_t m = 1; m <= list[0]; m += 4) {
-    const ListedFour four = listed_from(list, m);
-    Four r_before[4], r_now[4];
-    for (int k = 0; k < 4; ++k) {
-      const FourIntegers own = at(around.places[four.sphere[k]]);
-      r_before[k] = seen_from(sight, own, before);
-      r_now[k] = seen_from(sight, own, now);
-    }
-    const unsigned counts = (in_the_way(sight, r_before) | in_the_way(sight, r_now)) & four.mask;
-    for (int k = 0; k < 4; ++k) {
-      seeing[n] = four.sphere[k];
-      n += counts >> k & 1;
-    }
-  }
-  return n;
-}
-
-StepOutcome try_step(const Sight& sight, const Surroundings& around, std::uint32_t i, double dx,
-                     double dy, double dz) {
-  const std::uint32_t* const list = around.lists + i * around.stride;
-  const FourIntegers own = at(around.places[i]);
-  const Four step = {static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(-dz), 0};
-  Four nearest = {2, 2, 2, 2};
-  for (std::uint32_t m = 1; m <= list[0]; m += 4) {
-    const ListedFour four = listed_from(list, m);
-    Four r[4];
-    for (int k = 0; k < 4; ++k) {
-      r[k] = seen_from(sight, own, at(around.places[four.sphere[k]])) - step;
-    }
-    transpose(r[0], r[1], r[2], r[3]);
-    const Four squared = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
-    nearest = squared < nearest ? squared : nearest;
-  }
-  if (any_of_four(nearest < 1.0f - sight.doubt)) return StepOutcome::blocked;
-  const bool unsure = any_of_four(nearest < 1.0f + sight.doubt);
-  return unsure ? StepOutcome::unsure : StepOutcome::free;
-}
-
-// Bounds as inverse lengths times the longest step. For component s of r such a bound is
-// slope s + level, wherever this is at least the onset.
+// Bounds as inverse lengths times the longest step. For component q of r such a bound is
+// slope q + level, wherever this is at least the onset.
 struct Coefficients {
   static constexpr std::uint32_t size = Obstacles::size;
   alignas(64) float x[size], y[size], z[size], norm[size], level[size], onset[size];
@@ -154,21 +37,30 @@ struct Coefficients {
 // Inverse lengths are lowered by more than rounding can add to them, reciprocals included.
 constexpr float lowered = 0.999f;
 
-// A step along a direction with component s of r enters the sphere at L = c / h(s), with
-// c = |r|^2 - 1 and h = s + sqrt(s^2 - c), and leaves it at h. From s = (longest + c / longest) / 2
-// on, where the longest step enters or leaves the sphere, every step beyond L is rejected. There h
-// is the greater of longest and c / longest; it is concave, so it is above the straight line from
-// there to norm + 1 at any norm >= |r|. A line from c / longest, which is lower, needs no onset:
-// for a lesser s it gives a bound beyond the longest step.
-template <bool with_onset>
-void sphere_coefficients(const Obstacles& obstacles, float margin, float longest,
+// The length beyond which an obstacle certainly rejects a step (all lengths over s, see
+// obstacles.hpp). A step of length l along a unit vector u ends at l u, and the obstacle rejects it
+// where
+//   |r - l u|^2 < 1,  that is  l^2 - 2 q l + c < 0  with  q = r.u  and  c = |r|^2 - 1.
+// Its roots are c / h and h, where h(q) = q + sqrt(q^2 - c): the step enters the sphere at c / h
+// and leaves it at h. Every length from c / h up to the longest, L, is rejected if L <= h. Both
+// roots are L and c / L at q = least = (L + c / L) / 2: from there on h >= L or c / h >= L. The
+// bound of 1 / length is then h / c, and any lower number is safe. h is concave, so that it is
+// above its chord between two q: from (least, max(L, c / L)), the onset, to (norm, norm + 1), where
+// norm = 1 + c / 2 >= |r| and h(norm) >= norm + 1, since norm^2 - c >= 1. This chord is the bound;
+// it grows with q, so that the least q of a bin of directions bounds all of the bin. A chord from
+// (least, c / L), which is lower, needs no onset: for a lesser q its bound is beyond L.
+template <class Spheres, bool with_onset>
+void sphere_coefficients(const Obstacles& obstacles, float margin, float longest_step,
                          Coefficients& out) {
-  const float per_longest = 1.0f / longest, scale = lowered * longest;
+  const float per_longest_step = 1.0f / longest_step, lowered_step = lowered * longest_step;
   for (std::uint32_t j = 0; j < obstacles.n; j += 4) {
     const auto* const r = reinterpret_cast<const Four*>(obstacles.r[j]);
-    Four x = r[0], y = r[1], z = r[2], rest = r[3];
-    transpose(x, y, z, rest);
-    const Four c = tangent_squared(x, y, z, margin);
+    Four x = r[0], y = r[1], z = r[2], s = r[3];
+    transpose(x, y, z, s);
+    const Scale<Spheres> scale(s);
+    const auto longest = longest_step * scale.inverse, per_longest = per_longest_step * scale.s;
+    const auto lowered_longest = lowered_step * scale.inverse;
+    const Four c = tangent_squared<Spheres>(x, y, z, scale, margin);
     const Four norm = 1.0f + 0.5f * c;
     const Four per_c = 1.0f / c;
     const Four least = 0.5f * (longest + c * per_longest);
@@ -177,18 +69,18 @@ void sphere_coefficients(const Obstacles& obstacles, float margin, float longest
       const Four inside = longest * per_c;
       onset = inside > onset ? inside : onset;
     }
-    const Four slope = scale * (((norm + 1.0f) * per_c - onset) / (norm - least));
+    const Four slope = lowered_longest * (((norm + 1.0f) * per_c - onset) / (norm - least));
     const auto put = [j](Four values, float* to) { *reinterpret_cast<Four*>(to + j) = values; };
-    put(x * slope, out.x);
-    put(y * slope, out.y);
-    put(z * slope, out.z);
+    put(x * scale.inverse * slope, out.x);
+    put(y * scale.inverse * slope, out.y);
+    put(z * scale.inverse * slope, out.z);
     put(norm * slope, out.norm);
-    put(scale * onset - slope * least, out.level);
-    put(scale * onset * 1.00001f, out.onset);  // safe from rounding
+    put(lowered_longest * onset - slope * least, out.level);
+    put(lowered_longest * onset * 1.00001f, out.onset);  // safe from rounding
   }
 }
 
-// A plane is met at the gap over the component of its normal.
+// A step meets a plane at the gap over q, the component of the plane's normal.
 void add_planes(const Planes& planes, std::uint32_t n, float longest, Coefficients& out) {
   for (std::uint32_t w = 0; w < planes.n; ++w, ++n) {
     const float per_gap = lowered * longest / planes.gap[w];
@@ -230,15 +122,20 @@ inline Floats reciprocal(Floats x) {
   return y * (2.0f - x * y);
 }
 
-// Bounds are the greatest of all lines, at least 1. All values are positive, so that they compare
-// as the integers that store them: these have more units to run on.
+using Inverses = Integers[n_rings];  // of one sector per lane
+
+// The inverse of a sphere's bounds without an obstacle: the longest step is possible.
+[[gnu::always_inline]] inline void open_to_longest(Inverses& inverse) {
+  for (Integers& bound : inverse) bound = (Integers)(Floats{} + 1.0f);
+}
+
+// Inverse bounds are the greatest of all lines. All values are positive, so that they compare as
+// the integers that store them: these have more units to run on.
 template <bool with_onset, int n_sectors>
 [[gnu::always_inline]] inline void greatest(const DirectionBins<n_sectors>& bins,
                                             const Coefficients& coefficients,
                                             const Lines<n_sectors>& lines, std::uint32_t begin,
-                                            std::uint32_t end, int p,
-                                            Integers (&inverse)[n_rings]) {
-  for (Integers& bound : inverse) bound = (Integers)(Floats{} + 1.0f);
+                                            std::uint32_t end, int p, Inverses& inverse) {
   for (std::uint32_t j = begin; j < end; ++j) {
     const Floats sideways = load(&lines.sideways[j][p]);
     for (int k = 0; k < n_rings; ++k) {
@@ -259,8 +156,8 @@ inline Floats sum_of_lengths(const Integers* inverse, const int* parts) {
 }
 
 // Stores the bounds of `lanes` sectors from p and returns the sectors' weights.
-inline Integers weigh(const DirectionBins<polar_sectors>& bins, const Integers (&inverse)[n_rings],
-                      int p, BoundRow<polar_sectors>& row) {
+inline Integers weigh(const DirectionBins<polar_sectors>& bins, const Inverses& inverse, int p,
+                      BoundRow<polar_sectors>& row) {
   static_assert(n_rings == 8);
   for (int k = 0; k < n_rings; k += 2) {
     using Bits = std::uint32_t __attribute__((vector_size(4 * lanes)));
@@ -280,8 +177,8 @@ inline Integers cubed(Integers inverse, const std::int32_t* caps) {
   return above < cap ? above : cap;
 }
 
-inline Integers weigh(const DirectionBins<cubic_sectors>& bins, const Integers (&inverse)[n_rings],
-                      int p, BoundRow<cubic_sectors>& row) {
+inline Integers weigh(const DirectionBins<cubic_sectors>& bins, const Inverses& inverse, int p,
+                      BoundRow<cubic_sectors>& row) {
   Integers sum = {};
   for (int k = 0; k < n_rings; k += 2) {
     const Integers first = cubed(inverse[k], &bins.cap[k][p]);
@@ -290,6 +187,15 @@ inline Integers weigh(const DirectionBins<cubic_sectors>& bins, const Integers (
     sum += first * bins.parts[k] + second * bins.parts[k + 1];
   }
   return sum;
+}
+
+// Sums up the weights of sectors.
+template <int n_sectors>
+[[gnu::always_inline]] inline void sum_weights(const std::int32_t (&sector_weight)[n_sectors],
+                                               Bounded& sphere, BoundRow<n_sectors>& row) {
+  std::int32_t sum = 0;
+  for (int p = 0; p < n_sectors; ++p) row.up_to[p] = sum += sector_weight[p];
+  sphere.weight = static_cast<std::uint32_t>(sum);
 }
 
 template <bool with_onset, int n_sectors>
@@ -303,10 +209,12 @@ template <bool with_onset, int n_sectors>
   std::uint32_t ends[group];
   const auto longest = static_cast<float>(bins.longest);
   for (std::size_t s = 0; s < n; ++s) {
-    look_around(sight, around, spheres[s].sphere, obstacles);
+    const std::uint32_t i = spheres[s].sphere;
+    const std::uint32_t* const list = list_of<EqualSpheres>(around, i);
+    look_around<EqualSpheres>(sight, around, i, list, 1, list[0], obstacles);
     ends[s] = obstacles.n += spheres[s].planes.n;
   }
-  sphere_coefficients<with_onset>(obstacles, sight.margin, longest, coefficients);
+  sphere_coefficients<EqualSpheres, with_onset>(obstacles, sight.margin, longest, coefficients);
   for (std::size_t s = 0; s < n; ++s) {
     add_planes(spheres[s].planes, ends[s] - spheres[s].planes.n, longest, coefficients);
   }
@@ -316,13 +224,12 @@ template <bool with_onset, int n_sectors>
     const std::uint32_t begin = s == 0 ? 0 : ends[s - 1];
     alignas(64) std::int32_t sector_weight[n_sectors];
     for (int p = 0; p < n_sectors; p += lanes) {
-      Integers inverse[n_rings];
+      Inverses inverse;
+      open_to_longest(inverse);
       greatest<with_onset>(bins, coefficients, lines, begin, ends[s], p, inverse);
       *reinterpret_cast<Integers*>(&sector_weight[p]) = weigh(bins, inverse, p, row);
     }
-    std::int32_t sum = 0;
-    for (int p = 0; p < n_sectors; ++p) row.up_to[p] = sum += sector_weight[p];
-    spheres[s].weight = static_cast<std::uint32_t>(sum);
+    sum_weights(sector_weight, spheres[s], row);
   }
 }
 
@@ -336,12 +243,94 @@ void make_bounds(const DirectionBins<n_sectors>& bins, const Sight& sight,
   make_group<with_onset>(bins, sight, around, spheres, n, rows);
 }
 
+// Part of the list of a sphere, short enough for the room that obstacles have in a group: a large
+// sphere among small ones has hundreds of neighbours.
+struct ListPart {
+  Bounded* sphere;
+  std::uint32_t first, last;  // places in the list
+  bool begins, ends;          // true for the first and the last part of a list
+};
+
+// The lists of spheres, part by part.
+class ListParts {
+ public:
+  ListParts(const Surroundings& around, Bounded* spheres, std::size_t n)
+      : around_(around), sphere_(spheres), end_(spheres + n) {}
+
+  bool done() const { return sphere_ == end_; }
+  ListPart next() {
+    const std::uint32_t length = *list_of<SeveralSizes>(around_, sphere_->sphere);
+    const bool ends = length - passed_ <= most_in_the_way;
+    const std::uint32_t last = ends ? length : passed_ + most_in_the_way;
+    const ListPart part{sphere_, passed_ + 1, last, passed_ == 0, ends};
+    passed_ = ends ? 0 : last;
+    sphere_ += ends;
+    return part;
+  }
+
+ private:
+  const Surroundings& around_;
+  Bounded* sphere_;
+  Bounded* end_;
+  std::uint32_t passed_ = 0;  // places of the list of sphere_ that earlier parts have
+};
+
+// Like make_bounds() for spheres of several sizes, in groups of parts of lists. The greatest of all
+// lines does not depend on how a list is cut.
+template <bool with_onset, int n_sectors>
+void make_bounds_of_sizes(const DirectionBins<n_sectors>& bins, const Sight& sight,
+                          const Surroundings& around, Bounded* spheres, std::size_t n,
+                          BoundRow<n_sectors>* rows) {
+  const auto longest = static_cast<float>(bins.longest);
+  Inverses inverse[n_sectors / lanes];  // of a sphere whose list goes on in the next group, too
+  for (ListParts lists(around, spheres, n); !lists.done();) {
+    Obstacles obstacles;
+    Coefficients coefficients;
+    Lines<n_sectors> lines;
+    ListPart parts[group];
+    std::uint32_t ends[group];
+    std::size_t n_parts = 0;
+    for (; n_parts < group && !lists.done(); ++n_parts) {
+      const ListPart part = parts[n_parts] = lists.next();
+      const std::uint32_t i = part.sphere->sphere;
+      look_around<SeveralSizes>(sight, around, i, list_of<SeveralSizes>(around, i), part.first,
+                                part.last, obstacles);
+      ends[n_parts] = obstacles.n += part.ends ? part.sphere->planes.n : 0;
+    }
+    sphere_coefficients<SeveralSizes, with_onset>(obstacles, sight.margin, longest, coefficients);
+    for (std::size_t k = 0; k < n_parts; ++k) {
+      if (!parts[k].ends) continue;
+      const Planes& planes = parts[k].sphere->planes;
+      add_planes(planes, ends[k] - planes.n, longest, coefficients);
+    }
+    draw_lines(bins, coefficients, obstacles.n, lines);
+    for (std::size_t k = 0; k < n_parts; ++k) {
+      Bounded& sphere = *parts[k].sphere;
+      BoundRow<n_sectors>& row = rows[sphere.sphere];
+      const std::uint32_t begin = k == 0 ? 0 : ends[k - 1];
+      alignas(64) std::int32_t sector_weight[n_sectors];
+      for (int p = 0; p < n_sectors; p += lanes) {
+        Inverses& own = inverse[p / lanes];
+        if (parts[k].begins) open_to_longest(own);
+        greatest<with_onset>(bins, coefficients, lines, begin, ends[k], p, own);
+        if (!parts[k].ends) continue;
+        *reinterpret_cast<Integers*>(&sector_weight[p]) = weigh(bins, own, p, row);
+      }
+      if (parts[k].ends) sum_weights(sector_weight, sphere, row);
+    }
+  }
+}
+
 }  // namespace
 
 RejectionFreeKernels rejection_free_kernels() {
   // A polar step is so short that the lower line, without onset, serves as well.
-  return {make_bounds<false, polar_sectors>, make_bounds<true, cubic_sectors>, seen_by, try_step,
-          draw_candidates};
+  return {.equal = {make_bounds<false, polar_sectors>, make_bounds<true, cubic_sectors>,
+                    seen_by<EqualSpheres>, try_step<EqualSpheres>},
+          .several = {make_bounds_of_sizes<false, polar_sectors>,
+                      make_bounds_of_sizes<true, cubic_sectors>, seen_by<SeveralSizes>,
+                      try_step<SeveralSizes>},
+          .draw_candidates = draw_candidates};
 }
 
 }  // namespace jostle::inline engine::JOSTLE_KERNELS

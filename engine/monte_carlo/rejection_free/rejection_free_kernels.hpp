@@ -38,23 +38,30 @@ inline constexpr int whole_weight = 65535;
 /// A centre on a fine grid, modulo 2^32: differences of places near each other are right across
 /// periodic sides too.
 struct alignas(16) GridPlace {
-  std::int32_t at[4];  // x, y, z, 0
+  std::int32_t x, y, z;
+  float radius;  // diameters; of several sizes only, else 0
 };
 
-/// How a sphere sees the others: what differences of places mean, and which of them count.
+/// Rules by which a sphere sees the others: the unit of differences of places, and the obstacles
+/// that bounds take into account. r is the vector from a centre to an obstacle's, s the sum of both
+/// radii, c = |r|^2 / s^2 - 1. Equal spheres have s = 1.
 struct alignas(16) Sight {
-  float unit[4];   // diameters a step of the grid; negative in z, which counts downward
-  float margin;    // margin of |r|^2 near 1, for the grid and for rounding in single precision
+  float unit[4];   // diameters per step of the grid: x, y, -z (z counts downward), 0
+  float margin;    // margin of c for the grid and for rounding in single precision, at s >= 1
   float doubt;     // the limit after a step; infinite where the grid is too small for steps
-  float highest;   // whatever is higher than that is left out
-  float farthest;  // and what has a greater |r|^2 - 1
+  float highest;   // an obstacle higher than highest s is left out
+  float farthest;  // equal spheres: an obstacle of a greater c is left out
+  // Several sizes: farthest is the least of farthest_per_s / s + farthest_per_s_squared / s^2,
+  // their sum at s = 1, and most_c; none at an s that the longest step may pass by.
+  float farthest_per_s, farthest_per_s_squared, most_c, least_s;
 };
 
-/// Spheres and their lists (engine/monte_carlo/kernel/neighbour_lists.hpp).
+/// Spheres and their lists (engine/monte_carlo/kernel/list_rows.hpp).
 struct Surroundings {
   const GridPlace* places;
   const std::uint32_t* lists;
-  std::size_t stride;
+  std::size_t stride;          // equal spheres: from the list of one sphere to that of the next
+  const std::size_t* offsets;  // several sizes: [n], the places of the lists
 };
 
 /// Floor and sides near a sphere.
@@ -65,7 +72,8 @@ struct Planes {
   float gap[most];                  // > 0
 };
 
-/// More spheres than can obstruct one.
+/// More spheres than can obstruct one of their size. Around a larger sphere there are more: its
+/// list is looked at in parts of this length.
 inline constexpr std::uint32_t most_in_the_way = 64;
 
 /// The bounds of all bins of a sphere: lengths beyond which a step is certainly rejected, over the
@@ -108,16 +116,22 @@ using BoundsKernel = void (*)(const DirectionBins<n_sectors>& bins, const Sight&
 /// Resolution of a step in single precision.
 enum class StepOutcome { free, blocked, unsure };
 
-struct RejectionFreeKernels {
+/// The kernels that look at obstacles, for equal spheres or several sizes.
+struct BoundKernels {
   BoundsKernel<polar_sectors> polar_bounds;
   BoundsKernel<cubic_sectors> cubic_bounds;
   /// Notes those in the list of sphere i whose bounds sphere i takes part in, at its place or at
   /// `former`. Returns how many; `seeing` has room for 3 more than are listed.
   std::uint32_t (*seen_by)(const Sight& sight, const Surroundings& around, std::uint32_t i,
                            const GridPlace& former, std::uint32_t* seeing);
-  /// True if the spheres in its list leave sphere i where a step leads it; of the step z is up.
+  /// Resolves whether the spheres in its list leave sphere i where a step leads it; of the step z
+  /// is up.
   StepOutcome (*try_step)(const Sight& sight, const Surroundings& around, std::uint32_t i,
                           double dx, double dy, double dz);
+};
+
+struct RejectionFreeKernels {
+  BoundKernels equal, several;
   /// Candidates first .. first + CandidateBatch::size - 1 of a stream, where azimuths are cut into
   /// n_sectors; first is a multiple of size.
   void (*draw_candidates)(std::uint64_t key, std::uint64_t first, int n_sectors,

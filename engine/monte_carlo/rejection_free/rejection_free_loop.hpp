@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace jostle::inline engine {
 /// the exact test rejects thins the process to the required law (Lewis & Shedler 1979,
 /// doi:10.1002/nav.3800260304). Used while few trials are accepted; otherwise, as after a tap, the
 /// loop is exhaustive.
-template <class Box, class Directions>
+template <class Box, class Directions, class Spheres = EqualSpheres>
 class RejectionFreeLoop final : public TrialLoop {
   using Policy = typename Directions::Policy;
 
@@ -29,6 +30,7 @@ class RejectionFreeLoop final : public TrialLoop {
 
   void load(const Packing& packing) override {
     be_exhaustive();
+    sizes_ = packing.sizes;
     exhaustive_.load(packing);
   }
 
@@ -66,15 +68,19 @@ class RejectionFreeLoop final : public TrialLoop {
 
   double mean_height() const override {
     if (!sampler_.active) return exhaustive_.mean_height();
+    if constexpr (Spheres::several) return jostle::mean_height(stored());
     double sum = 0;
     for (const PackedCentre& centre : candidates_.centres()) sum += centre.z;
     return sum / static_cast<double>(candidates_.centres().size());
   }
 
+  std::vector<double> kind_heights() const override {
+    if constexpr (Spheres::several) return jostle::kind_heights(stored());
+    return {};
+  }
+
   double solids_fraction(HeightWindow window) const override {
-    Packing packing{box_, {}};
-    store(packing);
-    return jostle::solids_fraction(packing, window);
+    return jostle::solids_fraction(stored(), window);
   }
 
   std::uint32_t n_spheres() const override { return exhaustive_.n_spheres(); }
@@ -125,11 +131,9 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   // Hands the centres back to the exhaustive loop, if they are not there.
-  void look_at_all_again() {
+  [[gnu::noinline]] void look_at_all_again() {
     if (!sampler_.active) return;
-    Packing packing{box_, {}};
-    store(packing);
-    load(packing);
+    load(stored());
   }
 
   void be_exhaustive() {
@@ -138,15 +142,25 @@ class RejectionFreeLoop final : public TrialLoop {
     sampler_.window_trials = sampler_.window_accepted = 0;
   }
 
+  Packing stored() const {
+    Packing packing{box_, {}, sizes_};
+    store(packing);
+    return packing;
+  }
+
   std::vector<PackedCentre> exhaustive_centres() const {
-    Packing packing{box_, {}};
+    Packing packing{box_, {}, sizes_};
     exhaustive_.store(packing);
-    std::vector<PackedCentre> centres(packing.centres.size());
-    std::ranges::transform(packing.centres, centres.begin(), packed);
+    std::vector<PackedCentre> centres;
+    centres.reserve(packing.centres.size());
+    for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+      centres.push_back(Spheres::several ? packed_sphere(packing.centres[i], packing.radius(i))
+                                         : packed(packing.centres[i]));
+    }
     return centres;
   }
 
-  void begin_rejection_free() {
+  [[gnu::noinline]] void begin_rejection_free() {
     move_ = exhaustive_.state();
     sampler_.reference_step = move_.step;
     candidates_.build(exhaustive_centres(), sampler_.reference_step, move_.step);
@@ -171,7 +185,7 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   // Trials are memoryless: the next candidate may be drawn anew at any moment.
-  void adapt_to_new_step() {
+  [[gnu::noinline]] void adapt_to_new_step() {
     if (move_.step > sampler_.reference_step || move_.step < 0.8 * sampler_.reference_step) {
       sampler_.reference_step = move_.step;
       candidates_.build(candidates_.centres(), sampler_.reference_step, move_.step);
@@ -182,8 +196,9 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   Box box_;
-  TypedTrialLoop<Box, Policy> exhaustive_;
-  CandidateSampler<Box, Directions> candidates_;
+  std::shared_ptr<const Sizes> sizes_;
+  TypedTrialLoop<Box, Policy, Spheres> exhaustive_;
+  CandidateSampler<Box, Directions, Spheres> candidates_;
   MoveState move_;  // while rejection-free, when the centres are those of the candidates
   SamplerState sampler_;
   TrialTally tally_;

@@ -1,105 +1,19 @@
-#include <algorithm>
-#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "engine/monte_carlo/rejection_free/bound_tables.hpp"
-#include "engine/monte_carlo/rejection_free/directions.hpp"
-#include "engine/monte_carlo/trial_loop.hpp"
+#include "tests/engine/monte_carlo/rejection_free/bound_cases.hpp"
 #include "tests/engine/sample_packings.hpp"
 
 using namespace jostle;
 
 namespace {
 
-const StreamKey key = stream_key(47, 0, 0, Purpose::trials);
-
 // A bed let down from random places, and still creeping.
 template <class Box>
 std::vector<PackedCentre> bed(const Box& box, std::uint32_t n) {
-  Packing packing = random_packing(box, n, 20, 9);
-  const auto loop = make_trial_loop(packing.container, PolarMove{}, key);
-  loop->load(packing);
-  loop->run(std::uint64_t{3000} * n);
-  loop->store(packing);
-  std::vector<PackedCentre> centres(n);
-  std::ranges::transform(packing.centres, centres.begin(), packed);
-  return centres;
-}
-
-// The two moves, and the length that a bound is, over the longest, by the C library.
-template <class Directions>
-struct Kind;
-template <>
-struct Kind<PolarDirections> {
-  PolarMove move;
-  PolarDirections directions{Polar(move)};
-  auto bins() const { return directions.bins(move.max_step); }
-  static double ratio(std::uint16_t bound) {
-    return 1.0 / std::bit_cast<float>(std::uint32_t{bound} << 16);
-  }
-};
-template <>
-struct Kind<CubicDirections> {
-  MetropolisMove move;
-  CubicDirections directions{ZeroTemperature(move)};
-  auto bins() const { return directions.bins(move.max_step); }
-  static double ratio(std::uint16_t bound) { return std::cbrt(bound / double{whole_weight}); }
-};
-
-template <class Box, class Directions>
-BoundTables<Box, Directions> tables_for(const Box& box) {
-  return {box, baseline::rejection_free_kernels()};
-}
-
-// Tests a step against all spheres.
-template <class Box>
-bool possible(const Box& box, const std::vector<PackedCentre>& centres, std::uint32_t i,
-              Vec3 step) {
-  const Vec3 target = wrapped(box, unpacked(centres[i]) + step);
-  if (!clear_of_boundaries(box, target)) return false;
-  for (std::uint32_t j = 0; j < centres.size(); ++j) {
-    if (j != i && overlaps(box, target, unpacked(centres[j]))) return false;
-  }
-  return true;
-}
-
-struct Tried {
-  int beyond = 0, wrong = 0, possible_within = 0, within = 0;
-};
-
-// Random steps of every bin, to either side of its bound.
-template <class Box, class Directions>
-Tried try_steps(const Box& box, const Kind<Directions>& kind,
-                const BoundTables<Box, Directions>& tables) {
-  constexpr int n_sectors = Directions::n_sectors;
-  RandomStream random(stream_key(48, 0, 0, Purpose::start));
-  const double longest = tables.bins().longest;
-  Tried tried;
-  for (std::uint32_t i = 0; i < tables.centres().size(); ++i) {
-    for (int bin = 0; bin < n_rings * n_sectors; ++bin) {
-      const int ring = bin / n_sectors, sector = bin % n_sectors;
-      const double bound = longest * kind.ratio(tables.row(i).bound(ring, sector));
-      const SineCosine theta = kind.directions.angle(ring, random.uniform());
-      const double azimuth = 2 * std::numbers::pi * (sector + random.uniform()) / n_sectors;
-      const bool beyond = random.uniform() < 0.5;
-      double length =
-          beyond ? bound + (longest - bound) * random.uniform() : bound * random.uniform();
-      if (beyond && random.uniform() < 0.3) length = bound * (1 + 1e-9);
-      if (length > longest || (beyond && !(length > bound))) continue;
-      // Azimuths of sectors begin at -pi.
-      const Vec3 step{-length * theta.sine * std::cos(azimuth),
-                      -length * theta.sine * std::sin(azimuth), -length * theta.cosine};
-      const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
-      if (side > kind.move.max_step) continue;
-      const bool free = possible(box, tables.centres(), i, step);
-      (beyond ? tried.beyond : tried.within) += 1;
-      (beyond ? tried.wrong : tried.possible_within) += free;
-    }
-  }
-  return tried;
+  return let_down<EqualSpheres>(random_packing(box, n, 20, 9), 3000);
 }
 
 template <class Box, class Directions>
@@ -107,7 +21,9 @@ void check_bounds_of(const Box& box, const std::vector<PackedCentre>& centres,
                      const Kind<Directions>& kind) {
   auto tables = tables_for<Box, Directions>(box);
   tables.build(kind.bins(), centres);
-  const Tried tried = try_steps(box, kind, tables);
+  RandomStream random(stream_key(48, 0, 0, Purpose::start));
+  const auto n = static_cast<std::uint32_t>(centres.size());
+  const Tried tried = try_steps(box, kind, tables, n, random);
   CHECK(tried.wrong == 0);
   // A step longer than a sphere is wide may pass it by, and nothing bounds it.
   if (tables.bins().longest < 2) CHECK(tried.beyond > static_cast<int>(10 * centres.size()));
@@ -142,7 +58,8 @@ void check_function_of_centres(const Kind<Directions>& kind) {
     const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
                     0.2 * random.uniform() - 0.1};
     const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
-    if (norm_squared(step) > 0.01 || !possible(box, moved.centres(), i, step)) continue;
+    if (norm_squared(step) > 0.01 || !possible<EqualSpheres>(box, moved.centres(), i, step))
+      continue;
     moved.move(i, packed(target));
     ++moves;
   }
