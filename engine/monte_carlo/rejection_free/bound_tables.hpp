@@ -161,9 +161,19 @@ class BoundTables {
     sight.farthest_per_s_squared =
         static_cast<float>((1 + beyond) * (1 + beyond) - 1) - sight.farthest_per_s;
     constexpr double longest_seen = 8;
-    sight.doubt = longest < longest_seen ? static_cast<float>(2 * (1 + longest)) * sight.margin
-                                         : std::numeric_limits<float>::infinity();
+    sight.doubt = longest < longest_seen && single_images()
+                      ? static_cast<float>(2 * (1 + longest)) * sight.margin
+                      : std::numeric_limits<float>::infinity();
     return sight;
+  }
+
+  // True if a step meets a sphere only in the image that is nearest before the step: kernels look
+  // at no other.
+  bool single_images() const {
+    const double narrow = 2 * (greatest_touching_ + bins_.longest) + rounding;
+    const Vec3 extent = box_.extent();
+    return !(Box::shape().periodic_x && extent.x < narrow) &&
+           !(Box::shape().periodic_y && extent.y < narrow);
   }
 
   void build_lists() {

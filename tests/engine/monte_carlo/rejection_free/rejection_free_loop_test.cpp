@@ -54,6 +54,26 @@ TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
   }
 }
 
+TEST_CASE("rejection-free sampling makes no overlap with the far image of a sphere") {
+  // Through a side as near as this a step meets an image that was not the nearest before it.
+  for (const double width : {2.0000001, 2.05, 2.2}) {
+    for (const Container& container :
+         {Container{PeriodicBox{width, 4}}, Container{Plates{width, 2}}}) {
+      for (const Move& move : {Move{PolarMove{0.4}}, Move{MetropolisMove{0.4}}}) {
+        CAPTURE(container.index(), width, move.index());
+        Packing packing = random_packing(container, 40, 20, 5);
+        const auto loop = rejection_free_loop(packing, move);
+        for (int piece = 0; piece < 10; ++piece) {
+          loop->run(40'000);
+          loop->store(packing);
+          REQUIRE(deepest_overlap_brute_force(packing).depth == 0);
+        }
+        CHECK(loop->tally().candidates > 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("rejection-free sampling does not depend on how trials are split over calls") {
   for (const Move& move : moves()) {
     const Packing start = random_packing(PeriodicBox{4, 4}, 60, 12, 6);
