@@ -181,7 +181,7 @@ class BoundTables {
                  {0, 0, -0.43 * bins_.longest});
   }
 
-  // As a function of a centre.
+  // Returns the function that takes a centre to its place.
   static auto place_in(const PlaceGrid& grid) {
     return [&grid](const PackedCentre& centre) { return grid.place<Spheres>(centre); };
   }

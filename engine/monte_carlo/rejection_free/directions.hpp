@@ -66,8 +66,8 @@ class CubicDirections {
   using Bins = DirectionBins<n_sectors>;
 
   /// See PolarDirections. A trial at zero temperature is cheap to test; many of its steps
-  /// are nearly horizontal. Of an obstacle at the very end of the longest step the chord of the
-  /// kernels has no width: it is left out.
+  /// are nearly horizontal. The chord of the kernels has no width for an obstacle at the very end
+  /// of the longest step, which is left out.
   static constexpr double least_acceptance = 0.004;
   static constexpr double highest_obstacle = 0.75, obstacle_reach = 1 - 1e-5;
 

@@ -122,7 +122,7 @@ inline Floats reciprocal(Floats x) {
   return y * (2.0f - x * y);
 }
 
-using Inverses = Integers[n_rings];  // of one sector per lane
+using Inverses = Integers[n_rings];  // one sector per lane
 
 // The inverse of a sphere's bounds without an obstacle: the longest step is possible.
 [[gnu::always_inline]] inline void open_to_longest(Inverses& inverse) {
@@ -282,7 +282,7 @@ void make_bounds_of_sizes(const DirectionBins<n_sectors>& bins, const Sight& sig
                           const Surroundings& around, Bounded* spheres, std::size_t n,
                           BoundRow<n_sectors>* rows) {
   const auto longest = static_cast<float>(bins.longest);
-  Inverses inverse[n_sectors / lanes];  // of a sphere whose list goes on in the next group, too
+  Inverses inverse[n_sectors / lanes];  // kept for the rest of a list in the next group
   for (ListParts lists(around, spheres, n); !lists.done();) {
     Obstacles obstacles;
     Coefficients coefficients;
