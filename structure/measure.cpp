@@ -45,7 +45,8 @@ void require_region(const MeasuredPacking& in) {
 template <class Settings>
 constexpr bool takes_sizes =
     std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, CoordinationSettings> ||
-    std::is_same_v<Settings, GapsSettings>;
+    std::is_same_v<Settings, GapsSettings> || std::is_same_v<Settings, PairsSettings> ||
+    std::is_same_v<Settings, VoronoiSettings>;
 
 template <class Settings>
 void add_part(const char* name, MeasuredPacking& in, const std::optional<Settings>& settings,
@@ -162,12 +163,14 @@ void KindPairs::write(std::string_view of_region, std::string_view of_all,
   }
   out.places.push_back({"pair", std::move(pairs), "1", "kind of the sphere, kind of its partners"});
   out.places.push_back({"kind", std::move(kinds), "1", "kind of spheres"});
-  out.quantities.push_back({.name = of_region,
+  out.quantities.push_back({.name = std::string(of_region),
                             .places = "pair",
                             .values = std::move(region),
                             .long_name = region_meaning});
-  out.quantities.push_back(
-      {.name = of_all, .places = "pair", .values = std::move(all), .long_name = all_meaning});
+  out.quantities.push_back({.name = std::string(of_all),
+                            .places = "pair",
+                            .values = std::move(all),
+                            .long_name = all_meaning});
   out.quantities.push_back({.name = "spheres_of_kind",
                             .places = "kind",
                             .values = spheres_,

@@ -10,6 +10,7 @@
 #include "structure/order/crystal_order.hpp"
 #include "structure/order/ordered_front.hpp"
 #include "structure/order/pair_correlation.hpp"
+#include "structure/order/partial_correlation.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle::inline structure {
@@ -73,6 +74,48 @@ void add_kinds(const MeasuredPacking& in, double cut, Measurement& out) {
               out);
 }
 
+/// A word of a quantity's name: letters, digits and underscores.
+std::string word_of(const std::string& kind) {
+  std::string word = kind;
+  const auto is_kept = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  for (char& c : word) {
+    if (!is_kept(c)) c = '_';
+  }
+  return word;
+}
+
+Measurement measured_partial_pairs(const MeasuredPacking& in, const PairsSettings& settings) {
+  const double x_max = settings.r_max.value_or(widest_partial_pairs(in.packing));
+  const std::vector<PartialCorrelation> all =
+      partial_correlations(in.packing, {.r_max = x_max, .bin_width = settings.bin_width});
+  Measurement out;
+  out.places = {{"r", all.front().x, "sum of radii",
+                 "distance of centres over the sum of the two radii, middle of a bin"}};
+  const std::vector<SphereKind>& kinds = in.packing.sizes->kinds();
+  for (const PartialCorrelation& pairs : all) {
+    const std::string name =
+        word_of(kinds[pairs.first].name) + "_" + word_of(kinds[pairs.second].name);
+    out.quantities.push_back(
+        {.name = "g_" + name,
+         .places = "r",
+         .values = pairs.g(),
+         .long_name = "pair correlation of two kinds; pairs of all packings over those of an "
+                      "uncorrelated packing with the same heights and sizes",
+         .pooling = Pooling::weighted,
+         .weights = pairs.expected,
+         .beyond = not_a_number});
+    out.quantities.push_back(
+        {.name = "pairs_" + name,
+         .places = "r",
+         .values = std::vector<double>(pairs.counts.begin(), pairs.counts.end()),
+         .long_name = "pairs of two kinds found from the central spheres, of all packings",
+         .pooling = Pooling::sum});
+  }
+  return out;
+}
+
 }  // namespace
 
 Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings) {
@@ -116,6 +159,7 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
 }
 
 Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
+  if (in.packing.sizes) return measured_partial_pairs(in, settings);
   const double r_max = settings.r_max.value_or(widest_pairs(in.packing.container));
   const PairCorrelation pairs =
       pair_correlation(in.packing, {.r_max = r_max, .bin_width = settings.bin_width});
@@ -208,14 +252,16 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                  "height above the floor, middle of a bin"}};
   for (std::size_t c = 0; c < n_order_columns; ++c) {
     const auto& [name, at_height, long_name, source] = order_columns[c];
-    out.quantities.push_back({.name = at_height,
+    out.quantities.push_back({.name = std::string(at_height),
                               .places = "height",
                               .values = by_height[c].values(),
                               .long_name = long_name,
                               .source = source,
                               .beyond = not_a_number});
-    out.quantities.push_back(
-        {.name = name, .values = of_region[c].values(), .long_name = long_name, .source = source});
+    out.quantities.push_back({.name = std::string(name),
+                              .values = of_region[c].values(),
+                              .long_name = long_name,
+                              .source = source});
   }
   if (Boundary(in.packing.container).has_floor()) {
     out.quantities.push_back(

@@ -43,6 +43,7 @@ double volume_of(const Container& container, double height) {
 struct InnerCells {
   std::vector<std::uint64_t> face_counts;
   std::vector<double> faces, volumes, free_volumes, fractions;
+  std::vector<std::size_t> spheres;  // whose cells these are
 };
 
 InnerCells inner_cells(MeasuredPacking& in, const VoronoiSettings& settings) {
@@ -58,8 +59,43 @@ InnerCells inner_cells(MeasuredPacking& in, const VoronoiSettings& settings) {
     inner.volumes.push_back(cells.volumes[i]);
     inner.free_volumes.push_back(free[i]);
     inner.fractions.push_back(fractions[i]);
+    inner.spheres.push_back(i);
   }
   return inner;
+}
+
+/// Means over the cells of every kind of a mixture.
+void add_kinds(const MeasuredPacking& in, const InnerCells& inner, Measurement& out) {
+  const Sizes& sizes = *in.packing.sizes;
+  const std::size_t n = sizes.kinds().size();
+  std::vector<std::string> names;
+  for (const SphereKind& kind : sizes.kinds()) names.push_back(kind.name);
+  std::vector<double> cells(n, 0.0), volumes(cells), fractions(cells), faces(cells);
+  for (std::size_t k = 0; k < inner.spheres.size(); ++k) {
+    const std::uint32_t kind = sizes.kind(inner.spheres[k]);
+    cells[kind] += 1;
+    volumes[kind] += inner.volumes[k];
+    fractions[kind] += inner.fractions[k];
+    faces[kind] += inner.faces[k];
+  }
+  for (std::size_t kind = 0; kind < n; ++kind) {  // NaN where the kind has none
+    volumes[kind] /= cells[kind];
+    fractions[kind] /= cells[kind];
+    faces[kind] /= cells[kind];
+  }
+  out.places.push_back({"kind", std::move(names), "1", "kind of spheres"});
+  const auto add = [&](const char* name, std::vector<double>& values, const char* units,
+                       const char* long_name) {
+    out.quantities.push_back({.name = name,
+                              .places = "kind",
+                              .values = std::move(values),
+                              .units = units,
+                              .long_name = long_name});
+  };
+  add("mean_volume_of_kind", volumes, "diameters^3", "volume of a cell of the kind");
+  add("mean_local_fraction_of_kind", fractions, "1", "local packing fraction of the kind");
+  add("mean_faces_of_kind", faces, "1", "faces per cell of the kind");
+  add("cells_of_kind", cells, "1", "whole cells of the kind in the region");
 }
 
 void add_single(const char* name, double value, const char* long_name, Measurement& into,
@@ -72,7 +108,8 @@ void add_single(const char* name, double value, const char* long_name, Measureme
 
 Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
   constexpr double fraction_bin = 0.01, largest_free_volume = 2;
-  constexpr std::size_t n_fractions = 76;  // a dodecahedron's is 0.755
+  // A dodecahedron about an equal sphere has 0.755; small spheres fill more about large ones.
+  const std::size_t n_fractions = in.packing.sizes ? 100 : 76;
   const InnerCells inner = inner_cells(in, settings);
   if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
   const std::vector<double> faces = shares(inner.face_counts);
@@ -109,14 +146,15 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
              "sphere volumes");
   add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction", out);
   const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal
-  add_single("k", varies ? above_least * above_least / (sigma * sigma) : not_a_number,
-             "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
-             "least cell being a regular dodecahedron",
-             out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
+  if (!in.packing.sizes)
+    add_single("k", varies ? above_least * above_least / (sigma * sigma) : not_a_number,
+               "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
+               "least cell being a regular dodecahedron",
+               out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
   add_single("n_cells", static_cast<double>(inner.volumes.size()), "whole cells of the region",
              out);
   const VoronoiCells& cells = in.voronoi();
-  const double lid = top_height(in.packing) + sphere_radius;
+  const double lid = surface_height(in.packing);
   double all = 0;
   for (const double volume : cells.volumes) all += volume;
   add_single("volume_excess", all / volume_of(in.packing.container, lid) - 1,
@@ -129,6 +167,10 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
       "wall of a cylinder, or where voro++ could not make them out; volumes of the region's cells "
       "are right all the same",
       out);
+  if (in.packing.sizes) {
+    out.notes.emplace_back("k", "k and the k-gamma law require equal spheres");
+    add_kinds(in, inner, out);
+  }
   if (cells.inconsistent > 0 && std::holds_alternative<Cylinder>(in.packing.container))
     out.notes.emplace_back("inconsistent_cells",
                            "as expected in a tube, whose wall cuts cells at planes; those of the "

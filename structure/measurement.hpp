@@ -7,7 +7,7 @@
 #include <vector>
 
 // Measurements inside one packing, in a form that can be averaged over packings.
-// Names, units and sources are views of text that lives as long as the program: literals.
+// Units, meanings and sources are views of text that lives as long as the program: literals.
 namespace jostle::inline structure {
 
 /// Axis of the values of a quantity: heights, distances, numbers of neighbours, names.
@@ -31,7 +31,7 @@ enum class Pooling {
 
 /// One value, or one at each of some places.
 struct MeasuredQuantity {
-  std::string_view name{};       // snake_case
+  std::string name{};            // snake_case; of a mixture also with the names of kinds
   std::string_view places{};     // name of its Places; empty for a single value
   std::vector<double> values{};  // [n_places] or [1]; NaN where there is none
   std::string_view units{"1"};

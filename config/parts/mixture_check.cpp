@@ -6,6 +6,7 @@
 #include "engine/bed/boundary.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "ensemble/statistics/finite_text.hpp"
+#include "structure/order/partial_correlation.hpp"
 
 namespace jostle::inline config {
 
@@ -14,8 +15,9 @@ namespace {
 /// Notes what of a scene does not take spheres of several sizes.
 class MixtureCheck {
  public:
-  MixtureCheck(const Scene& scene, const DiameterRange& range, std::vector<Fault>& faults)
-      : scene_(scene), range_(range), faults_(faults) {}
+  MixtureCheck(const Scene& scene, const DiameterRange& range, std::size_t n_kinds,
+               std::vector<Fault>& faults)
+      : scene_(scene), range_(range), n_kinds_(n_kinds), faults_(faults) {}
 
   void sizes_suit_container() {
     if (sound(faults_, "/container"))
@@ -45,6 +47,10 @@ class MixtureCheck {
     for (const std::string& part : parts_of_equal_spheres(scene_.structure))
       note("/structure/" + part,
            "measures of " + part + " require equal spheres of diameter 1: leave them out");
+    const auto& pairs = scene_.structure.pair_correlation;
+    if (pairs && sound(faults_, "/container"))
+      note_if("/structure/pair_correlation",
+              partial_pairs_fault(scene_.container, range_.greatest, n_kinds_, pairs->r_max));
   }
 
   void analyses_take_sizes() {
@@ -76,6 +82,7 @@ class MixtureCheck {
 
   const Scene& scene_;
   const DiameterRange range_;
+  const std::size_t n_kinds_;
   std::vector<Fault>& faults_;
 };
 
@@ -120,7 +127,7 @@ void check_kinds(const Scene& scene, std::vector<Fault>& faults) {
 
 void check_mixture(const Scene& scene, const DiameterRange& range,
                    const std::vector<std::string>& kinds, std::vector<Fault>& faults) {
-  MixtureCheck check(scene, range, faults);
+  MixtureCheck check(scene, range, kinds.size(), faults);
   check.sizes_suit_container();
   check.start_takes_sizes();
   check.engine_takes_sizes();

@@ -284,6 +284,15 @@ FittedLaw pore_tail(const PoresSettings& settings) {
           true};
 }
 
+/// The least free volume of a cell, from which the k-gamma law counts, is that of equal spheres.
+bool is_of_mixtures(const PartPackings& part) {
+  return std::ranges::any_of(part, [](const auto& realizations) {
+    return std::ranges::any_of(realizations, [](const Measurement* one) {
+      return one != nullptr && one->find("cells_of_kind") != nullptr;
+    });
+  });
+}
+
 }  // namespace
 
 void add_fits(std::string_view part_name, const PartPackings& part,
@@ -294,7 +303,7 @@ void add_fits(std::string_view part_name, const PartPackings& part,
     add_law(normal_law("neighbour_share", "n_spheres"), part, table);
   } else if (part_name == "voronoi") {
     add_law(normal_law("face_share", "n_cells"), part, table);
-    add_law(free_volumes(*settings.voronoi), part, table);
+    if (!is_of_mixtures(part)) add_law(free_volumes(*settings.voronoi), part, table);
   } else if (part_name == "pores") {
     add_law(pore_tail(*settings.pores), part, table);
   }

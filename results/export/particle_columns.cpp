@@ -60,7 +60,8 @@ std::vector<ParticleColumn> particle_columns(const Packing& packing) {
     return {{"radius", packing.sizes->radii()},
             {"kind", packing.sizes->kind_of()},
             {"mass", packing.sizes->masses()},
-            {"coordination", coordination_numbers(moved)}};
+            {"coordination", coordination_numbers(moved)},
+            {"voronoi_volume", voronoi_cells(moved).volumes}};
   const NeighbourTable nearest = nearest_neighbours(moved, 12);
   std::vector<double> q6;
   for (const BondOrder& order : bond_order(nearest)) q6.push_back(order.q6);

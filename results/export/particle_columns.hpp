@@ -39,12 +39,12 @@ std::vector<double> components_of(const std::vector<Vec3>& vectors);
 /// period brings inside.
 Packing wrapped_inside(const Packing& packing);
 
-/// A sphere of a mixture has `radius`, `kind` (its number), `mass` and `coordination` (centres
-/// within 1.05 times the sum of the two radii). An equal sphere has `radius` and `voronoi_volume`
-/// (diameters and their cubes; cells end at floor, walls, and half a diameter above the highest
-/// centre), `coordination` (centres within 1.05 diameters), `q6` of the 12 nearest neighbours, and
-/// `structure_type` (0 disordered, 1 fcc, 2 hcp, as OVITO numbers them). Throws
-/// std::invalid_argument for a centre outside the container.
+/// A sphere of a mixture has `radius`, `kind` (its number), `mass`, `coordination` (centres within
+/// 1.05 times the sum of the two radii) and `voronoi_volume` (of its radical cell). An equal sphere
+/// has `radius` and `voronoi_volume` (diameters and their cubes; cells end at floor, walls, and
+/// half a diameter above the highest centre), `coordination` (centres within 1.05 diameters), `q6`
+/// of the 12 nearest neighbours, and `structure_type` (0 disordered, 1 fcc, 2 hcp, as OVITO numbers
+/// them). Throws std::invalid_argument for a centre outside the container.
 std::vector<ParticleColumn> particle_columns(const Packing& packing);
 
 /// The value of sphere i: numbers in the fewest digits that read back to the same bits.

@@ -16,7 +16,7 @@ Boundary closed_boundary(const Packing& packing, std::optional<double> lid) {
   Boundary boundary(packing.container);
   if (boundary.periodic_z) return boundary;
   const double top = top_height(packing);
-  boundary.height = lid.value_or(top + sphere_radius);
+  boundary.height = lid.value_or(surface_height(packing));
   if (boundary.height <= top) throw std::invalid_argument("the lid must lie above every centre");
   return boundary;
 }
@@ -132,16 +132,26 @@ class CellReader {
   std::vector<double> positions_;
 };
 
+void put(voro::container& container, voro::particle_order& order, int i, Vec3 r,
+         double /*radius*/) {
+  container.put(order, i, r.x, r.y, r.z);
+}
+void put(voro::container_poly& container, voro::particle_order& order, int i, Vec3 r,
+         double radius) {
+  container.put(order, i, r.x, r.y, r.z, radius);
+}
+
 // In units of which a diameter is `scale`, a power of two.
+template <class VoroContainer>
 VoronoiCells cells_at_scale(const Packing& packing, const Boundary& box, double scale) {
   const std::size_t n = packing.centres.size();
   constexpr double per_block = 2;  // centres: faster in deposits than the 5 to 6 voro++ advises
   const double per_length =
       std::cbrt(static_cast<double>(n) / (per_block * box.width_x * box.width_y * box.height));
-  voro::container container(0, scale * box.width_x, 0, scale * box.width_y, 0, scale * box.height,
-                            n_blocks(box.width_x, per_length), n_blocks(box.width_y, per_length),
-                            n_blocks(box.height, per_length), box.periodic_x, box.periodic_y,
-                            box.periodic_z, 8);
+  VoroContainer container(0, scale * box.width_x, 0, scale * box.width_y, 0, scale * box.height,
+                          n_blocks(box.width_x, per_length), n_blocks(box.width_y, per_length),
+                          n_blocks(box.height, per_length), box.periodic_x, box.periodic_y,
+                          box.periodic_z, 8);
   std::optional<voro::wall_cylinder> tube;
   if (box.tube) {
     const double radius = 0.5 * scale * box.width_x;
@@ -149,10 +159,9 @@ VoronoiCells cells_at_scale(const Packing& packing, const Boundary& box, double 
     container.add_wall(*tube);
   }
   voro::particle_order order(static_cast<int>(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 r = scale * packing.centres[i];
-    container.put(order, static_cast<int>(i), r.x, r.y, r.z);
-  }
+  for (std::size_t i = 0; i < n; ++i)
+    put(container, order, static_cast<int>(i), scale * packing.centres[i],
+        scale * packing.radius(i));
   CellReader reader(n, 1 / scale);
   voro::voronoicell_neighbor cell;
   voro::c_loop_order loop(container, order);
@@ -196,10 +205,16 @@ VoronoiCells voronoi_cells(const Packing& packing, std::optional<double> lid) {
   // corners of nearly degenerate cells are about that far apart. In other units they are not.
   VoronoiCells best;
   for (const double scale : {1.0, 1.0 / 64, 64.0}) {
-    VoronoiCells cells = cells_at_scale(packing, closed_boundary(packing, lid), scale);
+    const Boundary box = closed_boundary(packing, lid);
+    VoronoiCells cells = packing.sizes ? cells_at_scale<voro::container_poly>(packing, box, scale)
+                                       : cells_at_scale<voro::container>(packing, box, scale);
     cells.inconsistent = count_inconsistent(cells);
     if (scale == 1 || cells.inconsistent < best.inconsistent) best = std::move(cells);
     if (best.inconsistent == 0) break;
+  }
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double diameter = 2 * packing.radius(i);
+    best.spheres.push_back(sphere_volume * (diameter * diameter * diameter));
   }
   return best;
 }
@@ -213,15 +228,15 @@ std::uint32_t n_faces(const VoronoiCells& cells, std::uint32_t i, double least_a
 
 std::vector<double> local_fractions(const VoronoiCells& cells) {
   std::vector<double> fractions(cells.size());
-  std::ranges::transform(cells.volumes, fractions.begin(),
-                         [](double volume) { return sphere_volume / volume; });
+  std::ranges::transform(cells.spheres, cells.volumes, fractions.begin(),
+                         [](double sphere, double volume) { return sphere / volume; });
   return fractions;
 }
 
 std::vector<double> free_volumes(const VoronoiCells& cells) {
   std::vector<double> volumes(cells.size());
-  std::ranges::transform(cells.volumes, volumes.begin(),
-                         [](double volume) { return volume / sphere_volume - 1; });
+  std::ranges::transform(cells.volumes, cells.spheres, volumes.begin(),
+                         [](double volume, double sphere) { return volume / sphere - 1; });
   return volumes;
 }
 

@@ -7,8 +7,9 @@
 
 #include "engine/bed/packing.hpp"
 
-// Voronoi cells of the centres, by voro++ (Rycroft 2009, doi:10.1063/1.3215722). Lengths in
-// diameters.
+// Voronoi cells of the centres, by voro++ (Rycroft 2009, doi:10.1063/1.3215722). Spheres of several
+// sizes have radical cells (Gellatly & Finney 1982, doi:10.1016/0022-3093(82)90093-X): the face of
+// two spheres is the plane from which the tangents to both are equally long. Lengths in diameters.
 namespace jostle::inline structure {
 
 /// Neighbour of a cell beyond a face that is no sphere: a side of the container.
@@ -30,6 +31,7 @@ struct VoronoiVertex {
 /// The cells of all spheres, one after another.
 struct VoronoiCells {
   std::vector<double> volumes;    // [n], diameters cubed
+  std::vector<double> spheres;    // [n], diameters cubed: the spheres' own volumes
   std::vector<double> surfaces;   // [n], diameters squared
   std::vector<std::uint8_t> cut;  // [n], 1 where floor, lid or sides are a face
   std::vector<std::uint32_t> first_face, first_vertex;  // [n + 1]
@@ -53,10 +55,10 @@ struct VoronoiCells {
 };
 
 /// The cells of a packing of at least one sphere. Under gravity a lid at height `lid`, by default
-/// half a diameter above the highest centre, closes the cells at the top. Cells at the curved wall
-/// of a cylinder are cut by the plane that touches it nearest to the sphere: they reach beyond it,
-/// and their volumes sum to more than the tube's. Throws std::invalid_argument for a lid below a
-/// centre.
+/// at the greatest height that a sphere reaches, closes the cells at the top. Cells at the curved
+/// wall of a cylinder are cut by the plane that touches it nearest to the sphere: they reach beyond
+/// it, and their volumes sum to more than the tube's. Throws std::invalid_argument for a lid below
+/// a centre.
 VoronoiCells voronoi_cells(const Packing& packing, std::optional<double> lid = std::nullopt);
 
 /// Faces of cell i of at least `least_area` times its surface. Exact crystals are degenerate: any
@@ -66,7 +68,7 @@ std::uint32_t n_faces(const VoronoiCells& cells, std::uint32_t i, double least_a
 /// Volume of the sphere over that of its cell, [n].
 std::vector<double> local_fractions(const VoronoiCells& cells);
 
-/// Volume of a cell without its sphere, in units of a sphere's, [n]. Rosato et al. 2010, fig. 9.
+/// Volume of a cell without its sphere, in units of that sphere's, [n]. Rosato et al. 2010, fig. 9.
 std::vector<double> free_volumes(const VoronoiCells& cells);
 
 }  // namespace jostle::inline structure

@@ -1,12 +1,17 @@
 // Measures of structure of spheres of several sizes.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
+#include <voro++/voro++.hh>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/density/profiles.hpp"
 #include "structure/measure.hpp"
+#include "structure/order/partial_correlation.hpp"
+#include "structure/voids/voronoi.hpp"
 #include "tests/structure/reference_deposit.hpp"
 
 using namespace jostle;
@@ -181,12 +186,160 @@ TEST_CASE("structure: the profile of a mixture cuts each sphere by its own radiu
 TEST_CASE("structure: parts that require equal spheres are refused by name") {
   for (const Measurement& measured : measure(two_sizes(), all_structure(), points)) {
     INFO(measured.part);
-    const bool taken =
-        measured.part == "profile" || measured.part == "coordination" || measured.part == "gaps";
+    const bool taken = measured.part == "profile" || measured.part == "coordination" ||
+                       measured.part == "pair_correlation" || measured.part == "gaps" ||
+                       measured.part == "voronoi";
     const std::string name(measured.part);
     CHECK(measured.refused == (taken ? ""
                                      : "measures of " + name +
                                            " require equal spheres of diameter 1, and this "
                                            "packing is a mixture"));
   }
+}
+
+TEST_CASE("structure: radical cells fill the box and are those of voro++ called apart") {
+  const Packing packing = two_sizes();
+  const double lid = surface_height(packing);
+  const VoronoiCells cells = voronoi_cells(packing);
+  CHECK(cells.inconsistent == 0);
+  voro::container_poly twin(0, 8, 0, 8, 0, lid, 6, 6, 6, true, true, false, 8);
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const Vec3 r = packing.centres[i];
+    twin.put(static_cast<int>(i), r.x, r.y, r.z, packing.radius(i));
+  }
+  std::vector<double> volumes(packing.centres.size(), 0);
+  voro::voronoicell cell;
+  voro::c_loop_all loop(twin);
+  if (loop.start()) {
+    do {
+      if (twin.compute_cell(cell, loop))
+        volumes[static_cast<std::size_t>(loop.pid())] = cell.volume();
+    } while (loop.inc());
+  }
+  double sum = 0, solid = 0;
+  const std::vector<double> fractions = local_fractions(cells);
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    CHECK(cells.volumes[i] == Approx(volumes[i]).epsilon(1e-9));
+    CHECK(fractions[i] < 1);  // a sphere that overlaps none is within its cell
+    sum += cells.volumes[i];
+    solid += fractions[i] * cells.volumes[i];
+  }
+  CHECK(sum == Approx(64 * lid).epsilon(1e-10));
+  CHECK(solid == Approx(solid_volume(packing)).epsilon(1e-12));
+}
+
+TEST_CASE("structure: the face of two spheres of other sizes is where their tangents are equal") {
+  // Radii of 1 and 0.4 in a periodic box of 10; centres 3 apart on x.
+  Packing packing{FullyPeriodicBox{10, 10, 10}, {{2, 5, 5}, {5, 5, 5}}};
+  packing.sizes = std::make_shared<const Sizes>(std::vector<double>{2, 0.8});
+  const VoronoiCells cells = voronoi_cells(packing);
+  const auto plane = [](double apart) { return (apart * apart + 1 - 0.16) / (2 * apart); };
+  CHECK(cells.volumes[0] == Approx(100 * (plane(3) + plane(7))).epsilon(1e-12));
+  CHECK(cells.volumes[0] + cells.volumes[1] == Approx(1000).epsilon(1e-12));
+  CHECK(free_volumes(cells)[1] ==
+        Approx(cells.volumes[1] / (std::numbers::pi / 6 * 0.512) - 1).epsilon(1e-12));
+}
+
+TEST_CASE("structure: cells by kind are those of the single cells") {
+  const Packing packing = two_sizes();
+  StructureSettings settings;
+  settings.region = Region{2, 8, 0};
+  settings.voronoi.emplace();
+  const auto all = measure(packing, settings, points);
+  const Measurement& voronoi = part(all, "voronoi");
+  CHECK(voronoi.find("k") == nullptr);  // defined for equal spheres
+  const VoronoiCells cells = voronoi_cells(packing);
+  double volumes[2] = {}, counts[2] = {};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double z = packing.centres[i].z;
+    if (cells.cut[i] || z < 2 || z > 8) continue;
+    volumes[packing.sizes->kind(i)] += cells.volumes[i];
+    counts[packing.sizes->kind(i)] += 1;
+  }
+  CHECK(values(voronoi, "cells_of_kind") == std::vector<double>{counts[0], counts[1]});
+  CHECK(counts[1] > 10);
+  for (int kind : {0, 1})
+    CHECK(values(voronoi, "mean_volume_of_kind")[kind] ==
+          Approx(volumes[kind] / counts[kind]).epsilon(1e-12));
+}
+
+TEST_CASE("structure: partial pairs are those of all pairs, and what is expected is an integral") {
+  const Packing packing = two_sizes();
+  const Boundary boundary(packing.container);
+  const PairCorrelationSettings settings{.r_max = 2, .bin_width = 0.25, .heights = {{3, 7}}};
+  const auto all = partial_correlations(packing, settings);
+  REQUIRE(all.size() == 3);
+  std::array<std::array<double, 8>, 3> counts{}, expected{};
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const Vec3 from = packing.centres[i];
+    if (from.z < 3 || from.z > 7) continue;
+    for (std::size_t j = 0; j < packing.centres.size(); ++j) {
+      if (j == i) continue;
+      const std::size_t kinds = packing.sizes->kind(i) + packing.sizes->kind(j);
+      const double contact = packing.radius(i) + packing.radius(j);
+      const double apart = std::sqrt(norm_squared(separation(boundary, from, packing.centres[j])));
+      const auto bin = static_cast<std::size_t>(apart / contact / 0.25);
+      if (bin < 8) counts[kinds][bin] += 1;
+      const double h = packing.centres[j].z - from.z;
+      for (std::size_t k = 0; k < 8; ++k) {
+        const auto disc = [&](double x) {
+          return std::max(0.0, x * x * contact * contact - h * h) * std::numbers::pi / 64;
+        };
+        expected[kinds][k] += disc(0.25 * (k + 1)) - disc(0.25 * k);
+      }
+    }
+  }
+  for (std::size_t kinds = 0; kinds < 3; ++kinds) {
+    CHECK(all[kinds].first + all[kinds].second == kinds);
+    for (std::size_t k = 0; k < 8; ++k) {
+      CHECK(static_cast<double>(all[kinds].counts[k]) == counts[kinds][k]);
+      CHECK(all[kinds].expected[k] == Approx(expected[kinds][k]).epsilon(1e-10));
+    }
+    CHECK(all[kinds].g()[2] == 0);   // below contact
+    CHECK(all[kinds].g()[7] > 0.7);  // about 1 beyond
+    CHECK(all[kinds].g()[7] < 1.3);
+  }
+  CHECK(counts[2][4] > 20);
+}
+
+TEST_CASE("structure: partial pairs of equal spheres in a periodic box are g(r)") {
+  RandomStream random(stream_key(9, 0, 0, Purpose::start));
+  Packing packing{FullyPeriodicBox{9, 9, 9}, {}};
+  for (int i = 0; i < 600; ++i)
+    packing.centres.push_back({9 * random.uniform(), 9 * random.uniform(), 9 * random.uniform()});
+  const PairCorrelationSettings settings{.r_max = 4, .bin_width = 0.1};
+  const PairCorrelation equal = pair_correlation(packing, settings);
+  std::vector<std::uint32_t> kinds(600, 0);
+  std::fill(kinds.begin() + 200, kinds.end(), 1);
+  packing.sizes = std::make_shared<const Sizes>(std::vector<double>(600, 1.0), kinds,
+                                                std::vector<SphereKind>{{"a", 1}, {"b", 1}});
+  const auto all = partial_correlations(packing, settings);
+  REQUIRE(all.size() == 3);
+  for (std::size_t k = 0; k < equal.r.size(); ++k) {
+    std::uint64_t counts = 0;
+    double expected = 0;
+    for (const PartialCorrelation& pairs : all) {
+      counts += pairs.counts[k];
+      expected += pairs.expected[k];
+    }
+    CHECK(counts == equal.counts[k]);
+    CHECK(expected == Approx(equal.expected[k]).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("structure: partial pairs refuse walls, half periods and many kinds by name") {
+  Packing packing = two_sizes();
+  using Catch::Contains;
+  CHECK_THROWS_WITH(partial_correlations(packing, {.r_max = 2.7}),
+                    Contains("r_max must not exceed half a period, 4.0"));
+  CHECK(widest_partial_pairs(packing) == Approx(2.6));
+  packing.container = WalledBox{8, 8};
+  CHECK_THROWS_WITH(partial_correlations(packing, {.r_max = 2}), Contains("periodic sides"));
+  packing = two_sizes(500);
+  std::vector<std::uint32_t> kinds(500);
+  std::vector<SphereKind> names;
+  for (std::uint32_t i = 0; i < 500; ++i) kinds[i] = i % 9;
+  for (int k = 0; k < 9; ++k) names.push_back({"kind_" + std::to_string(k), 1});
+  packing.sizes = std::make_shared<const Sizes>(diameters_of(*packing.sizes), kinds, names);
+  CHECK_THROWS_WITH(partial_correlations(packing, {.r_max = 2}), Contains("9 kinds"));
 }

@@ -106,9 +106,10 @@ TEST_CASE("frames with wrong sizes are refused by name") {
 TEST_CASE("exports of a mixture carry sizes and kinds") {
   const std::vector<ExportedFrame> frames{frame()};
   const std::string dump = lammps_dump_text(frames);
-  CHECK_THAT(dump, Contains("ITEM: ATOMS id type x y z radius kind mass coordination\n"
-                            "1 2 2 2 "));
-  CHECK_THAT(dump, Contains("\n2 1 5 5 1.5 1.5 0 67.5 0\n"));
+  CHECK_THAT(dump,
+             Contains("ITEM: ATOMS id type x y z radius kind mass coordination voronoi_volume\n"
+                      "1 2 2 2 "));
+  CHECK_THAT(dump, Contains("\n2 1 5 5 1.5 1.5 0 67.5 0 "));
   const std::string vtk = vtk_points_text(frames.front());
   CHECK_THAT(vtk, Contains("Name=\"radius\"") && Contains("Name=\"kind\""));
   const TemporaryFolder folder;

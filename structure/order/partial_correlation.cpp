@@ -1,0 +1,153 @@
+#include "structure/order/partial_correlation.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "engine/bed/boundary.hpp"
+#include "structure/order/neighbours.hpp"
+#include "structure/order/whole_shells.hpp"
+
+namespace jostle::inline structure {
+namespace {
+
+/// Adds what is expected of pairs into the bins of one pair of kinds.
+class ExpectedPairs {
+ public:
+  ExpectedPairs(std::size_t n_bins, double bin_width) : width_(bin_width), bins_(n_bins, 0.0) {}
+
+  /// Centres `height` apart; `weight` over the area of the footprint.
+  void add_annuli(double contact, double height, double weight) {
+    const double begin = std::abs(height) / contact;  // in sums of radii
+    const auto first = static_cast<std::size_t>(begin / width_);
+    if (first >= bins_.size()) return;
+    const double area = std::numbers::pi * contact * contact * weight;
+    const double end = static_cast<double>(first + 1) * width_;
+    bins_[first] += area * (end * end - begin * begin);
+    if (whole_from_.empty()) whole_from_.assign(bins_.size() + 1, 0.0);
+    whole_from_[first + 1] += area;
+  }
+  /// `weight` over the volume of the box.
+  void add_shells(double contact, double weight) {
+    shells_ += weight * contact * contact * contact;
+  }
+
+  std::vector<double> bins() && {
+    double area = 0;
+    for (std::size_t k = 0; k < bins_.size(); ++k) {
+      const double low = static_cast<double>(k) * width_, high = low + width_;
+      if (!whole_from_.empty()) area += whole_from_[k];
+      bins_[k] += area * (high * high - low * low);
+      bins_[k] += 4 * std::numbers::pi / 3 * shells_ * (high * high * high - low * low * low);
+    }
+    return std::move(bins_);
+  }
+
+ private:
+  double width_, shells_ = 0;
+  std::vector<double> bins_, whole_from_;
+};
+
+/// The place of a pair of kinds in the list of all.
+std::size_t place_of(std::uint32_t a, std::uint32_t b, std::size_t n_kinds) {
+  const std::size_t low = std::min(a, b), high = std::max(a, b);
+  return low * n_kinds - low * (low + 1) / 2 + high;
+}
+
+}  // namespace
+
+std::optional<std::string> partial_pairs_fault(const Container& container, double largest,
+                                               std::size_t n_kinds, std::optional<double> r_max) {
+  const Boundary boundary(container);
+  if (n_kinds > most_kinds_of_pairs)
+    return "partial g(r): there are " + std::to_string(n_kinds) +
+           " kinds of spheres; pairs of at most " + std::to_string(most_kinds_of_pairs) +
+           " kinds are counted";
+  if (boundary.has_walls())
+    return "partial g(r) requires periodic sides: the correction for walls is known for equal "
+           "spheres alone";
+  const double half = 0.5 * narrowest_period(boundary);
+  if (r_max && *r_max * largest > half * (1 + 1e-9))
+    return "partial g(r): " + std::to_string(*r_max) + " sums of radii are " +
+           std::to_string(*r_max * largest) +
+           " d for the largest spheres; r_max must not exceed half a period, " +
+           std::to_string(half) + " d";
+  return std::nullopt;
+}
+
+std::vector<double> PartialCorrelation::g() const {
+  std::vector<double> values(counts.size());
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    values[k] = static_cast<double>(counts[k]) / expected[k];
+  return values;
+}
+
+double widest_partial_pairs(const Packing& packing) {
+  constexpr double usual = 4, tenth = 0.1;
+  const double half = 0.5 * narrowest_period(Boundary(packing.container));
+  const double widest = half / (2 * packing.largest_radius());
+  return std::min(std::floor(widest / tenth + 1e-9) * tenth, usual);
+}
+
+std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
+                                                     const PairCorrelationSettings& settings) {
+  assert(packing.sizes && settings.bin_width > 0 && !packing.centres.empty());
+  constexpr double early = 1e-9;
+  const Sizes& sizes = *packing.sizes;
+  const Boundary boundary(packing.container);
+  if (const auto fault = partial_pairs_fault(packing.container, 2 * sizes.largest_radius(),
+                                             sizes.kinds().size(), settings.r_max))
+    throw std::invalid_argument(*fault);
+  const double farthest = settings.r_max * 2 * sizes.largest_radius();
+  const HeightWindow heights = settings.heights.value_or(bulk_heights(packing, farthest));
+  const auto n_bins = static_cast<std::size_t>(settings.r_max / settings.bin_width + 1e-9);
+  const std::size_t n_kinds = sizes.kinds().size();
+  std::vector<PartialCorrelation> all;
+  for (std::uint32_t a = 0; a < n_kinds; ++a) {
+    for (std::uint32_t b = a; b < n_kinds; ++b) {
+      PartialCorrelation pairs{.first = a, .second = b};
+      pairs.counts.assign(n_bins, 0);
+      for (std::size_t k = 0; k < n_bins; ++k)
+        pairs.x.push_back((static_cast<double>(k) + 0.5) * settings.bin_width);
+      all.push_back(std::move(pairs));
+    }
+  }
+  std::vector<ExpectedPairs> expected(all.size(), ExpectedPairs(n_bins, settings.bin_width));
+  const double area = boundary.width_x * boundary.width_y;
+  const NeighbourFinder finder(packing, farthest);
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    const double height = packing.centres[i].z;
+    if (height < heights.low || height > heights.high) continue;
+    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+      if (j == i) return;
+      const double x = std::sqrt(distance_squared / contact_squared(packing, i, j));
+      const auto bin = static_cast<std::size_t>(x / settings.bin_width + early);
+      if (bin < n_bins) ++all[place_of(sizes.kind(i), sizes.kind(j), n_kinds)].counts[bin];
+    });
+    for (std::uint32_t j = 0; j < finder.size(); ++j) {
+      if (j == i) continue;
+      ExpectedPairs& into = expected[place_of(sizes.kind(i), sizes.kind(j), n_kinds)];
+      const double contact = sizes.radius(i) + sizes.radius(j);
+      if (boundary.periodic_z)
+        into.add_shells(contact, 1 / (area * boundary.height));
+      else
+        into.add_annuli(contact, packing.centres[j].z - height, 1 / area);
+    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].expected = std::move(expected[k]).bins();
+  return all;
+}
+
+double contact_value(const PartialCorrelation& pairs, double bin_width, double reach) {
+  PairCorrelation as_equal;
+  as_equal.bin_width = bin_width;
+  as_equal.r = pairs.x;
+  as_equal.found.assign(pairs.counts.begin(), pairs.counts.end());
+  as_equal.expected = pairs.expected;
+  return contact_value(as_equal, reach);
+}
+
+}  // namespace jostle::inline structure
