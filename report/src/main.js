@@ -2,6 +2,7 @@ import {shownSection} from "./blocks.js";
 import {element} from "./dom.js";
 import {figure} from "./figure.js";
 import * as format from "./format.js";
+import {View} from "./packing/view.js";
 import {leftOut, runSection} from "./run.js";
 import {isDark, onTheme, startTheme, toggleTheme} from "./theme.js";
 
@@ -91,5 +92,5 @@ function build() {
   document.documentElement.dataset.ready = "yes";
 }
 
-globalThis.jostle = {format};  // for tests
+globalThis.jostle = {format, View};  // for tests
 build();

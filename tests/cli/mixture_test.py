@@ -1,7 +1,9 @@
 """Spheres of several sizes: scenes, files, stops, shards and what is refused by name."""
 
+import base64
 import json
 import random
+import re
 import unittest
 
 import h5py
@@ -230,10 +232,17 @@ class Mixtures(Case):
         refused = self.jostle("analyse", "a.h5", "volumes", "--observable", "bulk_fraction", expect=None)
         self.assertIn("volumes per sphere are defined for equal spheres", refused.stdout + refused.stderr)
 
-    def test_pages_say_that_mixtures_are_not_drawn(self):
+    def test_pages_draw_every_sphere_with_its_size(self):
         self.run_scene("-o", "a.h5")
         self.jostle("report", "a.h5", "-o", "a.html")
-        self.assertIn("packings of mixtures are not drawn", (self.folder / "a.html").read_text())
+        page = (self.folder / "a.html").read_text()
+        self.assertNotIn("are not drawn", page)
+        data = json.loads(re.search(r'id="report-data"[^>]*>(.*?)</script>', page, re.S)[1])
+        packing = data["files"][0]["packings"][0]
+        radii = np.frombuffer(base64.b64decode(packing["radius"]), "<u2") / 65535 * packing["greatest_radius"]
+        expected = sum(([kind.get("diameter", 1) / 2] * kind["count"] for kind in KINDS), [])
+        np.testing.assert_allclose(radii, expected, atol=1e-4)
+        self.assertEqual(packing["kinds"], [kind["name"] for kind in KINDS])
 
     def test_what_a_file_of_sizes_does_not_go_with_is_refused_when_the_scene_is_read(self):
         for changes, says in (({"observe": ["corrected_fraction"]}, "/observe/0: corrected_fraction"),

@@ -163,6 +163,27 @@ class Figures(Case):
         with self.assertRaisesRegex(ValueError, "one of x, y, z"):
             jostle.plot.packing_slice(results, normal="w", ax=self.ax)
 
+    def test_a_slice_of_a_mixture_has_discs_of_every_size_and_colours_of_kinds(self):
+        scene = changed(TINY, name="slice", sweep=None, realizations=1, container={"sides": "periodic", "width": 6},
+                        spheres=[{"name": "small", "count": 40}, {"name": "large", "count": 10, "diameter": 2}],
+                        observe=["mean_height"], protocol=[{"tap": {"dilate": 0.05}, "count": 1}],
+                        snapshots={"taps": [1]})
+        results = self.open(made(scene))
+        jostle.plot.packing_slice(results, normal="z", at=1.5, ax=self.ax)
+        self.drawn()
+        self.assertEqual([text.get_text() for text in self.ax.get_legend().get_texts()], ["small", "large"])
+        point = results.points[0]
+        above = results.positions()[:, 2] - 1.5
+        for kind, drawn in enumerate(self.ax.collections):
+            radii = np.array([path.get_extents().width for path in drawn.get_paths()]) / 2
+            own = point.kind == kind
+            expected = np.sqrt(np.maximum(point.diameters()[own] ** 2 / 4 - above[own] ** 2, 0))
+            self.assertGreater((expected > 0).sum(), 1)
+            for radius in expected[expected > 0]:
+                self.assertLess(np.abs(radii - radius).min(), 1e-9)
+            self.assertAlmostEqual(radii.max(), expected.max(), places=9)
+        self.assertGreater(radii.max(), 0.6)  # a sphere of 1 d has no such disc
+
     def test_what_cannot_be_drawn_says_why(self):
         with self.assertRaisesRegex(jostle.NotThere, "this draws tables of jostle fit"):
             jostle.plot.fit(self.open(made(BED)).tables.one("spectrum"), ax=self.ax)

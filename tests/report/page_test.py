@@ -300,6 +300,79 @@ class Grains(Open):
         self.assertIn("and more", rows[-1].text)
 
 
+class Mixture(Open):
+    name = "mixture"
+
+    def test_sizes_and_kinds_are_those_of_the_file(self):
+        packings = self.data()["files"][0]["packings"]
+        self.assertEqual(len(packings), 6)
+        with h5py.File(FOLDER / "mixture.h5") as file:
+            kinds = file["spheres/point_0000/kind"][()]
+            diameters = file["spheres/point_0000/diameter"][()]
+            for one in packings:
+                radii = numpy.frombuffer(base64.b64decode(one["radius"]), "<u2") / 65535 * one["greatest_radius"]
+                numpy.testing.assert_allclose(2 * radii, diameters[one["realization"]], atol=1e-4)
+                numpy.testing.assert_array_equal(numpy.frombuffer(base64.b64decode(one["kind"]), numpy.uint8), kinds)
+                self.assertEqual(one["kinds"], ["small", "large"])
+                self.assertNotIn("q6", one)
+
+    def test_spheres_are_drawn_by_size_and_coloured_by_kind(self):
+        canvas = BROWSER.show(BROWSER.find("canvas.packing"))
+        menu = next(Select(one.find_element(By.TAG_NAME, "select")) for one in BROWSER.find_all("label.chooser")
+                    if one.text.startswith("Colour by"))
+        self.assertEqual([one.text for one in menu.options],
+                         ["kind", "diameter", "coordination", "local packing fraction", "height"])
+        key = BROWSER.find(".packing-panel .key")
+        self.assertRegex(key.text, "(?s)kind of sphere.*small.*large")
+        BROWSER.run("document.querySelector('.packing-panel details').open = true")
+        rows = BROWSER.wait(lambda: BROWSER.find_all(".packing-panel details tbody tr"))
+        self.assertEqual({row.text.split()[0]: row.text.split()[1] for row in rows}, {"small": "60", "large": "8"})
+        before = BROWSER.picture(canvas)
+        menu.select_by_visible_text("diameter")
+        self.assertNotEqual(BROWSER.picture(canvas), before)
+        self.assertIn("diameter of the sphere", key.text)
+        menu.select_by_visible_text("coordination")
+        self.assertIn("centres within 1.05 times the sum of the two radii", key.text)
+
+    def test_a_sphere_covers_the_area_of_its_size(self):
+        drawn = BROWSER.run("""
+            const canvas = document.createElement("canvas");
+            canvas.style.width = canvas.style.height = "400px";
+            document.body.append(canvas);
+            const view = new jostle.View(canvas);
+            view.background = [1, 1, 1];
+            view.ink = [1, 1, 1];
+            const pixels = (radius) => {
+              view.show({centres: new Float32Array([5, 5, 5]), radii: new Float32Array([radius]),
+                         colours: new Uint8Array([200, 0, 0, 255]), lines: new Float32Array(6), size: [10, 10, 10]});
+              const {width, height} = canvas, all = new Uint8Array(4 * width * height);
+              view.draw();
+              view.gl.readPixels(0, 0, width, height, view.gl.RGBA, view.gl.UNSIGNED_BYTE, all);
+              let n = 0;
+              for (let i = 0; i < all.length; i += 4) if (all[i + 1] < 128) ++n;
+              return n;
+            };
+            const found = [pixels(0.25), pixels(0.5)];
+            canvas.remove();
+            return found;""")
+        self.assertGreater(drawn[0], 100)
+        self.assertAlmostEqual(drawn[1] / drawn[0], 4, delta=0.3)
+
+    def test_heights_of_kinds_stand_in_one_figure(self):
+        BROWSER.draw_everything()
+        names = BROWSER.run("""
+            const one = [...document.querySelectorAll("figure")].find(({figure}) => figure.spec.title === "Heights of the kinds");
+            return one.figure.spec.series.map((series) => series.name);""")
+        self.assertEqual(names, ["small", "large"])
+
+    def test_distances_are_relative_to_the_sum_of_two_radii(self):
+        labels = BROWSER.run("""
+            return [...document.querySelectorAll("figure")].map(({figure}) => [figure.spec.title, figure.spec.x.label]);""")
+        labels = dict(labels)
+        self.assertEqual(labels["Coordination by cut"], "cut (sum of the two radii)")
+        self.assertIn("sum of the two radii", labels["Partial pair correlation"])
+
+
 class Cost(Open):
     name = "cost"
 

@@ -36,9 +36,16 @@ PLAIN = changed(TINY, name="plain", snapshots={"taps": []}, realizations=1)
 del PLAIN["sweep"]
 MARKUP = changed(WHOLE, name="hostile", description=HOSTILE, realizations=2,
                  sweep={"/protocol/0/tap/dilate": [0.02, 0.05]})
+MIXTURE = changed(
+    TINY, name="mixture", container={"sides": "periodic", "width": 6},
+    spheres=[{"name": "small", "count": 60, "diameter": {"lognormal": {"mean": 1, "deviation": 0.05}}},
+             {"name": "large", "count": 8, "diameter": 1.5}],
+    observe=["mean_height", {"kind_height": {"kind": "small"}}, {"kind_height": {"kind": "large"}}, "segregation"],
+    structure={"coordination": {}, "pair_correlation": {"bin_width": 0.1}, "gaps": {}, "voronoi": {"cut_cells": True}})
+del MIXTURE["sweep"]
 SCENES = {"whole": WHOLE, "plain": PLAIN, "loop": LOOP, "grains": GRAINS, "states": STATES,
-          "memory": MEMORY, "hostile": MARKUP}
-CATALOGUED = ("whole", "loop", "grains", "states", "memory", "cost")
+          "memory": MEMORY, "mixture": MIXTURE, "hostile": MARKUP}
+CATALOGUED = ("whole", "loop", "grains", "states", "memory", "mixture", "cost")
 
 
 def make_pages(case):

@@ -20,14 +20,32 @@ export function centresOf(stored) {
   return centres;
 }
 
+/// Float32Array [n], diameters: of a mixture as stored, else 1/2.
+export function radiiOf(stored) {
+  const n = stored.spheres, radii = new Float32Array(n).fill(0.5);
+  if (!stored.radius) return radii;
+  const view = new DataView(bytesOf(stored.radius).buffer);
+  for (let i = 0; i < n; ++i) radii[i] = stored.greatest_radius * view.getUint16(2 * i, true) / 65535;
+  return radii;
+}
+
+/// Kinds of a mixture: colours of Okabe and Ito, which people with any colour vision tell apart.
+const kindColours = [[86, 180, 233], [213, 94, 0], [0, 158, 115], [240, 228, 66], [0, 114, 178], [204, 121, 167], [230, 159, 0]];
+const kindColour = (kind) => kindColours[kind % kindColours.length];
+
 const structures = ["disordered", "fcc", "hcp"];
 const structureColours = [[150, 156, 164], [0, 114, 178], [213, 94, 0]];
 
 /// The quantities that can colour spheres: values, their range, and the name of a value.
 export const colourings = {
-  coordination: {label: "coordination", title: "centres within 1.05 diameters", whole: true, values: (packing) => bytesOf(packing.coordination ?? ""),
+  kind: {label: "kind", title: "kind of sphere", names: (packing) => packing.kinds, colour: kindColour, values: (packing) => bytesOf(packing.kind ?? "")},
+  radius: {label: "diameter", title: "diameter of the sphere", values: (packing) => radiiOf(packing).map((radius) => 2 * radius),
+           range: (packing) => [2 * packing.least_radius, 2 * packing.greatest_radius]},
+  coordination: {label: "coordination", title: (packing) => packing.radius ? "centres within 1.05 times the sum of the two radii" : "centres within 1.05 diameters",
+                 whole: true, values: (packing) => bytesOf(packing.coordination ?? ""),
                  range: () => [0, 12]},
-  structure: {label: "crystalline order", title: "local order by common-neighbour analysis", names: structures,
+  structure: {label: "crystalline order", title: "local order by common-neighbour analysis", names: () => structures,
+              colour: (value) => structureColours[value] ?? structureColours[0],
               values: (packing) => bytesOf(packing.structure ?? "")},
   q6: {label: "bond order q\u2086", title: "q\u2086 of the 12 nearest neighbours",
        values: (packing) => Float32Array.from(bytesOf(packing.q6 ?? ""), (value) => value / 255), range: () => [0.25, 0.6]},
@@ -50,12 +68,18 @@ export function possible(packing) {
   return Object.keys(colourings).filter((name) => name === "height" || packing[name]);
 }
 
+/// What the key calls a colouring of this packing.
+export function titleOf(name, packing) {
+  const {title} = colourings[name];
+  return typeof title === "function" ? title(packing) : title;
+}
+
 /// Uint8Array [n, 4].
 export function coloursOf(name, packing, values) {
   const one = colourings[name], colours = new Uint8Array(4 * values.length);
   const [low, high] = one.range?.(packing) ?? [0, 1];
   for (let i = 0; i < values.length; ++i) {
-    const rgb = one.names ? structureColours[values[i]] ?? structureColours[0] : viridis((values[i] - low) / (high - low));
+    const rgb = one.colour ? one.colour(values[i]) : viridis(high > low ? (values[i] - low) / (high - low) : 0.5);
     colours.set([...rgb, 255], 4 * i);
   }
   return colours;
@@ -64,7 +88,7 @@ export function coloursOf(name, packing, values) {
 /// The key: names with colours, or a bar.
 export function keyOf(name, packing) {
   const one = colourings[name];
-  if (one.names) return {names: one.names.map((text, i) => [text, hex(structureColours[i])])};
+  if (one.names) return {names: one.names(packing).map((text, i) => [text, hex(one.colour(i))])};
   const [low, high] = one.range(packing);
   const stops = Array.from({length: 11}, (_, i) => hex(viridis(i / 10)));
   return {bar: `linear-gradient(to right, ${stops.join(",")})`, low: number(low, 3),
@@ -76,11 +100,11 @@ export function tally(name, packing, values, isShown) {
   const one = colourings[name], counts = new Map();
   let total = 0;
   const [low, high] = one.range?.(packing) ?? [0, 1];
-  const width = (high - low) / 10;
+  const width = (high - low) / 10, names = one.names?.(packing);
   values.forEach((value, i) => {
     if (!isShown[i]) return;
     ++total;
-    const bin = one.names ? one.names[value] ?? "?" : one.whole ? value : Math.min(Math.max(Math.floor((value - low) / width), 0), 9);
+    const bin = names ? names[value] ?? "?" : one.whole ? value : width > 0 ? Math.min(Math.max(Math.floor((value - low) / width), 0), 9) : 0;
     counts.set(bin, (counts.get(bin) ?? 0) + 1);
   });
   const label = (bin) => typeof bin === "string" ? bin : one.whole ? String(bin)

@@ -1,7 +1,7 @@
 // A kept packing to turn, slice and colour.
 import {chooser, dataTable, element, save} from "../dom.js";
 import {count, fileName, number, plural} from "../format.js";
-import {centresOf, colourings, coloursOf, frameOf, keyOf, possible, tally} from "./packing.js";
+import {centresOf, colourings, coloursOf, frameOf, keyOf, possible, radiiOf, tally, titleOf} from "./packing.js";
 import {View} from "./view.js";
 import {isDark, onTheme} from "../theme.js";
 
@@ -141,6 +141,7 @@ class PackingPanel {
   choose() {
     const packing = this.packing();
     this.centres = centresOf(packing);
+    this.radii = radiiOf(packing);
     this.tapText.textContent = `tap ${packing.tap}`;
     this.slider.setAttribute("aria-valuetext", `tap ${packing.tap}`);
     this.colouring = possible(packing).includes(this.wanted) ? this.wanted : possible(packing)[0];
@@ -163,6 +164,7 @@ class PackingPanel {
     const kept = [];
     shown.forEach((is, i) => { if (is) kept.push(i); });
     const centres = new Float32Array(3 * kept.length), tints = new Uint8Array(4 * kept.length);
+    const radii = Float32Array.from(kept, (i) => this.radii[i]);
     kept.forEach((i, k) => {
       centres.set(this.centres.subarray(3 * i, 3 * i + 3), 3 * k);
       tints.set(colours.subarray(4 * i, 4 * i + 4), 4 * k);
@@ -172,7 +174,7 @@ class PackingPanel {
       this.view.background = dark ? [0.082, 0.094, 0.11] : [1, 1, 1];
       this.view.ink = dark ? [0.5, 0.53, 0.57] : [0.45, 0.45, 0.45];
       const point = this.chapter.run.points.find((one) => one.number === packing.point);
-      this.view.show({centres, colours: tints, lines: frameOf(point?.container.kind, packing.upper), size: packing.upper});
+      this.view.show({centres, radii, colours: tints, lines: frameOf(point?.container.kind, packing.upper), size: packing.upper});
     }
     this.describe(packing, kept.length);
     this.values = {packing, values, shown};
@@ -186,7 +188,7 @@ class PackingPanel {
     this.status.textContent = text;
     this.canvas.setAttribute("aria-label", `Packing of ${text}, coloured by ${colouring.label}. Arrow keys turn it, plus and minus magnify it.`);
     const key = keyOf(this.colouring, packing);
-    this.key.replaceChildren(element("span", {class: "key-title"}, colouring.title),
+    this.key.replaceChildren(element("span", {class: "key-title"}, titleOf(this.colouring, packing)),
       key.names ? element("span", {class: "swatches"}, key.names.map(([name, colour]) =>
         element("span", {}, element("i", {style: `background:${colour}`}), name)))
         : element("span", {class: "ramp"}, key.low, element("i", {style: `background:${key.bar}`}), key.high));

@@ -4,18 +4,21 @@ const vertexSource = `#version 300 es
 layout(location = 0) in vec2 corner;
 layout(location = 1) in vec3 centre;
 layout(location = 2) in vec4 colour;
+layout(location = 3) in float radius;
 uniform mat3 turn;
 uniform vec3 middle;
 uniform vec4 extent; // half width and half height of what is seen, depth, 0
 out vec2 place;
 out vec3 tint;
 out float depth;
+out float size;
 void main() {
   vec3 at = turn * (centre - middle);
   place = corner;
+  size = radius;
   tint = colour.rgb;
   depth = at.z;
-  gl_Position = vec4((at.xy + corner * 0.5) / extent.xy, -at.z / extent.z, 1.0);
+  gl_Position = vec4((at.xy + corner * radius) / extent.xy, -at.z / extent.z, 1.0);
 }`;
 
 const fragmentSource = `#version 300 es
@@ -23,13 +26,14 @@ precision highp float;
 in vec2 place;
 in vec3 tint;
 in float depth;
+in float size;
 uniform vec4 extent;
 out vec4 pixel;
 void main() {
   float r2 = dot(place, place);
   if (r2 > 1.0) discard;
   vec3 normal = vec3(place, sqrt(1.0 - r2));
-  float z = depth + 0.5 * normal.z;
+  float z = depth + size * normal.z;
   gl_FragDepth = 0.5 - 0.5 * z / extent.z;
   float light = 0.42 + 0.5 * max(dot(normal, normalize(vec3(-0.35, 0.55, 0.76))), 0.0) + 0.12 * normal.z;
   float rim = smoothstep(1.0, 0.86, r2);
@@ -119,6 +123,11 @@ export class View {
     gl.enableVertexAttribArray(2);
     gl.vertexAttribPointer(2, 4, gl.UNSIGNED_BYTE, true, 0, 0);
     gl.vertexAttribDivisor(2, 1);
+    this.radii = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.radii);
+    gl.enableVertexAttribArray(3);
+    gl.vertexAttribPointer(3, 1, gl.FLOAT, false, 0, 0);
+    gl.vertexAttribDivisor(3, 1);
     this.frame = gl.createVertexArray();
     gl.bindVertexArray(this.frame);
     this.frameBuffer = gl.createBuffer();
@@ -144,13 +153,15 @@ export class View {
     this.draw();
   }
 
-  /// centres: Float32Array [n, 3]; colours: Uint8Array [n, 4]; lines: Float32Array of pairs of points; size: of the box.
+  /// centres: Float32Array [n, 3]; radii: Float32Array [n]; colours: Uint8Array [n, 4]; lines: Float32Array of pairs of points; size: of the box.
   show(shown) {
     if (!shown) return;
     this.shown = shown;
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.centres);
     gl.bufferData(gl.ARRAY_BUFFER, shown.centres, gl.DYNAMIC_DRAW);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.radii);
+    gl.bufferData(gl.ARRAY_BUFFER, shown.radii, gl.DYNAMIC_DRAW);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.colours);
     gl.bufferData(gl.ARRAY_BUFFER, shown.colours, gl.DYNAMIC_DRAW);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.frameBuffer);
@@ -169,10 +180,11 @@ export class View {
     gl.clearColor(...this.background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const [sx, sy, sz] = shown.size;
-    const round = Math.hypot(sx, sy, sz) / 2 + 0.5;
+    const largest = shown.radii.reduce((most, radius) => Math.max(most, radius), 0.5);
+    const round = Math.hypot(sx, sy, sz) / 2 + largest;
     const turn = uprightTurn(this.about, this.nod);
     // The extent of the turned box sets the scale.
-    const halfOf = (row) => (Math.abs(turn[row]) * sx + Math.abs(turn[row + 1]) * sy + Math.abs(turn[row + 2]) * sz) / 2 + 0.6;
+    const halfOf = (row) => (Math.abs(turn[row]) * sx + Math.abs(turn[row + 1]) * sy + Math.abs(turn[row + 2]) * sz) / 2 + largest + 0.1;
     const aspect = width / height;
     const upright = Math.max(halfOf(3), Math.hypot(sx, sy) / 2 / aspect + 0.3, halfOf(0) / aspect) / this.zoom;
     const extent = [upright * aspect, upright, round * 1.05, 0];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "ensemble/statistics/finite_text.hpp"
@@ -92,11 +93,46 @@ void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
             into);
 }
 
+constexpr std::string_view kind_height = "height_";  // before the name of the kind
+
+/// The heights of a mixture's kinds in one figure, at each of the shown sweep points.
+void add_kind_heights(const DrawnFile& file, Figures& into) {
+  std::vector<std::uint32_t> points;
+  for (const DrawnCurve& curve : file.curves()) points.push_back(curve.point);
+  for (const std::uint32_t point : file.chosen(points)) {
+    const DrawnCurve& curve = *file.curve(point);
+    const std::vector<double> taps = as_numbers(curve.taps);
+    std::vector<FigureSeries> series;
+    std::string units;
+    for (const DrawnColumn& column : curve.columns) {
+      if (!column.label.name.starts_with(kind_height) || !is_any_finite(column.mean)) continue;
+      units = column.label.units;
+      series.push_back({.name = words(column.label.name.substr(kind_height.size())),
+                        .colour = kind_colour(series.size()),
+                        .rows = rows_of(taps, column.mean, column.half_width)});
+    }
+    if (series.size() < 2) continue;
+    add_panel(
+        file, point,
+        {.title = "Heights of the kinds",
+         .caption = fmt::format(
+             "Mean height of the centres of every observed kind of spheres, weighted by "
+             "volume, against the number of taps{}. Tap 0 is the starting packing.",
+             file.n_realizations() > 1 ? "; bands are 68 % intervals of the means over realizations"
+                                       : ""),
+         .x = file.tap_axis(),
+         .y = {"height z" + unit_text(units)},
+         .series = std::move(series)},
+        into, "kind_heights");
+  }
+}
+
 }  // namespace
 
 void add_compaction(const DrawnFile& file, Figures& into) {
   const auto is_observable = [](const DrawnColumn& column) { return column.is_observable; };
   for (const std::string& name : names_of(file, is_observable)) add_mean(file, name, into);
+  add_kind_heights(file, into);
 }
 
 void add_spread(const DrawnFile& file, Figures& into) {

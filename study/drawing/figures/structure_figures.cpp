@@ -134,6 +134,32 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
   add_panel(file, table.point(), std::move(panel), into);
 }
 
+/// g_ij of each two kinds of a mixture at the last of the kept taps.
+void add_partial_pairs(const DrawnFile& file, const TableView& table, const PartPlot& plot,
+                       Figures& into) {
+  const std::vector<double> taps = table.axis("tap");
+  if (taps.empty()) return;
+  FigurePanel panel{
+      .title = "Partial pair correlation",
+      .caption = fmt::format("Pair correlation of each two kinds of spheres at tap {}, against the "
+                             "distance over the sum of the two radii; over all realizations, with "
+                             "68 % intervals by the jackknife.",
+                             taps.back()),
+      .x = {"distance (sum of the two radii)"},
+      .y = {"g_ij", AxisKind::linear, true}};
+  panel.x.low = plot.x_low;
+  panel.rules.push_back({.y = 1});
+  for (const std::string& name : table.quantities()) {
+    if (!name.starts_with("g_") || name.ends_with("_error") || name.ends_with("_dof")) continue;
+    panel.series.push_back({.name = words(name.substr(2)),
+                            .colour = kind_colour(panel.series.size()),
+                            .rows = rows_at(table, plot, name, true, taps.size() - 1)});
+  }
+  if (panel.series.empty()) return;
+  finish_panel(plot, panel);
+  add_panel(file, table.point(), std::move(panel), into);
+}
+
 }  // namespace
 
 void add_structure(const DrawnFile& file, Figures& into) {
@@ -150,6 +176,8 @@ void add_structure(const DrawnFile& file, Figures& into) {
         add_holes(file, *own, "volume_fraction", "Holes by volume", into);
       }
       for (const PartPlot& plot : part.plots) add_plot(file, *own, plot, into);
+      if (std::string_view(part.name) == "pair_correlation")
+        add_partial_pairs(file, *own, part.plots.front(), into);
       add_trends(file, *own, part, into);
       for (std::size_t i = n_before; i < into.size(); ++i) into[i].section = part.name;
     }

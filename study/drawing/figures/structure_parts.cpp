@@ -200,10 +200,25 @@ std::vector<FigureRow> rows_at(const TableView& table, const PartPlot& plot,
   return rows;
 }
 
+namespace {
+
+/// The label of the axis; of a mixture, whose distances are relative to the sum of two radii, with
+/// that unit.
+std::string x_label_of(const TableView& table, const PartPlot& plot) {
+  constexpr std::string_view diameters = "(diameters)", sum_of_radii = "sum of radii";
+  std::string label = plot.x_label;
+  const std::size_t unit = label.find(diameters);
+  if (unit != std::string::npos && table.units(plot.x) == sum_of_radii)
+    label.replace(unit, diameters.size(), "(sum of the two radii)");
+  return label;
+}
+
+}  // namespace
+
 FigurePanel panel_of(const TableView& table, const PartPlot& plot) {
   FigurePanel panel{.title = plot.title,
                     .source = table.source(plot.y),
-                    .x = {plot.x_label, plot.x_kind},
+                    .x = {x_label_of(table, plot), plot.x_kind},
                     .y = {plot.y_label, plot.y_kind, plot.from_zero}};
   panel.x.low = plot.x_low;
   if (plot.rule) panel.rules.push_back({.y = plot.rule});

@@ -18,8 +18,9 @@
 namespace jostle::inline study {
 namespace {
 
-/// Text of a sphere: 6 bytes of position and 5 of columns, in base64.
-constexpr double bytes_of_a_sphere = 11 * 4.0 / 3;
+/// Text of a sphere: 6 bytes of position and 5 of columns, in base64. A sphere of a mixture has
+/// its radius (2 bytes), its kind and at most three columns.
+constexpr double bytes_of_a_sphere = 11 * 4.0 / 3, bytes_of_a_mixed_sphere = 12 * 4.0 / 3;
 
 struct KeptRealization {
   RealizationId id;
@@ -84,23 +85,24 @@ ChosenPackings choose(std::vector<KeptPoint> points, std::size_t most) {
 
 Vec3 upper_corner(const Packing& packing) {
   Vec3 upper = extent(packing.container);
-  if (!(upper.z > 0)) upper.z = std::max(1.0, top_height(packing) + sphere_radius);
+  if (!(upper.z > 0)) upper.z = std::max(1.0, surface_height(packing));
   return upper;
+}
+
+/// Adds a share of 1 as two bytes, the low one first.
+void add_word(double share, std::vector<std::uint8_t>& bytes) {
+  const auto word = static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * 65535));
+  bytes.push_back(static_cast<std::uint8_t>(word & 255));
+  bytes.push_back(static_cast<std::uint8_t>(word >> 8));
 }
 
 std::string encoded_positions(const Packing& packing, const Vec3& upper) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(packing.centres.size() * 6);
-  const auto add = [&](double value, double length) {
-    const double share = std::clamp(value / length, 0.0, 1.0);
-    const auto word = static_cast<std::uint16_t>(std::lround(share * 65535));
-    bytes.push_back(static_cast<std::uint8_t>(word & 255));
-    bytes.push_back(static_cast<std::uint8_t>(word >> 8));
-  };
   for (const Vec3& r : packing.centres) {
-    add(r.x, upper.x);
-    add(r.y, upper.y);
-    add(r.z, upper.z);
+    add_word(r.x / upper.x, bytes);
+    add_word(r.y / upper.y, bytes);
+    add_word(r.z / upper.z, bytes);
   }
   return base64(bytes);
 }
@@ -118,6 +120,22 @@ std::string encoded(const std::vector<ParticleColumn>& columns, const char* name
           }
         },
         column.values);
+  }
+  return base64(bytes);
+}
+
+/// The volume of each sphere over that of its cell.
+std::string encoded_fractions(const Packing& packing, const std::vector<ParticleColumn>& columns) {
+  std::vector<std::uint8_t> bytes;
+  for (const ParticleColumn& column : columns) {
+    if (column.name != "voronoi_volume") continue;
+    const auto& volumes = std::get<std::vector<double>>(column.values);
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+      const double diameter = 2 * packing.radius(i);
+      const double sphere = sphere_volume * (diameter * diameter * diameter);
+      const double share = volumes[i] > 0 ? std::min(sphere / volumes[i], 1.0) : 0;
+      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * share)));
+    }
   }
   return base64(bytes);
 }
@@ -147,6 +165,22 @@ void add_forces(Json& json, std::size_t n_spheres, const std::vector<Contact>& c
   json["greatest_force"] = page_number(greatest);
 }
 
+/// The radius and the kind of each sphere of a mixture.
+void add_sizes(Json& json, const Sizes& sizes) {
+  std::vector<std::uint8_t> radii, kinds;
+  radii.reserve(2 * sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    add_word(sizes.radius(i) / sizes.largest_radius(), radii);
+    kinds.push_back(static_cast<std::uint8_t>(std::min(sizes.kind(i), 255U)));
+  }
+  json["radius"] = base64(radii);
+  json["least_radius"] = page_number(sizes.smallest_radius());
+  json["greatest_radius"] = page_number(sizes.largest_radius());
+  json["kind"] = base64(kinds);
+  json["kinds"] = Json::array();
+  for (const SphereKind& kind : sizes.kinds()) json["kinds"].push_back(page_text(kind.name));
+}
+
 Json page_packing(RealizationId id, std::uint64_t tap, const Packing& packing,
                   const std::vector<Contact>& contacts) {
   const Vec3 upper = upper_corner(packing);
@@ -156,17 +190,16 @@ Json page_packing(RealizationId id, std::uint64_t tap, const Packing& packing,
             {"spheres", packing.centres.size()},
             {"lower", Json::array({0, 0, 0})},
             {"upper", page_numbers(std::vector{upper.x, upper.y, upper.z})}};
+  if (packing.sizes) add_sizes(json, *packing.sizes);
   try {
     const Packing inside = wrapped_inside(packing);
     const std::vector<ParticleColumn> columns = particle_columns(packing);
     json["position"] = encoded_positions(inside, upper);
     const auto as_it_is = [](double value) { return value; };
     json["coordination"] = encoded(columns, "coordination", as_it_is);
-    json["structure"] = encoded(columns, "structure_type", as_it_is);
-    json["q6"] = encoded(columns, "q6", [](double q6) { return 255 * q6; });
-    json["local_fraction"] = encoded(columns, "voronoi_volume", [](double volume) {
-      return volume > 0 ? 255 * sphere_volume / volume : 0;
-    });
+    if (!packing.sizes) json["structure"] = encoded(columns, "structure_type", as_it_is);
+    if (!packing.sizes) json["q6"] = encoded(columns, "q6", [](double q6) { return 255 * q6; });
+    json["local_fraction"] = encoded_fractions(packing, columns);
   } catch (const std::invalid_argument&) {  // a centre outside, of another program
     json["position"] = encoded_positions(packing, upper);
   }
@@ -184,23 +217,17 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   const std::size_t n_points = file.study().points.size();
   bool has_mixtures = false;
   for (const std::size_t point : evenly_spread(n_points, most_shown_points)) {
-    if (file.study().points[point].mixture) {
-      has_mixtures = true;
-      continue;
-    }
+    has_mixtures = has_mixtures || file.study().points[point].mixture != nullptr;
     KeptPoint kept = kept_of(file, static_cast<std::uint32_t>(point));
     if (kept.realizations.empty()) continue;
     largest = std::max(largest, kept.n_spheres);
     most_there = std::max(most_there, kept.of);
     points.push_back(std::move(kept));
   }
-  if (has_mixtures)
-    left_out.push_back(
-        "packings of mixtures are not drawn: the page draws spheres of one diameter; export them "
-        "to look at them in another program");
   if (points.empty()) return Json::array();
-  const auto most = static_cast<std::size_t>(static_cast<double>(room) /
-                                             (bytes_of_a_sphere * std::max(1u, largest) + 200));
+  const double bytes = has_mixtures ? bytes_of_a_mixed_sphere : bytes_of_a_sphere;
+  const auto most =
+      static_cast<std::size_t>(static_cast<double>(room) / (bytes * std::max(1u, largest) + 200));
   const ChosenPackings chosen = choose(std::move(points), most);
   if (most == 0) {
     left_out.push_back(fmt::format(
@@ -220,8 +247,8 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   std::vector<std::vector<Contact>> contacts;
   for (const auto& [id, tap] : chosen.packings) {
     const auto realization = file.realization(id);
-    packings.push_back(
-        {file.study().points[id.point].container, realization->vectors(tap, kept_positions)});
+    packings.push_back({file.study().points[id.point].container,
+                        realization->vectors(tap, kept_positions), file.sizes(id)});
     contacts.push_back(file.study().points[id.point].snapshots.contacts ? realization->contacts(tap)
                                                                         : std::vector<Contact>{});
   }
