@@ -150,7 +150,10 @@ def names_of(scene):
         if isinstance(entry, str):
             return entry
         kind, settings = next(iter(entry.items()))
-        return settings.get("name", kind)
+        if kind == "kind_height":
+            return f"height_{settings['kind']}"
+        kinds = [settings[key] for key in ("large", "small", "kind") if key in settings]
+        return "_".join([settings.get("name", kind), *kinds])
     return [name(entry) for entry in scene["observe"]]
 
 

@@ -345,9 +345,11 @@ class Mixture(Open):
             const pixels = (radius) => {
               view.show({centres: new Float32Array([5, 5, 5]), radii: new Float32Array([radius]),
                          colours: new Uint8Array([200, 0, 0, 255]), lines: new Float32Array(6), size: [10, 10, 10]});
-              const {width, height} = canvas, all = new Uint8Array(4 * width * height);
-              view.draw();
-              view.gl.readPixels(0, 0, width, height, view.gl.RGBA, view.gl.UNSIGNED_BYTE, all);
+              const {width, height} = canvas, flat = document.createElement("canvas");
+              Object.assign(flat, {width, height});
+              const plane = flat.getContext("2d", {willReadFrequently: true});
+              plane.drawImage(canvas, 0, 0);
+              const all = plane.getImageData(0, 0, width, height).data;
               let n = 0;
               for (let i = 0; i < all.length; i += 4) if (all[i + 1] < 128) ++n;
               return n;
