@@ -343,8 +343,8 @@ class Mixture(Open):
             view.background = [1, 1, 1];
             view.ink = [1, 1, 1];
             const pixels = (radius) => {
-              view.show({centres: new Float32Array([5, 5, 5]), radii: new Float32Array([radius]),
-                         colours: new Uint8Array([200, 0, 0, 255]), lines: new Float32Array(6), size: [10, 10, 10]});
+              view.show({centres: new Float32Array([1.5, 1.5, 1.5]), radii: new Float32Array([radius]),
+                         colours: new Uint8Array([200, 0, 0, 255]), lines: new Float32Array(6), size: [3, 3, 3]});
               const {width, height} = canvas, flat = document.createElement("canvas");
               Object.assign(flat, {width, height});
               const plane = flat.getContext("2d", {willReadFrequently: true});
