@@ -77,6 +77,7 @@ const std::vector<std::string> cross_field_messages{
     "equal spheres of diameter 1",
     "skipping needs equal spheres",
     "are defined for equal spheres: leave them out",
+    "partial g(r)",
     "a lag is at least 1 tap",
     "needs a sweep",
     "realizations to begin with",
