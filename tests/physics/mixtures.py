@@ -41,7 +41,7 @@ def mean_of(values):
 
 def text_of(values, digits=2):
     mean, half, _ = mean_of(values)
-    return f"{mean:.{digits}f} ± {half:.{digits}f}"
+    return f"{mean:.{digits}f} ± {half:.{digits}f}" if len(values) > 1 else f"{mean:.{digits}f}"
 
 
 def holm(ps):
@@ -136,8 +136,9 @@ def rise_of(run, swept):
           "|---" * (len(swept) + len(shown) + 2) + "|")
     for (values, gained), p in zip(rows, ps):
         at = [text_of(gained[:, taps.index(tap)]) for tap in shown]
+        tested = f"{p:.2g}" if len(gained) > 1 else "-"
         print("| " + " | ".join([f"{value:g}" for value in values] + at) +
-              f" | {p:.2g} | {(gained[:, -1] > RISEN).sum()} of {len(gained)} |")
+              f" | {tested} | {(gained[:, -1] > RISEN).sum()} of {len(gained)} |")
 
 
 def rise_long():
