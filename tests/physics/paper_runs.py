@@ -41,7 +41,9 @@ class PaperRun:
         """Sweep points: the product of the lists, of which those of `zip` count once."""
         sweep = dict(self.scene.get("sweep", {}))
         zipped = sweep.pop("zip", {})
-        lengths = [len(values) for values in sweep.values()] + [len(v) for v in list(zipped.values())[:1]]
+        groups = zipped if isinstance(zipped, list) else [zipped]
+        lengths = [len(values) for values in sweep.values()]
+        lengths += [len(values) for group in groups for values in list(group.values())[:1]]
         return math.prod(lengths)
 
     def beds(self):
